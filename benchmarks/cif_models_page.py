@@ -50,12 +50,16 @@ def _aims(results: Results) -> str:
     """What was aimed at, what was measured, and whether that is it."""
     found = results["models"]
     escet = list(found.values())[: results["escet"]]
-    both = [one for one in found.values() if one["robosc"] and one["cif"] is not None]
-    timed = [one for one in both if "cold" in one["cif"]]
+    both = [model for model in found.values() if model["robosc"] and model["cif"] is not None]
+    timed = [model for model in both if "cold" in model["cif"]]
     agreeing, cold, warm = _agreeing(timed), _faster(both, "cold"), _faster(both, "seconds")
-    whole = sum(one["robosc"]["cold"] for one in escet if one["robosc"])
+    whole = sum(model["robosc"]["cold"] for model in escet if model["robosc"])
     rows = [
-        ("ESCET's models that are done", f"{sum(one['robosc'] is not None for one in escet)} of {len(escet)}", True),
+        (
+            "ESCET's models that are done",
+            f"{sum(model['robosc'] is not None for model in escet)} of {len(escet)}",
+            True,
+        ),
         ("as many states as CIF's tool, where it is done", f"{agreeing} of {len(timed)}", agreeing == len(timed)),
         ("all of ESCET's models, cold: under 60 s", f"{whole:.1f} s", whole < 60),
         ("none slower than CIF's tool, cold", f"{len(both) - cold} of {len(both)} slower", cold == len(both)),
@@ -84,11 +88,11 @@ def agree(ours: Results, theirs: Results) -> bool:
 
 
 def _agreeing(models: Iterable[Results]) -> int:
-    return sum(agree(one["robosc"], one["cif"]) for one in models)
+    return sum(agree(model["robosc"], model["cif"]) for model in models)
 
 
 def _faster(models: Iterable[Results], what: str) -> int:
-    return sum(what not in one["cif"] or one["robosc"][what] < one["cif"][what] for one in models)
+    return sum(what not in model["cif"] or model["robosc"][what] < model["cif"][what] for model in models)
 
 
 def _table(results: Results) -> str:
@@ -118,14 +122,14 @@ def plot(results: Results) -> str:
     names = [name for name, found in results["models"].items() if found["robosc"]]
     figure = Figure(figsize=(9, 0.19 * len(names) + 1), layout="constrained")
     axes = figure.subplots(1, 2, sharey=True)
-    for place, (axis, what, title) in enumerate(
+    for place, (axis, measure, title) in enumerate(
         zip(axes, ("seconds", "cold"), ("synthesis, warm", "the whole command"), strict=True)
     ):
         for tool, label, marker in (("robosc", "RoboSC", "o"), ("cif", "CIF", "s")):
             points = [
-                (results["models"][name][tool][what], row)
+                (results["models"][name][tool][measure], row)
                 for row, name in enumerate(names)
-                if what in (results["models"][name][tool] or {})
+                if measure in (results["models"][name][tool] or {})
             ]
             axis.plot(
                 [seconds for seconds, _ in points],

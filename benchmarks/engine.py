@@ -106,7 +106,7 @@ def _instructions(found: Sequence[Results]) -> str:
             [
                 machine["title"],
                 machine["events"],
-                *(number for what in ("perform", "batch", "tick") for number in _count(machine[what])),
+                *(number for operation in ("perform", "batch", "tick") for number in _count(machine[operation])),
                 "-" if machine["idle"] is None else f"{machine['idle']:,}",
                 machine["steps"]["most"],
                 f"{machine['bound']:,}",

@@ -44,7 +44,7 @@ def main() -> None:
                 late = sorted(1000 * (seconds - DURATION) for seconds in found)
                 print(
                     f"{kind.title}: {len(late)} times, median {statistics.median(late):.1f} ms late, at worst"
-                    f" {late[-1]:.1f} ms; early: {sum(one < 0 for one in late)}"
+                    f" {late[-1]:.1f} ms; early: {sum(lateness < 0 for lateness in late)}"
                 )
 
 

@@ -135,7 +135,7 @@ def page(results: Results) -> str:
         ]
     if found := _of(results, "watched"):
         rounds, seconds = (
-            _span(f"{measured[what]:.0f}" for measured in found.values()) for what in ("rounds", "seconds")
+            _span(f"{measured[measure]:.0f}" for measured in found.values()) for measure in ("rounds", "seconds")
         )
         parts += [WATCHED.format(rounds=rounds, seconds=seconds), _watched(found)]
     if found := _of(results, "costs"):
@@ -166,7 +166,7 @@ def _reactions(found: Mapping[Kind, Results]) -> str:
 
 
 def _costs(found: Mapping[Kind, Results]) -> str:
-    head = ["node", *(f"{kind.title}: {what}" for kind in found for what in ("processor", "memory"))]
+    head = ["node", *(f"{kind.title}: {measure}" for kind in found for measure in ("processor", "memory"))]
     titles = next(iter(found.values()))["nodes"]
     return _table(
         head,

@@ -111,7 +111,7 @@ def metrics(page: Any) -> dict[str, float]:
     tools = page.context.new_cdp_session(page)
     tools.send("Performance.enable")
     tools.send("HeapProfiler.collectGarbage")
-    return {one["name"]: one["value"] for one in tools.send("Performance.getMetrics")["metrics"]}
+    return {metric["name"]: metric["value"] for metric in tools.send("Performance.getMetrics")["metrics"]}
 
 
 def flooding(model: Path, port: int, seconds: float) -> None:
@@ -267,7 +267,7 @@ def main() -> None:
             return
         with served(model) as address:
             times = [measured(browser, address) for _ in range(5)]
-        drawn, computed, shown = (statistics.median(one) for one in zip(*times, strict=True))
+        drawn, computed, shown = (statistics.median(column) for column in zip(*times, strict=True))
         print(
             f"{options.components} components: drawn in {drawn:.0f} ms, with {computed:.0f} ms of processor time;"
             f" 1,000 events shown in {shown:.0f} ms"

@@ -108,7 +108,7 @@ def _plant(draw: st.DrawFn, sketch: _Sketch, sketches: Sequence[_Sketch], scope:
         ]
         for location in sketch.locations
     }
-    used = {one.event for location in sketch.locations for one in edges[location]}
+    used = {leaving.event for location in sketch.locations for leaving in edges[location]}
     edges[initial] += [edge(f"{sketch.name}.{event}") for _, event in own if f"{sketch.name}.{event}" not in used]
     return plant(
         sketch.name,
@@ -160,7 +160,9 @@ def _data_plant(draw: st.DrawFn, name: str, scope: _Scope):
 
 def _requirement_automaton(draw: st.DrawFn, sketches: Sequence[_Sketch], scope: _Scope):
     """An automaton that follows some events and blocks none."""
-    events = [f"{one.name}.{event}" for one in sketches for event in (*one.controllable, *one.uncontrollable)]
+    events = [
+        f"{sketch.name}.{event}" for sketch in sketches for event in (*sketch.controllable, *sketch.uncontrollable)
+    ]
     followed = draw(st.lists(st.sampled_from(events), min_size=1, max_size=3, unique=True))
     locations = ("l0", "l1")
     return plant(

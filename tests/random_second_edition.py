@@ -207,10 +207,10 @@ class SecondWriter(Writer):
     def expression(self, kind: Type, reads: list[tuple[str, Type]], depth: int, *, constant: bool = True) -> str:
         if depth > 0 and self.random.randrange(6) == 0:
             condition = super().expression(BOOLEAN, reads, depth - 1)
-            one, other = (
+            then, other = (
                 super(SecondWriter, self).expression(kind, reads, depth - 1, constant=constant) for _ in range(2)
             )
-            return f"(if {condition} then {one} else {other})"
+            return f"(if {condition} then {then} else {other})"
         if depth > 0 and self.random.randrange(6) == 0:
             made = self.call(kind, reads, depth)
             if made is not None:
@@ -300,18 +300,20 @@ def kept(seed: int) -> list[str]:
     ]
 
 
-def nested(one: Callable[..., str]) -> list[str]:
+def nested(choose: Callable[..., str]) -> list[str]:
     """A component that keeps objects within objects, as a whole and in parts, of data types of its own."""
-    place = one("0", "nestAt", "size(value.list) - 1", "mod(nestAt, 2)")
-    read = one(
+    place = choose("0", "nestAt", "size(value.list) - 1", "mod(nestAt, 2)")
+    read = choose(
         "outer.list[nestAt].deep.known",
         "any i in list: i.deep.known or (any t in i.tags: t > nestAt)",
         "all t in inner.tags: t = k0 or inner.deep.known",
         "size(outer.inner.deep.name) > size(outer.list)",
     )
-    given = one("outer", "{ inner: Nest.inner, list: Nest.list }", "{ list: Nest.outer.list[0..Nest.nestAt] }")
+    given = choose("outer", "{ inner: Nest.inner, list: Nest.list }", "{ list: Nest.outer.list[0..Nest.nestAt] }")
     whole = "Nest.outer" if given == "outer" else given
-    parts = one("Nest.inner.deep", "Nest.outer.list[Nest.nestAt].deep", "{ name: Nest.deep.name, known: Nest.nestSaw }")
+    parts = choose(
+        "Nest.inner.deep", "Nest.outer.list[Nest.nestAt].deep", "{ name: Nest.deep.name, known: Nest.nestSaw }"
+    )
     return [
         "datatype object NestDeep { known: boolean name: string }",
         "datatype object NestInner { x: double tags: array(integer) deep: NestDeep }",
@@ -320,7 +322,7 @@ def nested(one: Callable[..., str]) -> list[str]:
         'outgoing message nestTold with identifier: "/nest/told", type: NestOuter links i',
         'outgoing message nestIndex with identifier: "/nest/index", type: integer(0..2)',
         'service nestAsked with identifier: "/nest/asked", request: NestDeep, response: NestInner links i',
-        f'incoming message nestOut with identifier: "/nest/out", type: NestOuter{one("", ", send: change")} links i',
+        f'incoming message nestOut with identifier: "/nest/out", type: NestOuter{choose("", ", send: change")} links i',
         "behaviour {",
         "variable outer: NestOuter variable inner: NestInner variable deep: NestDeep variable list: array(NestInner)",
         "variable nestAt: integer(0..2) variable nestSaw: boolean variable nestSum: double",

@@ -278,13 +278,26 @@ def test_what_the_page_names_is_there() -> None:
     assert sorted(path for path in named if not (ROOT / path).exists() and not (ROOT / f"{path}.py").exists()) == []
 
 
-@pytest.mark.parametrize("folder", ["robosc", "tests", "benchmarks", "examples"])
+@pytest.mark.parametrize("folder", ["robosc", "tests", "benchmarks", "examples", "scripts"])
 def test_variables_are_named_for_what_they_hold(folder: str) -> None:
-    texts = {path: path.read_text(encoding="utf-8") for path in sorted((ROOT / folder).rglob("*.py"))}
+    trees = {path: ast.parse(path.read_text(encoding="utf-8")) for path in sorted((ROOT / folder).rglob("*.py"))}
+    nodes = [(path, node) for path, tree in trees.items() for node in ast.walk(tree)]
+    bound = [
+        (path, node.lineno, node.arg if isinstance(node, ast.arg) else node.id)
+        for path, node in nodes
+        if isinstance(node, ast.arg) or (isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store))
+    ]
+    looped = [
+        (path, name.lineno, name.id)
+        for path, node in nodes
+        if isinstance(node, ast.For | ast.AsyncFor | ast.comprehension)
+        for name in ast.walk(node.target)
+        if isinstance(name, ast.Name)
+    ]
+    wrong = [(bound, ("each", "one")), (looped, ("told", "said", "what", "some"))]
     assert [
-        f"{path.relative_to(ROOT)}:{node.lineno}: a variable says what it holds: `edge`, not `each`"
-        for path, text in texts.items()
-        if re.search(r"\beach\b", text)
-        for node in ast.walk(ast.parse(text))
-        if (isinstance(node, ast.Name) and node.id == "each") or (isinstance(node, ast.arg) and node.arg == "each")
+        f"{path.relative_to(ROOT)}:{line}: a variable says what it holds: `edge`, not `{name}`"
+        for variables, forbidden in wrong
+        for path, line, name in variables
+        if name in forbidden
     ] == []

@@ -221,9 +221,9 @@ class Simulation:
         world = self.world
         self.pillars += [pillar for pillar in world.pillars if pillar not in self.pillars]
         self.ways["robot"].append((world.pose.x, world.pose.y))
-        for name, thing in (("ball", world.ball), ("person", world.person)):
-            if thing:
-                self.ways[name].append((thing.x, thing.y))
+        for name, body in (("ball", world.ball), ("person", world.person)):
+            if body:
+                self.ways[name].append((body.x, body.y))
         self._note("pose", self.scenario.pose(world))
 
     def _note(self, topic, data):

@@ -85,7 +85,7 @@ CRUSH = 'requirement SR4 "no crush at the gate": never Left.in_zone and Right.in
 def test_it_holds_in_every_reachable_state_of_the_supervised_system(tmp_path: Path, said: str) -> None:
     made = gate(tmp_path, f"requirement {said}")
     assert supervise(made).synthesis.controlled_states == 3
-    verdict = next(one for one in verify_system(made) if one.property.startswith(f"requirement {said}"))
+    verdict = next(verdict for verdict in verify_system(made) if verdict.property.startswith(f"requirement {said}"))
     assert verdict.outcome is Outcome.PROVED
 
 
@@ -120,7 +120,7 @@ def test_what_could_happen_only_beyond_names_the_requirement(tmp_path: Path) -> 
         horn,
         "requirement SR1: never Stop.stopped and Base.driving",
     )
-    (toot,) = [one for one in supervise(made).findings if one.message.startswith("`Horn.toot` can never")]
+    (toot,) = [finding for finding in supervise(made).findings if finding.message.startswith("`Horn.toot` can never")]
     assert toot.rule == "never-enabled"
     assert toot.message == (
         "`Horn.toot` can never be sent: the supervisor lets the robot reach no state in which it could be sent: after "
@@ -131,14 +131,14 @@ def test_what_could_happen_only_beyond_names_the_requirement(tmp_path: Path) -> 
 
 def test_a_state_that_is_out_of_reach_says_what_keeps_it_out(tmp_path: Path) -> None:
     made = sct_of(tmp_path, STOP, BASE, "requirement SR1: never Stop.stopped and Base.driving")
-    unreachable = next(one for one in supervise(made).findings if one.rule == "unreachable-state")
+    unreachable = next(finding for finding in supervise(made).findings if finding.rule == "unreachable-state")
     assert unreachable.message.startswith("`Base` is never in `driving`: in `idle` the supervisor holds back")
     assert unreachable.message.endswith("`requirement SR1: never Stop.stopped and Base.driving` is violated")
 
 
 def test_an_action_is_cancelled_for_no_invariant(tmp_path: Path) -> None:
     made = sct_of(tmp_path, STOP, BASE, "requirement never Stop.stopped and Base.driving")
-    cancel = next(one for one in made.requirements if one.event.kind == sct.EventKind.cancel)
+    cancel = next(requirement for requirement in made.requirements if requirement.event.kind == sct.EventKind.cancel)
     assert cancel.text == "drive is never cancelled: no requirement restricts it"
 
 
@@ -195,7 +195,11 @@ def test_names_appear_in_every_message_and_comment(tmp_path: Path) -> None:
     made = gate(tmp_path, CRUSH, *named)
     supervise(made)
     stated = [*made.requirements, *made.invariants]
-    assert [(one.name, one.text) for one in stated] == [("SR5", named[0]), (None, named[1]), ("SR4", CRUSH)]
+    assert [(requirement.name, requirement.text) for requirement in stated] == [
+        ("SR5", named[0]),
+        (None, named[1]),
+        ("SR4", CRUSH),
+    ]
     events = {event.name: event.remarks for event in sct_to_engine.transform(made).events}
     assert events["message_enterLeft.c_trigger"] == [f"{named[0]} (robot.rscd)"]
     *_, synthesis = events["message_enterRight.c_trigger"]
@@ -207,7 +211,7 @@ def test_names_of_requirements_in_instances_have_their_component(tmp_path: Path)
     template = ARM.format("Arm", "requirement SR4: never in_zone").replace("Arm {", "Arm(ns: string) {", 1)
     template = template.replace("message leftArm with", 'message leftArm with identifier: ns + "/left",')
     made = sct_of(tmp_path, template, 'component Left is Arm("l") component Right is Arm("r")')
-    assert [(one.name, one.text) for one in made.invariants] == [
+    assert [(invariant.name, invariant.text) for invariant in made.invariants] == [
         ("Left.SR4", "requirement Left.SR4: never Left.in_zone"),
         ("Right.SR4", "requirement Right.SR4: never Right.in_zone"),
     ]
@@ -217,7 +221,7 @@ def test_names_are_unique(tmp_path: Path) -> None:
     path = tmp_path / "robot.rscd"
     path.write_text(f"robot R {{ {ARM.format('Left', '')} requirement Left: never Left.in_zone }}", encoding="utf-8")
     reading = read(path)
-    (found,) = [one for one in check(reading.base, reading.findings) if one.rule == "unique-component"]
+    (found,) = [finding for finding in check(reading.base, reading.findings) if finding.rule == "unique-component"]
     assert found.message.startswith("requirement `Left` has the name of a component (line 2)")
 
 
@@ -240,7 +244,7 @@ def test_a_guard_that_lets_the_robot_violate_it_is_refuted_with_a_shortest_trace
     supervise(made)
     for guard in made.supervisor.guards:
         guard.synthesis = None
-    verdict = next(one for one in verify_system(made) if one.property.startswith(CRUSH))
+    verdict = next(verdict for verdict in verify_system(made) if verdict.property.startswith(CRUSH))
     assert verdict.outcome is Outcome.REFUTED
     assert verdict.explanation == "it is violated where `Left.in_zone and Right.in_zone`"
     assert {step.event for step in verdict.trace} == {"message_enterLeft.c_trigger", "message_enterRight.c_trigger"}
@@ -259,7 +263,7 @@ def test_the_words_are_names_elsewhere(tmp_path: Path) -> None:
     made = sct_of(
         tmp_path, component, "requirement never needs always.on_duty", "requirement always.left = 3 disables never"
     )
-    assert [one.kind.name for one in made.requirements] == ["needs", "disables"]
+    assert [requirement.kind.name for requirement in made.requirements] == ["needs", "disables"]
     assert not list(made.invariants)
 
 

@@ -33,7 +33,7 @@ def communicating_models(draw: st.DrawFn) -> sct.SupervisoryControlModel:
     they have not started.
     """
     made = draw(sct_models())
-    triggers = [event for p in made.plants for event in p.events if event.kind == sct.EventKind.trigger]
+    triggers = [event for plant in made.plants for event in plant.events if event.kind == sct.EventKind.trigger]
     for trigger in triggers:
         plant_of(trigger).kind = getattr(sct.PlantKind, draw(st.sampled_from(("message", "service", "action"))))
         plant_of(trigger).topic = draw(st.sampled_from(("shared", "/shared")))
@@ -122,10 +122,10 @@ class Definitions:
     def shared_topic_conflicts(self) -> list[tuple[sct.Event, sct.Event]]:
         messages = [trigger for trigger in self.triggers if plant_of(trigger).kind == sct.PlantKind.message]
         return [
-            (one, other)
-            for one, other in combinations(messages, 2)
-            if plant_of(one).topic.strip("/") == plant_of(other).topic.strip("/")
-            and self.allowed(one) & self.allowed(other)
+            (message, other)
+            for message, other in combinations(messages, 2)
+            if plant_of(message).topic.strip("/") == plant_of(other).topic.strip("/")
+            and self.allowed(message) & self.allowed(other)
         ]
 
     def unrestricted_calls(self) -> list[sct.Event]:
@@ -137,9 +137,9 @@ class Definitions:
             and not any(requirement.event is trigger for requirement in self.oracle.model.requirements)
             and not any(
                 edge.event is trigger
-                for p in self.oracle.model.plants
-                if p is not plant_of(trigger)
-                for location in p.locations
+                for plant in self.oracle.model.plants
+                if plant is not plant_of(trigger)
+                for location in plant.locations
                 for edge in edges_from(location)
             )
         ]
@@ -197,14 +197,17 @@ def holds(oracle, requirement, state):
 def check_forbidding(oracle, event, told, states):
     """Those told are all that alone hold in none of the states; else some that do not together, none too many."""
     own = [requirement for requirement in oracle.model.requirements if requirement.event is event]
-    alone = [one for one in own if not any(holds(oracle, one, state) for state in states)]
+    alone = [requirement for requirement in own if not any(holds(oracle, requirement, state) for state in states)]
     if alone:
         assert list(told) == alone
         return
     assert len(told) > 1
-    assert not any(all(holds(oracle, one, state) for one in told) for state in states)
+    assert not any(all(holds(oracle, requirement, state) for requirement in told) for state in states)
     for left_out in told:
-        assert any(all(holds(oracle, one, state) for one in told if one is not left_out) for state in states)
+        assert any(
+            all(holds(oracle, requirement, state) for requirement in told if requirement is not left_out)
+            for state in states
+        )
 
 
 def check_hindrances(definitions: Definitions, observed: UnreachableState) -> None:
@@ -389,14 +392,14 @@ def test_an_example_is_settled_where_that_is_possible(where, example, settled):
         uncontrollable=["u_response"],
         marked=["dark", "dusk", "light"],
     )
-    one, other = (
+    first, second = (
         plant(name, {"ready": [edge("c_trigger")]}, controllable=["c_trigger"], kind="message", topic=topic)
         for name, topic in (("a", "t"), ("b", "/t"))
     )
     [conflict] = diagnose(
-        model([sensor, one, other], [needs("a.c_trigger", where)])
+        model([sensor, first, second], [needs("a.c_trigger", where)])
     ).observations.shared_topic_conflicts
-    assert conflict.example.state == {sensor.element: example, one.element: "ready", other.element: "ready"}
+    assert conflict.example.state == {sensor.element: example, first.element: "ready", second.element: "ready"}
     assert conflict.example.quiescent == settled
 
 

@@ -269,7 +269,7 @@ def test_never_enabled_says_why_with_a_trace(tmp_path: Path, requirement: str, n
     event, with a trace."""
     findings, made = read_robot(tmp_path, GUIDE, requirement)
     assert findings == []
-    found = [one.message for one in supervise(made).findings if one.rule == "never-enabled"]
+    found = [finding.message for finding in supervise(made).findings if finding.rule == "never-enabled"]
     assert f"`Arm.{name}` can never be sent: {why}" in found
 
 
@@ -297,7 +297,7 @@ def test_an_action_is_not_cancelled_for_an_order(tmp_path: Path) -> None:
     made = robosc_to_sct.transform(read(path).base)[0]
     found = supervise(made).findings
     assert "self-cancelling" not in {finding.rule for finding in found}
-    assert {one.text for one in made.requirements} == {
+    assert {requirement.text for requirement in made.requirements} == {
         "requirement drive after each grip",
         "drive is never cancelled: no requirement restricts it",
     }
@@ -371,7 +371,7 @@ def test_the_words_are_names_elsewhere(tmp_path: Path) -> None:
     component = f"component since_then {{ {messages} }}"
     requirements = "requirement after after each each requirement at after since requirement at most 2 most since at"
     made = supervised(tmp_path, component, requirements)
-    assert [one.text for one in made.requirements] == [
+    assert [requirement.text for requirement in made.requirements] == [
         "requirement after after each each",
         "requirement at after since",
         "requirement at most 2 most since at",

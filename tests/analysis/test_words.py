@@ -49,7 +49,7 @@ def models(folder: Path, text: str = MODEL) -> Models:
 def test_what_a_person_reads_for_an_event(tmp_path: Path) -> None:
     events = Roles(models(tmp_path).sct).events
     assert {event_name(event): with_words(event) for event in events} == {
-        name: name + said for name, said in TOLD.items()
+        name: name + words for name, words in TOLD.items()
     }
 
 

@@ -71,9 +71,9 @@ def test_plots_are_the_same_each_time():
 
 
 def test_disagreements_are_found():
-    one, other = ({"n": 2, "states": 15, "uncontrolled": number} for number in (22, 23))
+    ours, theirs = ({"n": 2, "states": 15, "uncontrolled": number} for number in (22, 23))
     wrong = {"n": 4, "states": 242, "uncontrolled": 484}
-    results = {"families": {"services": {"robosc": [one, wrong], "faudes": [other]}}}
+    results = {"families": {"services": {"robosc": [ours, wrong], "faudes": [theirs]}}}
     assert list(disagreements(results)) == [
         "services 4: robosc finds 242 states, the formula says 243",
         "services 2: faudes reaches 23 states, robosc 22",

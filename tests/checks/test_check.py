@@ -382,12 +382,12 @@ def test_an_empty_model_draws_nothing() -> None:
 
 
 def test_libraries_that_import_each_other_are_all_checked() -> None:
-    one, other = rsc.Library(name="One"), rsc.Library(name="Other")
-    for base, imported in ((one, other), (other, one)):
+    first, second = rsc.Library(name="One"), rsc.Library(name="Other")
+    for base, imported in ((first, second), (second, first)):
         component = rsc.Component(name="Both")
         base.definitions.append(component)
         component.type = rsc.ImportedComponent(library=imported)
-    one.definitions[0].type.definition = other.definitions[0]
-    other.definitions[0].type.definition = one.definitions[0]
-    other.definitions.append(rsc.EnumDataType(name="Empty"))
-    assert [finding.rule for finding in check(one)] == ["enum-default"]
+    first.definitions[0].type.definition = second.definitions[0]
+    second.definitions[0].type.definition = first.definitions[0]
+    second.definitions.append(rsc.EnumDataType(name="Empty"))
+    assert [finding.rule for finding in check(first)] == ["enum-default"]

@@ -87,7 +87,9 @@ class Automaton:
 
     @property
     def alphabet(self) -> list[str]:
-        used = list(dict.fromkeys(e for one in self.locations for edge in one.edges for e in edge.events))
+        used = list(
+            dict.fromkeys(event for location in self.locations for edge in location.edges for event in edge.events)
+        )
         return used if self.declared is None else self.declared
 
 
@@ -155,16 +157,16 @@ class Specification:
             self._input()
         self.automata = [Automaton(f"A{number}", "plant") for number in range(some.randint(1, 3))]
         self.automata += [Automaton(f"R{number}", "requirement") for number in range(some.randint(0, 1))]
-        for one in self.automata:
-            self._declare(one)
+        for automaton in self.automata:
+            self._declare(automaton)
         self._declare_twin()
         self.outer = {f"a{number}": self.condition(2) for number in range(some.randint(0, 2))}
         self.algebraic.update({name: _named(name, "", term.value) for name, term in self.outer.items()})
-        for one in self.automata:
-            self._compute(one)
-        for one in self.automata:
+        for automaton in self.automata:
+            self._compute(automaton)
+        for automaton in self.automata:
             # The twin is the last.
-            (self._fill if one.twin_of is None else self._copy)(one)
+            (self._fill if automaton.twin_of is None else self._copy)(automaton)
         self._add_outside()
         self._shape()
 
@@ -183,9 +185,11 @@ class Specification:
     def _shape(self) -> None:
         """How the specification is written."""
         some = self.random
-        self.inside = {one.name for one in self.automata if some.random() < 0.25}
-        self.defined = {one.name for one in self.automata if one.twin_of is None and some.random() < 0.25}
-        self.defined |= {one.twin_of.name for one in self.automata if one.twin_of is not None}
+        self.inside = {automaton.name for automaton in self.automata if some.random() < 0.25}
+        self.defined = {
+            automaton.name for automaton in self.automata if automaton.twin_of is None and some.random() < 0.25
+        }
+        self.defined |= {automaton.twin_of.name for automaton in self.automata if automaton.twin_of is not None}
         self.group_defined = some.random() < 0.2
         self.several_files = some.random() < 0.25
         self.annotated = some.random() < 0.3
@@ -211,12 +215,12 @@ class Specification:
         self.inputs["in0"] = kind, values
         self._grow("in0", values)
 
-    def _declare(self, one: Automaton) -> None:
+    def _declare(self, automaton: Automaton) -> None:
         some = self.random
-        one.locations = [Location(f"l{number}") for number in range(some.randint(1, 3))]
-        if not self._grow(one.name, [location.name for location in one.locations]):
-            del one.locations[1:]
-            self._grow(one.name, ["l0"])
+        automaton.locations = [Location(f"l{number}") for number in range(some.randint(1, 3))]
+        if not self._grow(automaton.name, [location.name for location in automaton.locations]):
+            del automaton.locations[1:]
+            self._grow(automaton.name, ["l0"])
         kinds: list[tuple[str, list[Any]]] = [
             ("bool", [False, True]),
             ("int[0..3]", [0, 1, 2, 3]),
@@ -234,8 +238,8 @@ class Specification:
                 initial, several = "in any", values
             elif some.random() < 0.1:
                 initial, several = "", [0 if 0 in values else values[0]]
-            if self._grow(f"{one.name}.v{number}", values):
-                one.variables[f"v{number}"] = kind, values, initial, several
+            if self._grow(f"{automaton.name}.v{number}", values):
+                automaton.variables[f"v{number}"] = kind, values, initial, several
 
     def _declare_twin(self) -> None:
         """A second instance of what an automaton is an instance of."""
@@ -248,7 +252,7 @@ class Specification:
             size *= len(values)
         if self._states * size > _MOST_STATES:
             return
-        twin = Automaton(f"{first.name[0]}9", first.kind, [Location(one.name) for one in first.locations])
+        twin = Automaton(f"{first.name[0]}9", first.kind, [Location(location.name) for location in first.locations])
         twin.variables, twin.twin_of = first.variables, first
         for control in (False, True):
             own = [event for event, controllable in self.events.items() if controllable == control]
@@ -257,57 +261,57 @@ class Specification:
         for name in [name for name in self.domains if name.split(".")[0] == first.name]:
             self._grow(name.replace(first.name, twin.name), self.domains[name])
 
-    def _compute(self, one: Automaton) -> None:
+    def _compute(self, automaton: Automaton) -> None:
         """The algebraic variables of an automaton, with one value or one in each location."""
         some = self.random
-        if one.twin_of is not None:
-            for name, (kind, values) in one.twin_of.algebraic.items():
-                own = {place: self._twin_term(one, value) for place, value in values.items()}
-                one.algebraic[name] = kind, own
+        if automaton.twin_of is not None:
+            for name, (kind, values) in automaton.twin_of.algebraic.items():
+                own = {place: self._twin_term(automaton, value) for place, value in values.items()}
+                automaton.algebraic[name] = kind, own
         elif some.random() < 0.3:
             kind = some.choice(["bool", "int[0..3]"])
-            places = [location.name for location in one.locations] if some.random() < 0.5 else [""]
+            places = [location.name for location in automaton.locations] if some.random() < 0.5 else [""]
             # What it is computed of has no such variable of this automaton, and none of one that comes later.
-            one.algebraic["y0"] = (
+            automaton.algebraic["y0"] = (
                 kind,
                 {place: self.condition(1) if kind == "bool" else self.term([0, 1, 2, 3], 0) for place in places},
             )
-        for name, (kind, values) in one.algebraic.items():
-            self._know(one, name, kind, values)
+        for name, (kind, values) in automaton.algebraic.items():
+            self._know(automaton, name, kind, values)
 
-    def _know(self, one: Automaton, name: str, kind: str, values: dict[str, Term]) -> None:
+    def _know(self, automaton: Automaton, name: str, kind: str, values: dict[str, Term]) -> None:
         def value(state: State) -> Any:
-            return (values.get("") or values[state[one.name]]).value(state)
+            return (values.get("") or values[state[automaton.name]]).value(state)
 
         known = self.algebraic if kind == "bool" else self.numbers
-        known[f"{one.name}.{name}"] = _named(f"{one.name}.{name}", one.name, value)
+        known[f"{automaton.name}.{name}"] = _named(f"{automaton.name}.{name}", automaton.name, value)
 
-    def _twin_term(self, one: Automaton, term: Term) -> Term:
+    def _twin_term(self, automaton: Automaton, term: Term) -> Term:
         """What a term of the first instance is in the second: the names of its automaton are those of the other."""
-        first = one.twin_of
+        first = automaton.twin_of
         assert first is not None
         pattern = re.compile(rf"\b{first.name}\b")
-        names = {name: pattern.sub(one.name, name) for name in self.domains if name.split(".")[0] == first.name}
-        text = pattern.sub(one.name, term.text)
+        names = {name: pattern.sub(automaton.name, name) for name in self.domains if name.split(".")[0] == first.name}
+        text = pattern.sub(automaton.name, term.text)
         return Term(
             text, lambda s: term.value({**s, **{name: s[other] for name, other in names.items()}, "": (first.name, s)})
         )
 
-    def _copy(self, one: Automaton) -> None:
+    def _copy(self, automaton: Automaton) -> None:
         """Fills the second instance like the first."""
-        first = one.twin_of
+        first = automaton.twin_of
         assert first is not None
 
         def events(names: list[str]) -> list[str]:
-            return [one.renamed[name] for name in names]
+            return [automaton.renamed[name] for name in names]
 
         def term(of: Term | None) -> Any:
-            return of if of is None or of is TRUE else self._twin_term(one, of)
+            return of if of is None or of is TRUE else self._twin_term(automaton, of)
 
         def invariants(of: list[Invariant]) -> list[Invariant]:
             return [Invariant(i.kind, i.name, term(i.condition), events(i.events), i.needs) for i in of]
 
-        one.locations = [
+        automaton.locations = [
             Location(
                 place.name,
                 term(place.initial),
@@ -316,7 +320,7 @@ class Specification:
                     Edge(
                         events(edge.events),
                         term(edge.guard),
-                        [(name.replace(first.name, one.name), term(value)) for name, value in edge.updates],
+                        [(name.replace(first.name, automaton.name), term(value)) for name, value in edge.updates],
                         edge.target,
                     )
                     for edge in place.edges
@@ -325,15 +329,15 @@ class Specification:
             )
             for place in first.locations
         ]
-        one.watched = events(first.watched)
-        one.declared = None if first.declared is None else events(first.declared)
-        one.initial, one.marked = [term(i) for i in first.initial], [term(i) for i in first.marked]
-        one.invariants = invariants(first.invariants)
+        automaton.watched = events(first.watched)
+        automaton.declared = None if first.declared is None else events(first.declared)
+        automaton.initial, automaton.marked = [term(i) for i in first.initial], [term(i) for i in first.marked]
+        automaton.invariants = invariants(first.invariants)
 
-    def _fill(self, one: Automaton) -> None:
+    def _fill(self, automaton: Automaton) -> None:
         some = self.random
-        first = some.choice(one.locations)
-        for location in one.locations:
+        first = some.choice(automaton.locations)
+        for location in automaton.locations:
             if location is first or some.random() < 0.15:
                 location.initial = self.condition(1) if some.random() < 0.15 else TRUE
             if location is first or some.random() < 0.6:
@@ -345,35 +349,39 @@ class Specification:
                 events = [event for event in events if not self.events[event] or event in free]
                 free = [event for event in free if event not in events]
                 if events:
-                    location.edges.append(self._edge(events, one))
-        self._add_rest(one)
+                    location.edges.append(self._edge(events, automaton))
+        self._add_rest(automaton)
 
-    def _add_rest(self, one: Automaton) -> None:
+    def _add_rest(self, automaton: Automaton) -> None:
         """Its alphabet, what it watches, and what is initial, marked and invariant in it."""
         some = self.random
         if some.random() < 0.15:
-            more = [event for event in self.events if event not in one.alphabet and some.random() < 0.2]
-            one.declared = one.alphabet + more
+            more = [event for event in self.events if event not in automaton.alphabet and some.random() < 0.2]
+            automaton.declared = automaton.alphabet + more
         if some.random() < 0.2:
-            one.watched = some.sample(one.alphabet, min(len(one.alphabet), 1)) if some.random() < 0.7 else one.alphabet
+            automaton.watched = (
+                some.sample(automaton.alphabet, min(len(automaton.alphabet), 1))
+                if some.random() < 0.7
+                else automaton.alphabet
+            )
         if some.random() < 0.1:
-            one.initial.append(self.condition(1))
+            automaton.initial.append(self.condition(1))
         if some.random() < 0.1:
-            one.marked.append(self.condition(1))
-        for place in [one, *one.locations]:
+            automaton.marked.append(self.condition(1))
+        for place in [automaton, *automaton.locations]:
             if some.random() < 0.07:
                 place.invariants += self._excluding()
             if some.random() < 0.05:
                 place.invariants.append(self._restricting())
 
-    def _edge(self, events: list[str], one: Automaton) -> Edge:
+    def _edge(self, events: list[str], automaton: Automaton) -> Edge:
         some = self.random
         guard = self.condition(2) if some.random() < 0.5 else TRUE
         updates = []
-        for name, (_, values, _, _) in one.variables.items():
+        for name, (_, values, _, _) in automaton.variables.items():
             if some.random() < 0.5:
-                updates.append((f"{one.name}.{name}", self.term(values, 1)))
-        return Edge(events, guard, updates, some.choice(one.locations).name)
+                updates.append((f"{automaton.name}.{name}", self.term(values, 1)))
+        return Edge(events, guard, updates, some.choice(automaton.locations).name)
 
     def _excluding(self) -> list[Invariant]:
         """An invariant of one event or of several, named at times; it has no name where it has several."""
@@ -415,7 +423,7 @@ class Specification:
             return Term("yes", lambda _: True)
         name = some.choice(list(self.domains))
         values = self.domains[name]
-        if name in {one.name for one in self.automata}:
+        if name in {automaton.name for automaton in self.automata}:
             location = some.choice(values)
             return Term(f"{name}.{location}", lambda s: s[name] == location)
         if isinstance(values[0], bool):
@@ -457,10 +465,10 @@ class Specification:
         left, right, test = self.term(values, depth - 1), self.term(values, depth - 1), self.condition(0)
         if isinstance(values[0], str) or some.random() < 0.3:
             if some.random() < 0.5:
-                one = some.choice([other for other in self.automata if other.name in self.domains])
-                place = self.domains[one.name][0]
-                text = f"switch {one.name}: case {place}: {left.text} else {right.text} end"
-                return Term(text, lambda s: left.value(s) if s[one.name] == place else right.value(s))
+                automaton = some.choice([other for other in self.automata if other.name in self.domains])
+                place = self.domains[automaton.name][0]
+                text = f"switch {automaton.name}: case {place}: {left.text} else {right.text} end"
+                return Term(text, lambda s: left.value(s) if s[automaton.name] == place else right.value(s))
             text = f"if {test.text}: {left.text} else {right.text} end"
             return Term(text, lambda s: left.value(s) if test.value(s) else right.value(s))
         # Synthesis divides what is never negative.
@@ -506,14 +514,14 @@ class Specification:
 
     def _components(self) -> list[str]:
         lines, grouped = [], []
-        for one in self.automata:
-            written = self._automaton(one, lines)
-            (grouped if one.name in self.inside else lines).extend(written)
+        for automaton in self.automata:
+            written = self._automaton(automaton, lines)
+            (grouped if automaton.name in self.inside else lines).extend(written)
         return [*lines, "group h:", *grouped, "end"] if grouped else lines
 
     def _rules(self) -> list[str]:
         lines = [f"alg bool {name} = {term.text};" for name, term in self.outer.items()]
-        lines += [_stated(one, self.event) for one in self.invariants]
+        lines += [_stated(invariant, self.event) for invariant in self.invariants]
         lines += [f"initial {term.text};" for term in self.initial]
         lines += [f"marked {term.text};" for term in self.marked]
         return [*map(self._absolute, lines), *self.extra]
@@ -523,16 +531,20 @@ class Specification:
         called = {name: f"h.{name}" if len(self.inside) % 2 else f"{root}h.{name}" for name in self.inside}
         return _AUTOMATON.sub(lambda match: called.get(match[0], match[0]), text)
 
-    def _automaton(self, one: Automaton, definitions: list[str]) -> list[str]:
+    def _automaton(self, automaton: Automaton, definitions: list[str]) -> list[str]:
         """The lines of an automaton; where it is an instance, those of its definition are added to the others."""
-        first = one.twin_of or one
+        first = automaton.twin_of or automaton
         if first.name not in self.defined:
-            header = f"{one.kind} automaton {one.name}:" if one.name == "A0" else f"{one.kind} {one.name}:"
-            return [header, *(self._absolute(line) for line in self._body(one, self.event)), "end"]
+            header = (
+                f"{automaton.kind} automaton {automaton.name}:"
+                if automaton.name == "A0"
+                else f"{automaton.kind} {automaton.name}:"
+            )
+            return [header, *(self._absolute(line) for line in self._body(automaton, self.event)), "end"]
         body = self._body(first, lambda name: f"p_{name}")
         parameters = {name for line in body for name in re.findall(r"\bp_(\w+)", line)}
         declared = [f"{'' if self.events[name] else 'un'}controllable p_{name}" for name in sorted(parameters)]
-        given = [self.event(one.renamed.get(name, name)) for name in sorted(parameters)]
+        given = [self.event(automaton.renamed.get(name, name)) for name in sorted(parameters)]
         for outside in sorted({name for line in body for name in _OUTSIDE.findall(line)}):
             if outside.split(".")[0] != first.name:
                 parameter = outside.replace(".", "_")
@@ -540,34 +552,36 @@ class Specification:
                 declared.append(f"location {parameter}" if kind is None else f"alg {kind} {parameter}")
                 given.append(self._absolute(outside))
                 body = [re.sub(rf"\b{re.escape(outside)}\b", parameter, line) for line in body]
-        if one is first:
+        if automaton is first:
             own = re.compile(rf"(?<![\w.]){first.name}\.")
             body = [re.sub(rf"\bswitch {first.name}\b", "switch self", own.sub("", line)) for line in body]
             header = f"{first.kind} def D{first.name}({'; '.join(declared)}):"
             definitions += [header, *(self._absolute(line, "^") for line in body), "end"]
-        return [f"{one.name}: D{first.name}({', '.join(given)});"]
+        return [f"{automaton.name}: D{first.name}({', '.join(given)});"]
 
     def _type(self, name: str) -> str | None:
         """The type of a variable of an automaton; None of a location."""
         automaton, _, part = name.partition(".")
-        variables = next(one.variables for one in self.automata if one.name == automaton)
+        variables = next(instance.variables for instance in self.automata if instance.name == automaton)
         return variables[part][0] if part in variables else None
 
-    def _body(self, one: Automaton, event: Callable[[str], str]) -> list[str]:
-        lines = [f"  disc {kind} {name} {initial};" for name, (kind, _, initial, _) in one.variables.items()]
-        for name, (kind, values) in one.algebraic.items():
+    def _body(self, automaton: Automaton, event: Callable[[str], str]) -> list[str]:
+        lines = [f"  disc {kind} {name} {initial};" for name, (kind, _, initial, _) in automaton.variables.items()]
+        for name, (kind, values) in automaton.algebraic.items():
             value = f" = {values[''].text}" if "" in values else ""
             lines.append(f"  alg {kind} {name}{value};")
-        if one.declared is not None:
-            lines.append(f"  alphabet {', '.join(map(event, one.declared))};" if one.declared else "  alphabet;")
-        if one.watched:
-            everything = one.watched == one.alphabet
-            lines.append("  monitor;" if everything else f"  monitor {', '.join(map(event, one.watched))};")
-        lines += [f"  initial {term.text};" for term in one.initial]
-        lines += [f"  marked {term.text};" for term in one.marked]
-        lines += [f"  {_stated(invariant, event)}" for invariant in one.invariants]
-        for location in one.locations:
-            inner = [*_elements(location, one, event)]
+        if automaton.declared is not None:
+            lines.append(
+                f"  alphabet {', '.join(map(event, automaton.declared))};" if automaton.declared else "  alphabet;"
+            )
+        if automaton.watched:
+            everything = automaton.watched == automaton.alphabet
+            lines.append("  monitor;" if everything else f"  monitor {', '.join(map(event, automaton.watched))};")
+        lines += [f"  initial {term.text};" for term in automaton.initial]
+        lines += [f"  marked {term.text};" for term in automaton.marked]
+        lines += [f"  {_stated(invariant, event)}" for invariant in automaton.invariants]
+        for location in automaton.locations:
+            inner = [*_elements(location, automaton, event)]
             lines += [f"  location {location.name}{':' if inner else ';'}", *(f"    {line}" for line in inner)]
         return lines
 
@@ -584,57 +598,73 @@ class Specification:
     def everywhere(self) -> list[Invariant]:
         """All invariants, those of locations as what they say of all states."""
         found = list(self.invariants)
-        for one in self.automata:
-            found += one.invariants
-            for location in one.locations:
-                found += [invariant.within(_at(one.name, location.name)) for invariant in location.invariants]
+        for automaton in self.automata:
+            found += automaton.invariants
+            for location in automaton.locations:
+                found += [invariant.within(_at(automaton.name, location.name)) for invariant in location.invariants]
         return found
 
     def _kept(self, kind: str, state: State) -> bool:
-        return all(one.condition.value(state) for one in self.everywhere if one.kind == kind and not one.events)
+        return all(
+            invariant.condition.value(state)
+            for invariant in self.everywhere
+            if invariant.kind == kind and not invariant.events
+        )
 
     def _allowed(self, kind: str, event: str, state: State) -> bool:
         return all(
-            one.condition.value(state) == one.needs
-            for one in self.everywhere
-            if one.kind == kind and event in one.events
+            invariant.condition.value(state) == invariant.needs
+            for invariant in self.everywhere
+            if invariant.kind == kind and event in invariant.events
         )
 
     def _starts(self, state: State) -> bool:
-        for one in self.automata:
-            here = next(location for location in one.locations if location.name == state[one.name])
+        for automaton in self.automata:
+            here = next(location for location in automaton.locations if location.name == state[automaton.name])
             if here.initial is None or not here.initial.value(state):
                 return False
-            if any(state[f"{one.name}.{name}"] not in several for name, (_, _, _, several) in one.variables.items()):
+            if any(
+                state[f"{automaton.name}.{name}"] not in several
+                for name, (_, _, _, several) in automaton.variables.items()
+            ):
                 return False
         return all(
-            term.value(state) for term in [*self.initial, *(term for one in self.automata for term in one.initial)]
+            term.value(state)
+            for term in [*self.initial, *(term for automaton in self.automata for term in automaton.initial)]
         )
 
     def _marks(self, state: State) -> bool:
         if not all(
-            term.value(state) for term in [*self.marked, *(term for one in self.automata for term in one.marked)]
+            term.value(state)
+            for term in [*self.marked, *(term for automaton in self.automata for term in automaton.marked)]
         ):
             return False
-        places = (location for one in self.automata for location in one.locations if location.name == state[one.name])
+        places = (
+            location
+            for automaton in self.automata
+            for location in automaton.locations
+            if location.name == state[automaton.name]
+        )
         return all(place.marked is not None and place.marked.value(state) for place in places)
 
     def _taken(self, event: str, state: State) -> Iterator[list[tuple[Automaton, Edge]]]:
         """The edges that automata can take together, those that only watch left out."""
         choices: list[list[tuple[Automaton, Edge] | None]] = []
-        for one in self.automata:
-            if event not in one.alphabet:
+        for automaton in self.automata:
+            if event not in automaton.alphabet:
                 continue
-            here = next(location for location in one.locations if location.name == state[one.name])
-            own: list[Any] = [(one, edge) for edge in here.edges if event in edge.events and edge.guard.value(state)]
-            watches = one.kind == "requirement" or event in one.watched
+            here = next(location for location in automaton.locations if location.name == state[automaton.name])
+            own: list[Any] = [
+                (automaton, edge) for edge in here.edges if event in edge.events and edge.guard.value(state)
+            ]
+            watches = automaton.kind == "requirement" or event in automaton.watched
             choices.append(own or ([None] if watches else []))
         yield from ([taken for taken in chosen if taken is not None] for chosen in product(*choices))
 
     def _required(self, event: str, state: State) -> bool:
-        for one in self.automata:
-            if one.kind == "requirement" and event in one.alphabet and event not in one.watched:
-                here = next(location for location in one.locations if location.name == state[one.name])
+        for automaton in self.automata:
+            if automaton.kind == "requirement" and event in automaton.alphabet and event not in automaton.watched:
+                here = next(location for location in automaton.locations if location.name == state[automaton.name])
                 if not any(event in edge.events and edge.guard.value(state) for edge in here.edges):
                     return False
         return self._allowed("requirement", event, state)
@@ -675,11 +705,11 @@ class Specification:
     def _after(self, state: State) -> Iterator[tuple[str, State]]:
         """What can happen in a state so far as the plants go, with what follows, also out of the ranges."""
         for event in self.events:
-            if any(event in one.alphabet for one in self.automata) and self._allowed("plant", event, state):
+            if any(event in automaton.alphabet for automaton in self.automata) and self._allowed("plant", event, state):
                 for taken in self._taken(event, state):
                     after = dict(state)
-                    for one, edge in taken:
-                        after[one.name] = edge.target
+                    for automaton, edge in taken:
+                        after[automaton.name] = edge.target
                         after.update({name: value.value(state) for name, value in edge.updates})
                     if self._kept("plant", after):
                         yield event, after
@@ -711,12 +741,12 @@ def _named(name: str, automaton: str, value: Callable[[State], Any]) -> Term:
     return Term(name, of)
 
 
-def _elements(location: Location, one: Automaton, event: Callable[[str], str]) -> Iterator[str]:
+def _elements(location: Location, automaton: Automaton, event: Callable[[str], str]) -> Iterator[str]:
     """What stands in a location."""
     for word, condition in (("initial", location.initial), ("marked", location.marked)):
         if condition is not None:
             yield f"{word}{'' if condition is TRUE else f' {condition.text}'};"
-    for name, (_, values) in one.algebraic.items():
+    for name, (_, values) in automaton.algebraic.items():
         if location.name in values:
             yield f"equation {name} = {values[location.name].text};"
     for invariant in location.invariants:
@@ -729,16 +759,20 @@ def _elements(location: Location, one: Automaton, event: Callable[[str], str]) -
         yield f"edge {events}{guard}{f' do {updates}' if updates else ''}{goto};"
 
 
-def _stated(one: Invariant, event: Callable[[str], str]) -> str:
+def _stated(invariant: Invariant, event: Callable[[str], str]) -> str:
     """The text of an invariant."""
-    name = f"{one.name}: " if one.name else ""
-    if not one.events:
-        return f"{one.kind} invariant {name}{one.condition.text};"
-    events = ", ".join(map(event, one.events))
-    events = f"{{{events}}}" if len(one.events) > 1 else events
-    text = f"{events} needs {one.condition.text}" if one.needs else f"{one.condition.text} disables {events}"
+    name = f"{invariant.name}: " if invariant.name else ""
+    if not invariant.events:
+        return f"{invariant.kind} invariant {name}{invariant.condition.text};"
+    events = ", ".join(map(event, invariant.events))
+    events = f"{{{events}}}" if len(invariant.events) > 1 else events
+    text = (
+        f"{events} needs {invariant.condition.text}"
+        if invariant.needs
+        else f"{invariant.condition.text} disables {events}"
+    )
     # CIF lets the word out; a name needs it.
-    return f"{one.kind} invariant {name}{text};" if name else f"{one.kind} {text};"
+    return f"{invariant.kind} invariant {name}{text};" if name else f"{invariant.kind} {text};"
 
 
 def _text(value: Any) -> str:

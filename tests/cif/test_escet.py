@@ -62,7 +62,7 @@ def test_synthesis_counts_as_many_states(tools: Tools, tmp_path: Path, start: in
             rules = {finding.rule for finding in reading.findings}
             assert theirs.call.status != 0 or rules == {"cif-construct"}, text
         # Of a plant invariant and a range left at once, CIF's answer depends on its bits.
-        elif not any(one.kind == "plant" and not one.events for one in specification.everywhere):
+        elif not any(invariant.kind == "plant" and not invariant.events for invariant in specification.everywhere):
             assert theirs.states == specification.controlled_states(), text + theirs.call.output
             compared += 1
     assert compared > 10
@@ -155,7 +155,9 @@ def test_random_robots_have_as_many_states(tools: Tools, tmp_path: Path, start: 
             name = model.name
             for file, text in cif.generate(robot.models, Configuration()).items():
                 (tmp_path / file).write_text(text)
-            told = prod(_values(one) for plant in model.plants for event in plant.events for one in event.inputs)
+            told = prod(
+                _values(carried) for plant in model.plants for event in plant.events for carried in event.inputs
+            )
             found = tools.synthesize(tmp_path / f"{name}.cif")
             assert found.states == model.supervisor.controlledStates * told, f"seed {seed}: {found.call.output}"
             valid = tools.is_valid(tmp_path / f"{name}.supervised.cif")

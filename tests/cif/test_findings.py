@@ -236,11 +236,11 @@ def _outside(statement: str) -> str:
 @pytest.mark.parametrize(("statement", "name", "mend"), OUTSIDE)
 def test_what_is_outside_is_named_with_what_takes_it_out(statement: str, name: str, mend: str) -> None:
     text = _outside(statement)
-    found = [one for one in reading(main=text).findings if name in one.message]
-    assert found, [one.message for one in reading(main=text).findings]
+    found = [finding for finding in reading(main=text).findings if name in finding.message]
+    assert found, [finding.message for finding in reading(main=text).findings]
     assert found[0].span.line == 2
     assert mend in (found[0].hint or "")
-    assert not any(one.rule == "syntax" for one in reading(main=text).findings)
+    assert not any(finding.rule == "syntax" for finding in reading(main=text).findings)
 
 
 def test_two_edges_of_a_controllable_event_exclude_each_other() -> None:

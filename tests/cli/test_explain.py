@@ -147,7 +147,7 @@ def test_a_state_as_a_node_tells_it(run: Run, state: str) -> None:
 def test_what_a_node_publishes_is_understood(run: Run, tmp_path: Path) -> None:
     world = World(TANK, tmp_path / "log").start()
     world.wait(1.0)
-    states = [text for what, text in world.port.told if what == "state"]
+    states = [text for topic, text in world.port.told if topic == "state"]
     assert states
     answer = run("explain", TANK, "--event", "refill", "--state", states[-1], "--json")
     assert json.loads(answer.stdout)["state"]["component_Gauge"] == "metering", answer.output

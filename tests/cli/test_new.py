@@ -73,8 +73,8 @@ def test_its_own_test_passes_and_can_fail(run: Run, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     model = folder / "porter.rscd"
     model.write_text(model.read_text().replace("drive needs ClearSensor.active and ", "drive needs "))
-    one = [*command, "test_porter.PorterTest.test_drive"]
-    done = subprocess.run(one, cwd=folder, capture_output=True, text=True, check=False)
+    chosen = [*command, "test_porter.PorterTest.test_drive"]
+    done = subprocess.run(chosen, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 1
     assert "FAILED (failures=1)" in done.stderr
 

@@ -55,10 +55,10 @@ def test_the_same_from_any_folder(door: Path, tmp_path: Path) -> None:
     for folder, model, output, seed in calls:
         call = [sys.executable, "-m", "robosc", "transform", model, "--to", ALL, "-o", output]
         subprocess.run(call, cwd=folder, env=os.environ | {"PYTHONHASHSEED": seed}, check=True, capture_output=True)
-    one = tree(tmp_path / "one")
-    assert one
-    assert tree(tmp_path / "two") == one
-    assert tree(tmp_path / "three") == one
+    first = tree(tmp_path / "one")
+    assert first
+    assert tree(tmp_path / "two") == first
+    assert tree(tmp_path / "three") == first
 
 
 def test_only_what_changed_is_written(run: Run, door: Path) -> None:

@@ -164,7 +164,7 @@ def test_a_test_case_tells_which_requirement_it_verifies(run: Run, tmp_path: Pat
     file = tmp_path / "results.xml"
     assert run("verify", robot, "--junit", file).exit_code == 0
     told = {
-        case.get("name"): {one.get("name"): one.get("value") for one in case.iter("property")}
+        case.get("name"): {entry.get("name"): entry.get("value") for entry in case.iter("property")}
         for case in ElementTree.fromstring(file.read_text()).iter("testcase")  # noqa: S314
         if case.find("properties") is not None
     }

@@ -115,12 +115,13 @@ class Client:
 
     def scope(self, name: str, frame: int = 1) -> dict[str, Body]:
         """The variables of a scope by their names."""
-        scopes = {one["name"]: one for one in self.do("scopes", frameId=frame)["scopes"]}
+        scopes = {scope["name"]: scope for scope in self.do("scopes", frameId=frame)["scopes"]}
         return self.children(scopes[name])
 
     def children(self, of: Body) -> dict[str, Body]:
         return {
-            one["name"]: one for one in self.do("variables", variablesReference=of["variablesReference"])["variables"]
+            variable["name"]: variable
+            for variable in self.do("variables", variablesReference=of["variablesReference"])["variables"]
         }
 
     def console(self, text: str) -> str:

@@ -124,8 +124,8 @@ def test_requests_out_of_order(session: Client, door: Path) -> None:
         ("variables", {"variablesReference": 0}, "there is no such variable any more: the robot has gone on"),
         ("exceptionInfo", {}, "the robot has stopped for another reason"),
     ]
-    for command, arguments, told in wrong:
-        assert session.refused(command, **arguments) == told
+    for command, arguments, message in wrong:
+        assert session.refused(command, **arguments) == message
     assert session.do("setBreakpoints", source={"path": "nowhere\0"}, breakpoints=[])["breakpoints"] == []
     assert session.frames()
 
@@ -154,8 +154,8 @@ def test_what_can_not_be_launched(program: Program, tmp_path: Path) -> None:
         ({"program": "stuck.rscd"}, "the supervisor is empty"),
         ({"program": "library.rscd"}, "holds a library"),
     ]
-    for arguments, told in wrong:
-        assert told in session.refused("launch", **arguments)
+    for arguments, message in wrong:
+        assert message in session.refused("launch", **arguments)
         session.event("terminated")
     # All findings are shown as everywhere, with their lines.
     assert "did you mean `message_open.c_trigger`?" in session.said()
@@ -174,7 +174,7 @@ def test_lines_that_are_counted_from_0(session: Client, door: Path) -> None:
     (point,) = session.do("setBreakpoints", source={"path": str(door)}, breakpoints=[{"line": 7}])["breakpoints"]
     assert (point["verified"], point["line"]) == (True, 7)
     locations = session.do("breakpointLocations", source={"path": str(door)}, line=5, endLine=8)["breakpoints"]
-    assert [one["line"] for one in locations] == [6, 7]
+    assert [location["line"] for location in locations] == [6, 7]
     session.begin()
     leaf = session.frames()[1]
     assert (leaf["line"], leaf["column"]) == (6, 6)
@@ -319,6 +319,6 @@ def test_the_page_tells_of_all_there_is() -> None:
     assert set(re.findall(r"`(\w+)`(?=[^\n]*? \| )", told)) >= set(_KEYS)
     answered = page.partition("What is answered:")[2].partition(". `initialized`")[0]
     assert set(re.findall(r"`(\w+)`", answered)) == set(Adapter._answers)
-    assert {one["filter"] for one in FILTERS} == set(re.findall(r"\(`(\w+)`\) \|", page))
+    assert {known["filter"] for known in FILTERS} == set(re.findall(r"\(`(\w+)`\) \|", page))
     for code in re.findall(r"```json\n(.*?)```", page, re.DOTALL):
         json.loads(code)

@@ -113,7 +113,7 @@ def test_back_and_forth(session: Client, yard: Path) -> None:
     session.begin()
     assert session.go()["description"] == "the script is at its end"
     end = session.scope("Components")
-    assert [one["value"] for one in end.values()] == ["shut", "standing"]
+    assert [variable["value"] for variable in end.values()] == ["shut", "standing"]
     told = [session.go("stepBack")["reason"] for _ in range(6)]
     assert told == ["step"] * 6
     assert session.frames()[0]["name"] == "request to `Gate.open`"
@@ -132,7 +132,7 @@ def test_breakpoints_by_line(session: Client, yard: Path) -> None:
     set_in_model = session.do(
         "setBreakpoints", source={"path": str(yard)}, breakpoints=[{"line": number} for number in lines]
     )["breakpoints"]
-    assert [(one["verified"], one["line"]) for one in set_in_model] == [
+    assert [(point["verified"], point["line"]) for point in set_in_model] == [
         (True, lines[0]),
         (True, lines[1]),
         (False, 1),
@@ -143,7 +143,7 @@ def test_breakpoints_by_line(session: Client, yard: Path) -> None:
     set_in_script = session.do("setBreakpoints", source={"path": str(script)}, breakpoints=[{"line": 1}, {"line": 5}])[
         "breakpoints"
     ]
-    assert [one["verified"] for one in set_in_script] == [False, True]
+    assert [point["verified"] for point in set_in_script] == [False, True]
     session.begin()
     driving, before, shut = stops = [session.go() for _ in range(3)]
     assert [stop["reason"] for stop in stops] == ["breakpoint"] * 3
@@ -157,9 +157,9 @@ def test_function_and_data_breakpoints(session: Client, yard: Path) -> None:
     session.prepare(yard, script="yard.script")
     names = ["forbidden open", "SR1", "allowed open", "Gate", "nothing", "forbidden nothing"]
     told = session.do("setFunctionBreakpoints", breakpoints=[{"name": name} for name in names])["breakpoints"]
-    assert [one["verified"] for one in told] == [True, True, True, True, False, False]
+    assert [point["verified"] for point in told] == [True, True, True, True, False, False]
     assert told[4]["message"].startswith("there is no event `nothing`")
-    numbers = [one["id"] for one in told]
+    numbers = [point["id"] for point in told]
     session.begin()
     # The gate opens: neither requirement forbids more than before.
     assert session.go()["hitBreakpointIds"] == [numbers[3]]
@@ -185,7 +185,7 @@ def test_a_command_becomes_forbidden(session: Client, yard: Path) -> None:
     session.prepare(yard, script="yard.script")
     options = [{"filterId": "forbidden", "condition": "nothing"}, {"filterId": "x"}]
     told = session.do("setExceptionBreakpoints", filters=["refused"], filterOptions=options)["breakpoints"]
-    assert [one["verified"] for one in told] == [True, False, False]
+    assert [point["verified"] for point in told] == [True, False, False]
     session.do("setExceptionBreakpoints", filters=[], filterOptions=[{"filterId": "forbidden", "condition": "open"}])
     session.begin()
     stopped = session.go()
@@ -201,10 +201,10 @@ def test_what_is_seen(session: Client, yard: Path) -> None:
     session.console("open")
     gate = session.scope("Components")["Gate"]
     assert gate["evaluateName"] == "Gate"
-    assert {name: one["value"] for name, one in session.children(gate).items()} == {"carts": "0"}
+    assert {name: variable["value"] for name, variable in session.children(gate).items()} == {"carts": "0"}
     own = session.scope("Cart", frame=3)
     assert own["state"]["value"] == "standing"
-    assert {name: one["value"] for name, one in session.scope("Times").items()} == {
+    assert {name: variable["value"] for name, variable in session.scope("Times").items()} == {
         "timeout of `Gate` after 2500 ms in line 18": "in 2.5 s"
     }
     assert list(session.scope("Can happen")) == [
@@ -221,8 +221,8 @@ def test_what_is_seen(session: Client, yard: Path) -> None:
     reason = session.scope("Can't happen")[GO]
     assert reason["value"] == "forbidden by requirement SR1: go needs Gate.ajar"
     why = session.children(reason)
-    (requirement,) = [one for name, one in why.items() if name.endswith(f":{line('requirement SR1')}:3")]
-    assert [one["value"] for one in session.children(requirement).values()] == [
+    (requirement,) = [reason for name, reason in why.items() if name.endswith(f":{line('requirement SR1')}:3")]
+    assert [reason["value"] for reason in session.children(requirement).values()] == [
         "`Gate.ajar` does not hold: `Gate` is in `shut`"
     ]
     assert why["would help"]["value"] == "`Gate` goes from `shut` to `ajar` by request to `Gate.open`"
@@ -269,8 +269,8 @@ def test_the_debug_console(session: Client, yard: Path) -> None:
         "wait long": "`wait` needs a number of seconds",
         "why": "there is no event ``",
     }
-    for text, told in refusals.items():
-        assert session.refused("evaluate", expression=text, context="repl").startswith(told)
+    for text, message in refusals.items():
+        assert session.refused("evaluate", expression=text, context="repl").startswith(message)
     assert session.console("wait 2.4") == "2.4 s on the clock"
     assert session.console("wait 0.2") == (
         "timeout of `Gate` after 2500 ms in line 18\n    component_Gate = shut\n2.6 s on the clock"
@@ -278,14 +278,14 @@ def test_the_debug_console(session: Client, yard: Path) -> None:
     assert session.console("help").startswith("EVENT [JSON]")
     targets = session.do("completions", text="mes", column=4)["targets"]
     assert {"label": "message_open.c_trigger", "start": 0, "length": 3} in targets
-    assert [one["label"] for one in session.do("completions", text="why comp", column=9)["targets"]] == [
+    assert [completion["label"] for completion in session.do("completions", text="why comp", column=9)["targets"]] == [
         "component_Gate.u_after1"
     ]
 
 
 def test_a_step_into_a_chosen_event(session: Client, yard: Path) -> None:
     session.launch(yard)
-    targets = {one["label"]: one["id"] for one in session.do("stepInTargets", frameId=1)["targets"]}
+    targets = {target["label"]: target["id"] for target in session.do("stepInTargets", frameId=1)["targets"]}
     assert list(targets) == ["message_seen.u_response", "message_open.c_trigger"]
     stopped = session.go("stepIn", targetId=targets["message_open.c_trigger"])
     assert stopped["description"] == "request to `Gate.open`"
@@ -304,11 +304,11 @@ def test_an_event_log_with_its_times(session: Client, yard: Path) -> None:
     session.launch(yard, script="events.jsonl")
     session.go("next")
     session.go("next")
-    assert [one["value"] for one in session.scope("Times").values()] == ["in 1 s"]
+    assert [variable["value"] for variable in session.scope("Times").values()] == ["in 1 s"]
     session.go("next")
     assert session.scope("Components")["Gate"]["value"] == "shut"
     session.go("stepBack")
-    assert [one["value"] for one in session.scope("Times").values()] == ["in 1 s"]
+    assert [variable["value"] for variable in session.scope("Times").values()] == ["in 1 s"]
 
 
 def test_a_script_that_waits(session: Client, yard: Path) -> None:
@@ -324,7 +324,7 @@ def test_a_script_that_waits(session: Client, yard: Path) -> None:
     for _ in range(3):
         session.go("stepBack")
     assert [session.go("next")["description"] for _ in range(3)] == told[1:]
-    assert [one["value"] for one in session.scope("Times").values()] == ["in 2.5 s"]
+    assert [variable["value"] for variable in session.scope("Times").values()] == ["in 2.5 s"]
 
 
 def test_a_counterexample_of_verify(session: Client, yard: Path) -> None:
@@ -404,4 +404,4 @@ def test_parameters_and_libraries(session: Client, tmp_path: Path) -> None:
     session.event("initialized")
     session.begin()
     session.console("lamp")
-    assert [one["value"] for one in session.scope("Times").values()] == ["in 5 s"]
+    assert [variable["value"] for variable in session.scope("Times").values()] == ["in 5 s"]

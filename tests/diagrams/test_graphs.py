@@ -188,13 +188,13 @@ def groups(draw: st.DrawFn, *, downwards: bool) -> Group:
     titles = draw(st.lists(st.integers(1, 20).map("x".__mul__), min_size=count, max_size=count))
     rows = draw(st.lists(st.sampled_from([(), [("row",)]]), min_size=count, max_size=count))
     nodes = [
-        Node(f"n{number}", "state", title, some, initial=downwards and number == 0)
-        for number, (title, some) in enumerate(zip(titles, rows, strict=True))
+        Node(f"n{number}", "state", title, lines, initial=downwards and number == 0)
+        for number, (title, lines) in enumerate(zip(titles, rows, strict=True))
     ]
     pairs = st.tuples(st.integers(0, count - 1), st.integers(0, count - 1)).filter(lambda pair: pair[0] != pair[1])
     chosen = draw(st.lists(pairs, max_size=12, unique=True)) if count > 1 else []
     labels = (("a label",),) if draw(st.booleans()) else ()
-    return Group("n", "title", (), nodes, [Arrow(f"n{one}", f"n{other}", labels) for one, other in chosen])
+    return Group("n", "title", (), nodes, [Arrow(f"n{source}", f"n{target}", labels) for source, target in chosen])
 
 
 @settings(max_examples=examples(40), deadline=None)
@@ -203,9 +203,9 @@ def test_nothing_overlaps_and_arrows_join_their_nodes(data: st.DataObject, downw
     group = data.draw(groups(downwards=downwards))
     layout = lay_out(group, downwards=downwards)
     boxes = [layout.nodes[node.key] for node in group.nodes]
-    for one, other in combinations(boxes, 2):
-        apart_x = one.x + one.width < other.x or other.x + other.width < one.x
-        assert apart_x or one.y + one.height < other.y or other.y + other.height < one.y
+    for first, second in combinations(boxes, 2):
+        apart_x = first.x + first.width < second.x or second.x + second.width < first.x
+        assert apart_x or first.y + first.height < second.y or second.y + second.height < first.y
     for box in boxes:
         assert min(box.x, box.y) >= 0
         assert (box.x + box.width <= layout.width + 0.01, box.y + box.height <= layout.height + 0.01) == (True, True)
@@ -225,5 +225,5 @@ def test_frames_are_inside_the_picture() -> None:
     for box in picture.boxes:
         assert box.x + box.width <= picture.width
         assert box.y + box.height <= picture.height
-    for one, other in combinations(frames, 2):
-        assert one.x + one.width < other.x or one.y + one.height < other.y or other.y + other.height < one.y
+    for frame, other in combinations(frames, 2):
+        assert frame.x + frame.width < other.x or frame.y + frame.height < other.y or other.y + other.height < frame.y

@@ -20,8 +20,8 @@ def graphs(draw: st.DrawFn) -> tuple[dict[str, tuple[float, float]], list[Link]]
     )
     chosen = draw(st.lists(pairs, max_size=20)) if len(sizes) > 1 else []
     links = [
-        Link(one, other, draw(st.integers(1, 19)), draw(st.integers(1, 19)), draw(st.booleans()))
-        for one, other in chosen
+        Link(source, target, draw(st.integers(1, 19)), draw(st.integers(1, 19)), draw(st.booleans()))
+        for source, target in chosen
     ]
     return sizes, links
 
@@ -48,15 +48,15 @@ def test_nothing_is_in_the_way(graph: tuple[dict[str, tuple[float, float]], list
         left, top, right, _ = boxes[link.target]
         assert (end_x, round(end_y - top, 6)) == (left if route.arrives > 0 else right, link.target_port)
         assert not [
-            name for name, box in boxes.items() for one, other in pairwise(route.points) if _crosses(box, one, other)
+            name for name, box in boxes.items() for start, end in pairwise(route.points) if _crosses(box, start, end)
         ]
 
 
-def _crosses(box: tuple[float, ...], one: tuple[float, float], other: tuple[float, float]) -> bool:
+def _crosses(box: tuple[float, ...], start: tuple[float, float], end: tuple[float, float]) -> bool:
     """Whether a piece of a route touches the inside of a box; only level pieces are where boxes are."""
     left, top, right, bottom = box
-    within = max(left, min(one[0], other[0])) < min(right, max(one[0], other[0])) - 0.001
-    return within and top + 0.001 < max(one[1], other[1]) and min(one[1], other[1]) < bottom - 0.001
+    within = max(left, min(start[0], end[0])) < min(right, max(start[0], end[0])) - 0.001
+    return within and top + 0.001 < max(start[1], end[1]) and min(start[1], end[1]) < bottom - 0.001
 
 
 def test_ranking_links_run_to_the_right() -> None:
@@ -74,7 +74,7 @@ def test_ranking_links_run_to_the_right() -> None:
 
 def test_many_ranks_are_folded() -> None:
     names = [f"b{index}" for index in range(15)]
-    links = [Link(one, other, 5, 5, True) for one, other in pairwise(names)]
+    links = [Link(source, target, 5, 5, True) for source, target in pairwise(names)]
     arranged = arrange(dict.fromkeys(names, (50.0, 20.0)), links)
     columns = [round(arranged.places[name][0] / 114) for name in names]
     assert columns == [0, 1, 2, 3, 4, 5, 6, 7, 6, 5, 4, 3, 2, 1, 0]

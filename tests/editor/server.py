@@ -123,10 +123,10 @@ async def findings(client: Editor, uri: str, version: int | None) -> list[types.
     """What is said of a version of a text, as soon as it is said; the next time, what is said of it then."""
     async with asyncio.timeout(LONGEST):
         while True:
-            for told in client.told:
-                if (told.uri, told.version) == (uri, version):
-                    client.told.remove(told)
-                    return list(told.diagnostics)
+            for published in client.told:
+                if (published.uri, published.version) == (uri, version):
+                    client.told.remove(published)
+                    return list(published.diagnostics)
             client.news.clear()
             await client.news.wait()
 

@@ -160,12 +160,12 @@ def test_a_library_that_changes_is_read_again() -> None:
     made = project(SMALL.replace("library_ ", ""))
     path = made.path(URI)
     assert not [found for found in made.snapshot().analysis(path).findings if "Motors" in found.message]
-    for text, said in [
+    for text, message in [
         (WHEELS.replace("Motors", "M"), "library `Wheels` has no component `Motors`"),
         (WHEELS.replace("Wheels", "Rims"), "there is no library `Wheels`"),
     ]:
         made.change(LIBRARY_URI, 2, [(None, text)])
-        assert said in [found.message for found in made.snapshot().analysis(path).findings]
+        assert message in [found.message for found in made.snapshot().analysis(path).findings]
     made.close(LIBRARY_URI)
     assert "there is no library `Wheels`" in [found.message for found in made.snapshot().analysis(path).findings]
 

@@ -39,7 +39,7 @@ def both(before: str, after: str) -> tuple[list[Diagnostic] | None, list[Diagnos
 
 
 def read(found: list[Diagnostic]) -> list[object]:
-    return [(one.span, one.rule, one.message) for one in found if one.rule in READ]
+    return [(finding.span, finding.rule, finding.message) for finding in found if finding.rule in READ]
 
 
 @st.composite

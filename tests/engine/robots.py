@@ -58,9 +58,11 @@ def robots(draw: st.DrawFn) -> sct.SupervisoryControlModel:
 
 
 def _condition(draw: st.DrawFn, places: list[str]) -> str:
-    one, other = draw(st.sampled_from(places)), draw(st.sampled_from([*places, "true"]))
+    place, other = draw(st.sampled_from(places)), draw(st.sampled_from([*places, "true"]))
     return draw(
-        st.sampled_from((one, f"not {one}", f"{one} and {other}", f"{one} or {other}", f"implies({one}, {other})"))
+        st.sampled_from(
+            (place, f"not {place}", f"{place} and {other}", f"{place} or {other}", f"implies({place}, {other})")
+        )
     )
 
 

@@ -62,11 +62,11 @@ SAMPLED = {
 def test_the_page_sums_up_the_examples(path: Path, verified: Callable[[Path], Any]) -> None:
     page = (ROOT / "docs" / "verify.md").read_text()
     name, answered = path.stem, verified(path)["properties"]
-    by_name = {one["property"]: one["evidence"] for one in answered}
+    by_name = {verdict["property"]: verdict["evidence"] for verdict in answered}
     row = [name, by_name["controllability"].partition(" state")[0], str(len(by_name))]
     row += [re.findall(r"at most (\d+)", by_name["bounded response"])[0], by_name["c-translation"]]
     assert f"| {' | '.join(row)} |" in page, f"| {' | '.join(row)} |"
-    assert {one["property"] for one in answered if one["outcome"] == "sampled"} == SAMPLED.get(name, set())
+    assert {verdict["property"] for verdict in answered if verdict["outcome"] == "sampled"} == SAMPLED.get(name, set())
 
 
 def test_the_page_shows_what_is_refuted(tmp_path: Path) -> None:

@@ -106,8 +106,8 @@ def _double(tokens: list[str], random: Random) -> None:
 
 
 def _swap(tokens: list[str], random: Random) -> None:
-    one, other = random.randrange(len(tokens)), random.randrange(len(tokens))
-    tokens[one], tokens[other] = tokens[other], tokens[one]
+    first, second = random.randrange(len(tokens)), random.randrange(len(tokens))
+    tokens[first], tokens[second] = tokens[second], tokens[first]
 
 
 def _replace(tokens: list[str], random: Random) -> None:

@@ -90,7 +90,7 @@ def edits(texts: Mapping[str, str], name: str, choose: int | None = None) -> Ite
             elif not attribute.startswith("xm"):
                 yield from ((f"{at} = {other[:20]!r}", text[:start] + other + text[end:]) for other in EXTREMES)
                 same = sorted(
-                    {text[slice(*one.attributes[attribute])] for one in elements if attribute in one.attributes}
+                    {text[slice(*node.attributes[attribute])] for node in elements if attribute in node.attributes}
                 )
                 yield from (
                     (f"{at} = {other}", text[:start] + other + text[end:]) for other in same[:choose] if other != value
@@ -102,10 +102,10 @@ def edits(texts: Mapping[str, str], name: str, choose: int | None = None) -> Ite
         own = text[element.start : element.end]
         yield f"{element.path} doubled", text[: element.end] + own + text[element.end :]
         yield f"{element.path} dropped", text[: element.start] + text[element.end :]
-        others = [one for one in elements if one.tag == element.tag and one.path != element.path]
-        for one in _spread(others, choose):
-            moved = text[one.start : one.end]
-            yield f"{element.path} replaced by {one.path}", text[: element.start] + moved + text[element.end :]
+        others = [alike for alike in elements if alike.tag == element.tag and alike.path != element.path]
+        for alike in _spread(others, choose):
+            moved = text[alike.start : alike.end]
+            yield f"{element.path} replaced by {alike.path}", text[: element.start] + moved + text[element.end :]
 
 
 def _redirected(
@@ -124,8 +124,8 @@ def _redirected(
     yield f"{at} twice", text[:start] + f"{value} {first}" + text[start + len(value) :]
 
 
-def _same(one: str, other: str) -> bool:
-    return re.sub(r"\.0(?=/|$)", "", one) == re.sub(r"\.0(?=/|$)", "", other)
+def _same(path: str, other: str) -> bool:
+    return re.sub(r"\.0(?=/|$)", "", path) == re.sub(r"\.0(?=/|$)", "", other)
 
 
 def _spread(all_of_them: Sequence[Any], choose: int | None) -> Sequence[Any]:

@@ -137,8 +137,8 @@ def _double(text: list[str], random: Random) -> None:
 
 
 def _swap(text: list[str], random: Random) -> None:
-    one, other = random.randrange(len(text)), random.randrange(len(text))
-    text[one], text[other] = text[other], text[one]
+    first, second = random.randrange(len(text)), random.randrange(len(text))
+    text[first], text[second] = text[second], text[first]
 
 
 def _splice(text: list[str], random: Random) -> None:

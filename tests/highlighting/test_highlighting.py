@@ -123,7 +123,7 @@ def test_the_textmate_grammar_colours_the_same(path: Path) -> None:
     """Line by line, the first pattern that matches at the nearest place, as editors do it."""
     document = json.loads(grammar())
     block, *patterns = document["patterns"]
-    compiled = [(re.compile(one["match"]), one) for one in patterns]
+    compiled = [(re.compile(pattern["match"]), pattern) for pattern in patterns]
     found: Words = {}
     offset, inside = 0, False
     for line in path.read_text(encoding="utf-8").split("\n"):
@@ -134,9 +134,9 @@ def test_the_textmate_grammar_colours_the_same(path: Path) -> None:
                 inside = end is None
                 at = len(line) if end is None else end.end()
                 continue
-            matches = [(match, one) for expression, one in compiled if (match := expression.match(line, at))]
-            match, one = matches[0] if matches else (None, {})
-            for first, word, scope in pieces(match, one):
+            matches = [(match, pattern) for expression, pattern in compiled if (match := expression.match(line, at))]
+            match, pattern = matches[0] if matches else (None, {})
+            for first, word, scope in pieces(match, pattern):
                 if scope in WORDS:
                     found[offset + first] = word
             at = match.end() if match else at + 1
@@ -144,12 +144,12 @@ def test_the_textmate_grammar_colours_the_same(path: Path) -> None:
     assert found == parsed(path.read_text(encoding="utf-8"))
 
 
-def pieces(match: re.Match[str] | None, one: dict[str, Any]) -> Iterator[tuple[int, str, str]]:
+def pieces(match: re.Match[str] | None, pattern: dict[str, Any]) -> Iterator[tuple[int, str, str]]:
     if match is None:
         return
-    if "name" in one:
-        yield match.start(), match[0], one["name"].removesuffix(".robosc")
-    for number, capture in one.get("captures", {}).items():
+    if "name" in pattern:
+        yield match.start(), match[0], pattern["name"].removesuffix(".robosc")
+    for number, capture in pattern.get("captures", {}).items():
         yield match.start(int(number)), match[int(number)], capture["name"].removesuffix(".robosc")
 
 

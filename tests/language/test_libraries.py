@@ -48,8 +48,8 @@ def test_the_standard_library_is_searched_last(tmp_path: Path) -> None:
 def test_the_standard_library_holds_no_fault() -> None:
     files = sorted(locate("stdlib").glob("*.rscd"))
     readings = [read(file) for file in files]
-    assert [one.findings for one in readings] == [[]] * len(files)
-    names = {one.base.name for one in readings if one.base}
+    assert [library_read.findings for library_read in readings] == [[]] * len(files)
+    names = {library_read.base.name for library_read in readings if library_read.base}
     assert names >= {"EmergencyStopLibrary", "TurtlebotLibrary"}
 
 
@@ -155,8 +155,8 @@ def test_a_library_that_several_import_is_one_library(tmp_path: Path) -> None:
     found = reading(tmp_path, robot, one=forward.format("One"), two=forward.format("Two"), l=library("m"))
     assert found.findings == []
     assert found.base is not None
-    one, two, direct = (definition.type for definition in found.base.definitions)
-    assert one.definition.type.library is two.definition.type.library is direct.library
+    first, second, direct = (definition.type for definition in found.base.definitions)
+    assert first.definition.type.library is second.definition.type.library is direct.library
 
 
 @pytest.mark.parametrize(

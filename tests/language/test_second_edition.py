@@ -58,7 +58,7 @@ def test_a_constant_of_each_type_in_each_place() -> None:
     model = supervised(USES)
     engine = Engine(model)
     assert (engine.state["Left.seen"], engine.state["Left.level"]) == ("big", 2)
-    (level,) = [one for plant in model.plants for one in plant.variables if one.name == "level"]
+    (level,) = [variable for plant in model.plants for variable in plant.variables if variable.name == "level"]
     assert (level.type.minimum, level.type.maximum) == (0, 9)
     assert [timer.milliseconds for timer in tree_of(model, sct.Timer)] == [500]
     assert [plant.topic for plant in model.plants if plant.name == "message_go"] == ["/ab/go"]
@@ -632,5 +632,5 @@ def test_a_name_a_name_and_a_text_or_a_text(kind: str, head: str, name: str | No
     text = ARM.format(f"{kind} {head}never Arm.lifted")
     text = text.replace("action move", "behaviour { initial marked state down { } state lifted { } } action move")
     model = supervised(text)
-    (one,) = model.invariants if kind == "requirement" else model.properties
-    assert (one.name, one.text) == (name, f"{kind} {head}never Arm.lifted")
+    (stated,) = model.invariants if kind == "requirement" else model.properties
+    assert (stated.name, stated.text) == (name, f"{kind} {head}never Arm.lifted")

@@ -16,8 +16,8 @@ def test_a_comment_changes_nothing(target: str, tmp_path: Path) -> None:
     changed = tmp_path / MODEL.name
     text = MODEL.read_text(encoding="utf-8")
     changed.write_text(f"// What it is for.\n\n{text.replace('requirement', '  requirement')}", encoding="utf-8")
-    one, other = (robosc.generate(target, _models(path)) for path in (MODEL, changed))
-    assert one == other
+    plain, commented = (robosc.generate(target, _models(path)) for path in (MODEL, changed))
+    assert plain == commented
 
 
 def _models(path: Path) -> Models:

@@ -35,13 +35,13 @@ def test_no_place(text: str) -> None:
 
 def test_files_are_known_by_name() -> None:
     files: dict[str, SourceFile] = {}
-    one, other = Place.parse("a.rscd:1:1-1:2", files), Place.parse("2:1-2:2", files, "a.rscd")
-    assert one is not None
+    place, other = Place.parse("a.rscd:1:1-1:2", files), Place.parse("2:1-2:2", files, "a.rscd")
+    assert place is not None
     assert other is not None
-    assert one.file is other.file
+    assert place.file is other.file
     files["a.rscd"].path = "../models/a.rscd"
-    assert one.file is not None
-    assert one.file.path == "../models/a.rscd"
+    assert place.file is not None
+    assert place.file.path == "../models/a.rscd"
 
 
 def test_place_of_an_element_without_one() -> None:

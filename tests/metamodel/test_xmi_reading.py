@@ -309,8 +309,8 @@ def test_no_damage_makes_anything_but_findings(folder: Path, texts: dict[str, st
     name = data.draw(st.sampled_from(["Warehouse.sct.xmi", "Warehouse.rosgraph.xmi", "Warehouse.robosc.xmi"]))
     words = texts[name].split('"')
     for _ in range(data.draw(st.integers(1, 4))):
-        one, other = (data.draw(st.integers(0, len(words) - 1)) for _ in range(2))
-        words[one] = words[other]
+        first, second = (data.draw(st.integers(0, len(words) - 1)) for _ in range(2))
+        words[first] = words[second]
     (folder / name).write_text('"'.join(words))
     try:
         load(folder / name)

@@ -77,11 +77,11 @@ def test_the_order_of_construction_does_not_show() -> None:
         events=[sct.Event(name="c_trigger", controllable=True, kind=sct.EventKind.trigger)],
         locations=[sct.Location(name="ready", initial=True, marked=True)],
     )
-    one, other = (
+    first, second = (
         to_texts({"x": sct.SupervisoryControlModel(name="robot", plants=[automaton])})
         for automaton in (backwards, forwards)
     )
-    assert one == other
+    assert first == second
 
 
 def test_references_between_files_are_relative(tmp_path: Any) -> None:

@@ -25,7 +25,7 @@ _OPERATORS = {
 }
 _FUNCTIONS = {
     "LIMIT": lambda low, value, high: min(max(low, value), high),
-    "SEL": lambda one, no, yes: yes if one else no,
+    "SEL": lambda condition, no, yes: yes if condition else no,
 }
 _DECLARED = re.compile(r"^ +(\w+) : (BOOL|DINT)(?: := (\S+))?;", re.MULTILINE)
 #: Integers are of 32 bits.
@@ -105,5 +105,5 @@ class Block:
             case st.BinaryOperation(left=left, op=op, right=right):
                 return _OPERATORS[str(op)](self._value(left), self._value(right))
             case st.FunctionCall(name=name, parameters=parameters):
-                return _FUNCTIONS[str(name.name)](*(self._value(one.value) for one in parameters))
+                return _FUNCTIONS[str(name.name)](*(self._value(parameter.value) for parameter in parameters))
         raise TypeError(expression)

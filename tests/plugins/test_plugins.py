@@ -91,7 +91,7 @@ def test_another_synthesizer_finds_as_many_states(installed: Path) -> None:
         for other in ((), ("--synthesizer", "faudes"))
     ]
     assert both[0]["controlled_states"] == both[1]["controlled_states"] == 64
-    enabled = [{event["name"]: event["ever_enabled"] for event in one["events"]} for one in both]
+    enabled = [{event["name"]: event["ever_enabled"] for event in answer["events"]} for answer in both]
     assert enabled[0] == enabled[1]
 
 
@@ -220,8 +220,8 @@ def test_the_debugger_takes_another_synthesizer(broken, tmp_path: Path) -> None:
     with not_longer_than(120):
         program = Program(tmp_path, "--synthesizer", "broken", packages=packages)
         program.launch(LINE_FOLLOWER)
-        for said in ("correction 0.1", 'scan "clear"', "component_Lidar.c_tau1"):
-            program.console(said)
+        for text in ("correction 0.1", 'scan "clear"', "component_Lidar.c_tau1"):
+            program.console(text)
         move = program.scope("Can't happen")["message_move.c_trigger"]
         assert program.children(move)["supervisor"]["value"].startswith("only this supervisor forbids it")
         program.do("disconnect")
@@ -287,10 +287,10 @@ def follow(model, monkeypatch: pytest.MonkeyPatch) -> None:
         data = {declared.input.name: _shown(declared.input.type, code) for declared, code in given.items()}
         happened = engine.perform(names[number], data)
         assert events[names[number]]
-        block.call({"event": number, **{carried[one]: _raw(one, code) for one, code in given.items()}})
+        block.call({"event": number, **{carried[declared]: _raw(declared, code) for declared, code in given.items()}})
         assert block.variables["happened"] == happened
         cells = dict(zip(executed.variables, engine.state.cells, strict=True))
-        assert {one: int(block.variables[carried[one]]) for one in cells} == cells
+        assert {variable: int(block.variables[carried[variable]]) for variable in cells} == cells
 
 
 def _shown(kind, code: int):

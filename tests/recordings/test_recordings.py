@@ -157,7 +157,9 @@ def test_a_recorded_run_is_followed(tmp_path: Path) -> None:
         state = {
             plant.origin: {
                 "state": happened.state[plant.name],
-                "variables": {one.name: happened.state[f"{plant.origin}.{one.name}"] for one in plant.variables},
+                "variables": {
+                    variable.name: happened.state[f"{plant.origin}.{variable.name}"] for variable in plant.variables
+                },
             }
             for plant in model.plants
             if plant.kind.name == "behaviour"
@@ -172,7 +174,8 @@ def test_a_recorded_run_is_followed(tmp_path: Path) -> None:
     ]
     path = str(write_mcap("cdr", CompressionType.ZSTD)(tmp_path / "run", texts))
     moments = [
-        (time, one.event, dict(one.state)) for time, one in recorded_moments(Simulation(model, graph), path, None)
+        (time, moment.event, dict(moment.state))
+        for time, moment in recorded_moments(Simulation(model, graph), path, None)
     ]
     assert [(time, event) for time, event, _ in moments] == [(time, event) for time, event, _, _ in told]
     for (_, _, found), (_, _, state, _) in zip(moments, told, strict=True):

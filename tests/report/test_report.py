@@ -117,27 +117,30 @@ def test_the_json_keeps_its_schema(name: str, told: Told) -> None:
 @pytest.mark.parametrize("name", EACH)
 def test_its_verdicts_are_those_of_verify(name: str, verified: Callable[[Path], Any], told: Told) -> None:
     keys = ("property", "outcome", "evidence")
-    ours = [[one[key] for key in keys] for one in told(name)["verdicts"]]
-    assert ours == [[one[key] for key in keys] for one in verified(MODELS[name])["properties"]]
-    by_requirement = [verdict for one in told(name)["requirements"] for verdict in one["verdicts"]]
-    assert len(by_requirement) == sum(one["requirement"] is not None for one in told(name)["verdicts"])
+    ours = [[verdict[key] for key in keys] for verdict in told(name)["verdicts"]]
+    assert ours == [[verdict[key] for key in keys] for verdict in verified(MODELS[name])["properties"]]
+    by_requirement = [verdict for requirement in told(name)["requirements"] for verdict in requirement["verdicts"]]
+    assert len(by_requirement) == sum(verdict["requirement"] is not None for verdict in told(name)["verdicts"])
 
 
 @pytest.mark.parametrize("name", EACH)
 def test_the_lines_speak_of_the_requirement(name: str, written: Callable[[str], Path], told: Told) -> None:
     robot = models_of(name).sct
-    for one in told(name)["requirements"]:
-        files = [Path(place["path"]) for place in one["generated"]]
+    for requirement in told(name)["requirements"]:
+        files = [Path(place["path"]) for place in requirement["generated"]]
         assert {".c", ".cpp"} <= {file.suffix for file in files} or not any(
-            event["event"].endswith("c_trigger") for event in one["events"]
+            event["event"].endswith("c_trigger") for event in requirement["events"]
         )
-        assert files or not one["events"]
-        for place in one["generated"]:
+        assert files or not requirement["events"]
+        for place in requirement["generated"]:
             lines = (written(name) / place["path"]).read_text().splitlines()
             for number in place["lines"]:
                 around = " ".join(line.strip(" /*") for line in lines[number - 1 : number + 12])
                 around = re.sub(r"\\([0-7]{3})", lambda octal: chr(int(octal[1], 8)), around)
-                assert any(text in " ".join(around.split()) for text in one["texts"]), (place, one["texts"])
+                assert any(text in " ".join(around.split()) for text in requirement["texts"]), (
+                    place,
+                    requirement["texts"],
+                )
     assert robot.name == told(name)["robot"]
 
 
@@ -211,8 +214,8 @@ def test_gcov_counts_as_often_that_a_guard_is_true(name: str, tmp_path: Path, to
     )
     declared = list(engine.executed.inputs)
     inputs = "".join(
-        f'        if (scanf("%ld", &value) != 1) {{ return 1; }}\n        robot.inputs.{names.of(one)} = value;\n'
-        for one in declared
+        f'        if (scanf("%ld", &value) != 1) {{ return 1; }}\n        robot.inputs.{names.of(carried)} = value;\n'
+        for carried in declared
     )
     driver = DRIVER.format(
         prefix=names.prefix, asked=asked, inputs=inputs, now=", 0U" if engine.executed.timers else ""
@@ -290,10 +293,10 @@ def test_the_needs_are_linked(told: Told) -> None:
     made = version["needs"]
     assert needs["current_version"] in needs["versions"]
     assert all(re.fullmatch(r"[A-Z0-9_]{5,}", identifier) for identifier in made)
-    requirements = [one for one in made.values() if one["type"] == "req"]
-    assert [one["title"] for one in requirements] == [one["name"] for one in found["requirements"]]
-    linked = {link for one in made.values() for link in one["links"]}
-    assert linked == {one["id"] for one in requirements}
+    requirements = [need for need in made.values() if need["type"] == "req"]
+    assert [need["title"] for need in requirements] == [need["name"] for need in found["requirements"]]
+    linked = {link for need in made.values() for link in need["links"]}
+    assert linked == {need["id"] for need in requirements}
 
 
 def test_the_texts_of_needs_are_no_markup(told: Told) -> None:
@@ -302,7 +305,7 @@ def test_the_texts_of_needs_are_no_markup(told: Told) -> None:
     text = "requirement move needs 2 *level_ < |a_b| and `Gauge.on`"
     odd = {**found, "requirements": [{**found["requirements"][0], "texts": [text]}]}
     [version] = json.loads(as_needs(odd))["versions"].values()
-    content = next(one["content"] for one in version["needs"].values() if one["type"] == "req")
+    content = next(need["content"] for need in version["needs"].values() if need["type"] == "req")
     settings = {"report_level": 1, "halt_level": 2}
     core = pytest.importorskip("docutils.core", reason="the packages of [docs] are not installed")
     assert core.publish_doctree(content, settings_overrides=settings).astext() == text.replace("`", "")
@@ -314,7 +317,7 @@ def test_a_refuted_property_is_an_error(tmp_path: Path) -> None:
     file.write_text(text.rstrip().removesuffix("}") + "\n  property never true\n}\n")
     done = CliRunner().invoke(main, ["report", str(file), "--json"])
     assert done.exit_code == 1
-    assert [one["outcome"] for one in json.loads(done.stdout)["verdicts"]].count("refuted") == 1
+    assert [verdict["outcome"] for verdict in json.loads(done.stdout)["verdicts"]].count("refuted") == 1
 
 
 @pytest.mark.slow

@@ -95,7 +95,7 @@ class Session:
             if time.monotonic() > until:
                 raise TimeoutError(f"it does not come to rest; the last that was seen is {seen}")
             seen, before = self.ticks(), now
-        return {what: seen[what] for what in ("components", "sent", "typed")}
+        return {key: seen[key] for key in ("components", "sent", "typed")}
 
     def ticks(self):
         """What is reported in the next ticks, what is heard until then, and on which topics the reports say it is."""

@@ -53,7 +53,7 @@ class World:
 
     def described(self, name):
         (found,) = self.call(self.describing, DescribeParameters.Request(names=[name])).descriptors
-        bounds = [[one.from_value, one.to_value] for one in (*found.floating_point_range, *found.integer_range)]
+        bounds = [[bound.from_value, bound.to_value] for bound in (*found.floating_point_range, *found.integer_range)]
         return {"description": found.description, "read_only": found.read_only, "bounds": bounds}
 
     def expect(self, value):

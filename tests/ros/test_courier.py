@@ -151,10 +151,10 @@ def test_a_compiled_node_tells_its_state_as_a_message(courier: Courier) -> None:
         typed = step["typed"]
         if not typed:  # the package of its type is built with the node
             pytest.skip("run straight from its model")
-        for component, told in step["components"].items():
+        for component, status in step["components"].items():
             state = values[component.lower()][typed[component.lower()]]
-            assert state == f"{component}_is_{told['state']}".upper()
-            for variable, value in told["variables"].items():
+            assert state == f"{component}_is_{status['state']}".upper()
+            for variable, value in status["variables"].items():
                 field = f"{component}_{variable}".lower()
                 seen = typed[field]
                 if values[field]:

@@ -75,7 +75,7 @@ def compare(reports: list[dict[str, Any]], path: Path, node: str) -> list[dict[s
     witness, statuses, expected = Witness(path), [], None
     told = [report for report in reports if report["topic"] != "definition"]
     names = [f"{node}: {parts.name}" for parts in components(witness.graph)]
-    for report in sorted(told, key=lambda one: (one["data"]["time"], one["topic"] == "diagnostics")):
+    for report in sorted(told, key=lambda report: (report["data"]["time"], report["topic"] == "diagnostics")):
         if report["topic"] == "state":
             expected = witness.statuses(report["data"])
         elif expected is not None:
@@ -112,7 +112,8 @@ def test_a_layer_says_what_its_engine_knows_and_what_it_blocked(trial: Trial) ->
     blocked = [(entry["time"], entry["event"]) for entry in trial.log if entry["direction"] == "blocked"]
     told, before = set(), 0.0
     for report in sorted(
-        (one["data"] for one in trial.reports if one["topic"] == "diagnostics"), key=lambda one: one["time"]
+        (report["data"] for report in trial.reports if report["topic"] == "diagnostics"),
+        key=lambda report: report["time"],
     ):
         # What was blocked since the report before: nothing else.
         since = {

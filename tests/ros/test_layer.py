@@ -48,7 +48,7 @@ class Trial:
 
     def blocked(self, step: str) -> list[tuple[str, str, list[str]]]:
         """What was blocked, and why."""
-        return [(told["name"], told["reason"], told["because"]) for told in self.steps[step]["blocked"]]
+        return [(entry["name"], entry["reason"], entry["because"]) for entry in self.steps[step]["blocked"]]
 
 
 @pytest.fixture(scope="module", params=["ros1", "ros2", "run-ros1", "run-ros2"])
@@ -249,7 +249,7 @@ def test_what_goes_on_is_reliable_however_it_was_heard(trial: Trial) -> None:
 def test_everything_fits_its_schema(trial: Trial) -> None:
     steps = [step for step in trial.steps.values() if "states" in step]
     told = {
-        "blocked": [told for step in steps for told in step["blocked"]],
+        "blocked": [entry for step in steps for entry in step["blocked"]],
         "state": [state for step in steps for state in step["states"]],
         "event-log": trial.log,
     }

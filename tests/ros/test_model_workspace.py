@@ -172,7 +172,9 @@ def test_traces_are_played(model_workspace: Workspace, tmp_path: Path) -> None:
     """Against the node that is part of the package, by the generated test."""
     version = model_workspace.ros.version
     prefixes = model_workspace.ros.environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
-    if version == 2 and not any((Path(one) / "share" / "launch_testing_ament_cmake").exists() for one in prefixes):
+    if version == 2 and not any(
+        (Path(prefix) / "share" / "launch_testing_ament_cmake").exists() for prefix in prefixes
+    ):
         pytest.skip("there is no launch_testing_ament_cmake beside this rclcpp")
     script = source(model_workspace, "follower_robot", "CMakeLists.txt")
     manifest = source(model_workspace, "follower_robot", "package.xml")

@@ -113,7 +113,7 @@ def compare(moments: list[dict[str, Any]], log: list[dict[str, Any]]) -> None:
     simulation = Simulation(model, robosc.to_rosgraph(robot))
     happened = [entry for entry in log if entry["direction"] != "outside"]
     names = [entry["event"] for entry in happened]
-    seen = [one["event"] for one in moments if "event" in one]
+    seen = [moment["event"] for moment in moments if "event" in moment]
     first = next((at for at in range(len(names)) if names[at : at + len(seen)] == seen), None)
     assert first is not None, "each event is shown, once, in its order"
     # ROS 2 may find the listener late.
@@ -124,7 +124,7 @@ def compare(moments: list[dict[str, Any]], log: list[dict[str, Any]]) -> None:
         assert simulation.perform(entry["event"], entry.get("data", {})).accepted
         at += 1
     known = list(zip(moments, wholes(moments), strict=True))
-    for _, report in groupby(known, key=lambda one: one[0]["time"]):
+    for _, report in groupby(known, key=lambda pair: pair[0]["time"]):
         whole: dict[str, Any] = {}
         for seen_then, whole in report:  # noqa: B007
             if "event" in seen_then:
@@ -135,7 +135,9 @@ def compare(moments: list[dict[str, Any]], log: list[dict[str, Any]]) -> None:
         state = whole_state(engine)
         assert {name: whole["state"][name] for name in components} == {name: state[name] for name in components}
         # And the number that the node keeps beside its supervisor.
-        offsets = [one["data"]["value"] for one in happened[:at] if one["event"] == "message_correction.u_response"]
+        offsets = [
+            entry["data"]["value"] for entry in happened[:at] if entry["event"] == "message_correction.u_response"
+        ]
         assert whole["state"]["LineDetector.offset"] == (offsets[-1] if offsets else 0.0)
         verdicts = {command: verdict and verdict["by"] for command, verdict in whole["commands"].items()}
         assert verdicts == {command: by and str(by) for command in verdicts for by in [engine.blocked_by(command)]}

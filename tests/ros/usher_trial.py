@@ -245,7 +245,7 @@ class Trial:
         self.wait(lambda: last in self.told[told:], "the last message of a step is told")
         self.happened("message_battery.u_response", states)
         self.ros.receive(0.2)  # no order is promised across topics
-        self.told.pop(max(at for at, what in enumerate(self.told) if what == last))
+        self.told.pop(max(at for at, entry in enumerate(self.told) if entry == last))
         self.steps[name] = {**self.seen(), "states": list(self.states)}
         for received in (self.robot.received, self.told, self.blocked, self.states):
             del received[:]
@@ -256,7 +256,9 @@ class Trial:
             self.ask("server")
             self.battery(data=self.charge)
             self.ros.receive(0.5)
-            if {"server", "battery"} <= {what for what, _ in self.told}:  # what was told while nobody listened was lost
+            if {"server", "battery"} <= {
+                topic for topic, _ in self.told
+            }:  # what was told while nobody listened was lost
                 break
         self.heard("server", True)
         self.heard("battery", self.charge)
@@ -286,13 +288,13 @@ class Trial:
             "sends": (self.ros.node.get_publishers_info_by_topic, ["/speed", f"{inside}/resume", inside + feedback]),
         }
         return {
-            what: [
+            does: [
                 finding.qos_profile.reliability.name
                 for topic in topics
                 for finding in found(topic)
                 if finding.node_name == LAYER[1:]
             ]
-            for what, (found, topics) in ends.items()
+            for does, (found, topics) in ends.items()
         }
 
     def messages(self):
@@ -465,7 +467,7 @@ class Trial:
 
     def ended(self):
         """Waits until the controller knows the end of its goal."""
-        self.wait(lambda: "go_to" in [what for what, _ in self.told], "the goal ends")
+        self.wait(lambda: "go_to" in [topic for topic, _ in self.told], "the goal ends")
 
     def start(self, place):
         self.robot.goal = None

@@ -49,12 +49,12 @@ def test_standard_types() -> None:
 
 
 def test_what_the_two_ros_define_differently() -> None:
-    two, one = shown(RosTypes(), "std_msgs", "Header")
-    assert one is not None
-    assert two is not None
-    assert one.keys() - two.keys() == {"seq"}
-    two, one = shown(RosTypes(), "builtin_interfaces", "Time")
-    assert (two, one) == ({"sec": "int32", "nanosec": "uint32"}, {"sec": "uint32", "nsec": "uint32"})
+    ros2, ros1 = shown(RosTypes(), "std_msgs", "Header")
+    assert ros1 is not None
+    assert ros2 is not None
+    assert ros1.keys() - ros2.keys() == {"seq"}
+    ros2, ros1 = shown(RosTypes(), "builtin_interfaces", "Time")
+    assert (ros2, ros1) == ({"sec": "int32", "nanosec": "uint32"}, {"sec": "uint32", "nsec": "uint32"})
 
 
 @pytest.mark.parametrize(

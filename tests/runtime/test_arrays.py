@@ -25,7 +25,7 @@ def world(tmp_path: Path) -> World:
 
 def variables(world: World) -> dict[str, Any]:
     world.wait(0.1)
-    told = [json.loads(text) for what, text in world.port.told if what == "state"]
+    told = [json.loads(text) for topic, text in world.port.told if topic == "state"]
     found: dict[str, Any] = told[-1]["components"]["Lidar"]
     return found
 

@@ -25,7 +25,7 @@ class Bench:
         self.event_loop = EventLoop(lambda: self.port.time)
         self.told: list[tuple[str, Any]] = []
         self.inside = False
-        answers = Answers(*(self._hear(what) for what in ("response", "error", "feedback")), self._ended)
+        answers = Answers(*(self._hear(kind) for kind in ("response", "error", "feedback")), self._ended)
         client: Any = SimpleNamespace(identifier="/light")
         self.client = kind(self.port, self.event_loop, client, TIMEOUT, answers)
 
@@ -295,8 +295,8 @@ def test_every_goal_comes_to_one_end(steps: list[tuple[str, int]]) -> None:
             bench.do(lambda goal=goal, outcome=outcome: goal.handlers.ended(outcome, None, ""))
     bench.port.served = False
     bench.wait(3 * TIMEOUT)
-    ends = [what for what, _ in bench.told if what != "feedback"]
-    late = sum(told == ("error", "not accepted within 5000 ms") for told in bench.told)
+    ends = [kind for kind, _ in bench.told if kind != "feedback"]
+    late = sum(message == ("error", "not accepted within 5000 ms") for message in bench.told)
     assert not bench.client.busy
     assert len(ends) == started + late, "a goal not accepted in time is an error, and told again when it is over"
     assert all(goal.cancels <= 2 for goal in bench.port.goals)

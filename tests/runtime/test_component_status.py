@@ -20,7 +20,7 @@ SCOUT = Path(__file__).parents[1] / "ros" / "faults" / "scout.rscd"
 
 
 def status(world: World, component: str) -> ComponentStatus:
-    return next(one for one in world.port.statuses[-1] if one.component == component)
+    return next(reported for reported in world.port.statuses[-1] if reported.component == component)
 
 
 @pytest.mark.parametrize(

@@ -47,7 +47,7 @@ def sent(world: World, topic: str) -> list[dict[str, Any]]:
 
 def component(world: World, name: str) -> dict[str, Any]:
     world.wait(0.1)
-    told = [json.loads(text) for what, text in world.port.told if what == "state"]
+    told = [json.loads(text) for topic, text in world.port.told if topic == "state"]
     variables: dict[str, Any] = told[-1]["components"][name]["variables"]
     return variables
 
@@ -275,9 +275,9 @@ def test_wiring_is_reported_by_name_and_once(make: Callable[..., World]) -> None
 
 def test_the_state_is_told_on_change_and_to_whoever_comes(make: Callable[..., World]) -> None:
     world = make()
-    assert [what for what, _ in world.port.told] == ["definition"]
+    assert [topic for topic, _ in world.port.told] == ["definition"]
     world.wait(0.5)
-    states = [json.loads(text) for what, text in world.port.told if what == "state"]
+    states = [json.loads(text) for topic, text in world.port.told if topic == "state"]
     validator = Draft202012Validator(json.loads(locate("schemas/state.schema.json").read_text()))
     assert states
     assert not [error for report in states for error in validator.iter_errors(report)]

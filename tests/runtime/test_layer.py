@@ -60,7 +60,7 @@ class Bench:
         return self.layer.passes(self.sending(name))
 
     def blocked(self) -> list[dict[str, Any]]:
-        return [json.loads(text) for what, text in self.port.told if what == "blocked"]
+        return [json.loads(text) for topic, text in self.port.told if topic == "blocked"]
 
     def directions(self) -> list[tuple[str, str]]:
         self.layer._log.flush()

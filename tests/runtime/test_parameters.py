@@ -82,7 +82,7 @@ def test_a_layer_has_them_too(tmp_path: Path) -> None:
     """What it lets pass depends on data that parameters are compared with, from the next data on."""
     graph, port = supervised(CRUISE), FakePort()
     log = str(tmp_path / "events.jsonl")
-    values = {one.name: one.default for one in layer_parameters(graph, Configuration(), log)}
+    values = {parameter.name: parameter.default for parameter in layer_parameters(graph, Configuration(), log)}
     layer = Layer(graph, Settings(values | {"reach": 0.6}, Configuration()), port, EventLoop(lambda: port.time))
     layer.start()
     topics = {topic.topic: topic for topic in [*graph.subscriptions, *graph.publishers]}

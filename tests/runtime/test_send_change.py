@@ -35,9 +35,9 @@ def test_it_is_sent_once(world: World) -> None:
 def test_it_is_sent_when_its_data_differs(world: World) -> None:
     """Its data differs from what was last handed over."""
     sent(world, "/lamp")
-    for level, told in [(0.5, []), (0.75, [0.75]), (0.75, []), (0.25, [0.25])]:
+    for level, expected in [(0.5, []), (0.75, [0.75]), (0.75, []), (0.25, [0.25])]:
         world.hear("level", data=level)
-        assert sent(world, "/lamp") == told
+        assert sent(world, "/lamp") == expected
 
 
 def test_it_is_sent_again_when_it_becomes_possible_again(world: World) -> None:

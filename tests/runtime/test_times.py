@@ -64,7 +64,7 @@ def test_a_silence_and_its_end(guard: World) -> None:
     guard.hear("scan")
     guard.wait(5.0)
     assert timeouts(guard)[1:] == [(pytest.approx(6.3, abs=0.0011), "after1")]
-    told = [json.loads(text) for what, text in guard.port.told if what == "state"]
+    told = [json.loads(text) for topic, text in guard.port.told if topic == "state"]
     assert told[-1]["components"]["Base"] == {"state": "blind", "variables": {"silences": 2}}
 
 
@@ -128,7 +128,7 @@ def a_layer(log: Path) -> tuple[Layer, FakePort, EventLoop]:
     """The layer of the guard; its clock, and what moves it."""
     graph, port = supervised(GUARD), FakePort()
     event_loop = EventLoop(lambda: port.time)
-    values = {one.name: one.default for one in layer_parameters(graph, Configuration(), str(log))}
+    values = {parameter.name: parameter.default for parameter in layer_parameters(graph, Configuration(), str(log))}
     return Layer(graph, Settings(values, Configuration()), port, event_loop), port, event_loop
 
 

@@ -46,7 +46,7 @@ def names(world: World) -> list[str]:
 
 def component(world: World, name: str) -> dict[str, Any]:
     world.wait(0.1)
-    told = [json.loads(text) for what, text in world.port.told if what == "state"]
+    told = [json.loads(text) for topic, text in world.port.told if topic == "state"]
     reported: dict[str, Any] = told[-1]["components"][name]
     return reported
 

@@ -35,8 +35,10 @@ def played(text: str, *options: str) -> Result:
 def findings(text: str, *options: str) -> list[tuple[int, int, str]]:
     answer = played(text, "--format", "json", *options)
     said = json.loads(answer.stdout)
-    assert answer.exit_code == any(one["severity"] == "error" for one in said), answer.output
-    return [(one["line"], one["column"], one["message"]) for one in said if one["rule"] == "scenario"]
+    assert answer.exit_code == any(finding["severity"] == "error" for finding in said), answer.output
+    return [
+        (finding["line"], finding["column"], finding["message"]) for finding in said if finding["rule"] == "scenario"
+    ]
 
 
 GOOD = """

@@ -108,7 +108,11 @@ def test_it_is_what_the_node_makes_of_the_messages(steps: list[tuple[str, Any]])
         assert simulation.perform(event, json.loads(json.dumps(data))).accepted
         node.variables |= received.variables
         after = kept.after(values, event, data, before)
-        expected = {f"Tank.{one.name}": shown(now) for one, now in node.variables.items() if one.component == "Tank"}
+        expected = {
+            f"Tank.{variable.name}": shown(now)
+            for variable, now in node.variables.items()
+            if variable.component == "Tank"
+        }
         for name, now in expected.items():
             is_finite = not isinstance(now, float) or abs(now) < float("inf")
             assert after[name] == (now if is_finite else None)

@@ -61,18 +61,18 @@ def test_it_is_where_the_engine_is(path: Path, seed: int, sizes: list[int]) -> N
     for size in sizes:
         before = tracker.engine.state
         happened = [simulation.random_step(random) for _ in range(size)]
-        events = [one.event for one in happened if one is not None]
+        events = [step.event for step in happened if step is not None]
         told = list(tracker.report(reported(simulation.engine, events)))
-        assert [one.event for one in told] == events
+        assert [moment.event for moment in told] == events
         assert dict(tracker.engine.state) == dict(simulation.engine.state)
         # Each transition leaves the state before it, and leads to the one after.
-        for one in told:
-            for edge in one.edges:
-                plant = next(plant for plant, edges in by_event[one.event or ""].items() if edge in edges)
+        for moment in told:
+            for edge in moment.edges:
+                plant = next(plant for plant, edges in by_event[moment.event or ""].items() if edge in edges)
                 left = origin(edge)
                 assert left is None or before.get(plant.name, left.name) == left.name
-                assert edge.target is None or one.state.get(plant.name, edge.target.name) == edge.target.name
-            before = one.state
+                assert edge.target is None or moment.state.get(plant.name, edge.target.name) == edge.target.name
+            before = moment.state
 
 
 def test_who_comes_late_knows_the_components_and_learns_the_rest() -> None:

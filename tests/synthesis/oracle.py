@@ -26,7 +26,7 @@ class Oracle:
     @cached_property
     def places(self) -> dict[Any, int]:
         """Where in a state an element's value is."""
-        return {e: index for index, e in enumerate(e for p in self.model.plants for e in (p, *p.variables))}
+        return {e: index for index, e in enumerate(e for plant in self.model.plants for e in (plant, *plant.variables))}
 
     @cached_property
     def initial(self) -> State:

@@ -12,7 +12,7 @@ ROBOTS = range(4)
 
 def warehouse(after_entering):
     """Robots that enter and leave by an aisle; in the order of variables it stands between them."""
-    enter, leave = ([f"{what}{i}" for i in ROBOTS] for what in ("enter", "leave"))
+    enter, leave = ([f"{action}{i}" for i in ROBOTS] for action in ("enter", "leave"))
     aisle = {
         "free": [*(edge(event, to=after_entering) for event in enter), edge("close", to="taken")],
         "taken": [*(edge(event, to="free") for event in leave), edge("open", to="free")],

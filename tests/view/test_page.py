@@ -147,12 +147,12 @@ def test_a_log_moment_by_moment_and_on_from_there(chromium: Any, tmp_path: Path)
     random = Random(5)
     happened = driven(random, 150)
     log = tmp_path / "log.jsonl"
-    log.write_text("".join(trace_line(one) + "\n" for one, _ in happened))
+    log.write_text("".join(trace_line(entry) + "\n" for entry, _ in happened))
 
     def after(number: int) -> tuple[Simulation, float]:
         past = simulation_of(MODEL)
-        for one, _ in happened[:number]:
-            past.perform(one.event, one.data)
+        for entry, _ in happened[:number]:
+            past.perform(entry.event, entry.data)
         return past, happened[number - 1][1] if number else 0
 
     with served(MODEL, "--log", log) as address, opened(chromium, address) as page:
@@ -185,22 +185,22 @@ def test_why_a_command_is_forbidden(chromium: Any) -> None:
 
 
 def test_two_viewers_see_what_one_does_and_one_that_comes_late_too(chromium: Any) -> None:
-    with served(MODEL) as address, opened(chromium, address) as one, opened(chromium, address) as other:
-        one.get_by_role("button", name="20 random").click()
-        for page in (one, other):
+    with served(MODEL) as address, opened(chromium, address) as first, opened(chromium, address) as second:
+        first.get_by_role("button", name="20 random").click()
+        for page in (first, second):
             at(page, 20)
-        other.get_by_role("button", name="Undo").click()
+        second.get_by_role("button", name="Undo").click()
         with opened(chromium, address) as late:
-            for page in (one, other, late):
+            for page in (first, second, late):
                 at(page, 19)
-            assert shown(one) == shown(other) == shown(late)
+            assert shown(first) == shown(second) == shown(late)
 
 
 def test_an_exported_page_opens_without_a_server(chromium: Any, tmp_path: Path) -> None:
     happened, simulation = driven(Random(6), 30), simulation_of(MODEL)
-    for one, _ in happened:
-        simulation.perform(one.event, one.data)
-    (tmp_path / "log.jsonl").write_text("".join(trace_line(one) + "\n" for one, _ in happened))
+    for entry, _ in happened:
+        simulation.perform(entry.event, entry.data)
+    (tmp_path / "log.jsonl").write_text("".join(trace_line(entry) + "\n" for entry, _ in happened))
     command = [
         sys.executable,
         "-m",
@@ -230,9 +230,9 @@ def hostile(value: Any) -> Any:
     """A description whose every text would be markup."""
     match value:
         case dict():
-            return {name: hostile(one) if name not in KEYS else one for name, one in value.items()}
+            return {name: hostile(part) if name not in KEYS else part for name, part in value.items()}
         case list():
-            return [hostile(one) for one in value]
+            return [hostile(part) for part in value]
         case str():
             return f"{value}{EVIL}"
     return value
@@ -265,7 +265,7 @@ def test_one_of_several_robots_is_chosen(chromium: Any) -> None:
         page.wait_for_url("**/?robot=1")
         page.wait_for_selector('body[data-drawn][data-moment="0"]')
         expected = truth(simulation_of(other))
-        expected["variables"] |= {"Navigation.frame": "map"} | {f"Navigation.{one}": "0" for one in "xyz"}
+        expected["variables"] |= {"Navigation.frame": "map"} | {f"Navigation.{axis}": "0" for axis in "xyz"}
         assert shown(page) == expected
         page.locator("#robots-choice").select_option("LineFollower")
         page.wait_for_url("**/?robot=0")
@@ -281,7 +281,9 @@ def test_it_is_accessible(chromium: Any, scheme: str) -> None:
         at(page, 20)
         page.add_script_tag(path=str(AXE))
         told = page.evaluate("axe.run()")
-        assert [(one["id"], [node["html"] for node in one["nodes"]]) for one in told["violations"]] == []
+        assert [
+            (violation["id"], [node["html"] for node in violation["nodes"]]) for violation in told["violations"]
+        ] == []
         # What a screen reader reads names the states, and which is the present one.
         assert page.locator("#cards").get_by_role("button", name="searching").count() == 1
         assert page.get_by_role("button", name="the present state").count() == 3

@@ -111,7 +111,7 @@ def test_a_recording_moment_by_moment(chromium: Any, tmp_path: Path) -> None:
         components = {
             str(plant.origin): {
                 "state": whole_state(simulation.engine)[plant.name],
-                "variables": {one.name: simulation.engine.value(one) for one in plant.variables},
+                "variables": {variable.name: simulation.engine.value(variable) for variable in plant.variables},
             }
             for plant in automata_of(simulation.engine.model)
         }

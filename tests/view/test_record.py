@@ -81,7 +81,7 @@ def test_an_action_that_is_none_changes_nothing() -> None:
         {"action": "perform", "event": EVENTS[2], "data": [3]},
         {"action": "perform", "event": EVENTS[2], "data": {"value": "no boolean"}},
         {"action": "perform", "event": EVENTS[1], "inputs": {}},
-        *({"action": "perform", "event": EVENTS[0], "inputs": {}, "kept": one} for one in (1, [1], [[["x"], 1]])),
+        *({"action": "perform", "event": EVENTS[0], "inputs": {}, "kept": kept} for kept in (1, [1], [[["x"], 1]])),
     ]:
         with pytest.raises((ActionError, DataError)):
             shown.do(action)
@@ -120,7 +120,7 @@ def test_transitions_that_are_taken_are_those_of_the_text() -> None:
         shown.do({"action": "perform", "event": event, "inputs": inputs})
     taken = [moment.get("transitions") for moment in shown.moments]
     # A car that is none leaves everything as it is: the text says nothing of it.
-    assert [one and barrier["transitions"][one[0][1]]["label"] for one in taken] == [
+    assert [edges and barrier["transitions"][edges[0][1]]["label"] for edges in taken] == [
         None,
         "on request to open",
         "on response from car if value do cars := min(cars + 1, 3)",

@@ -58,7 +58,7 @@ def test_it_is_at_each_moment_what_was_told(most: int | None) -> None:
         told = min([told, *shown.cuts[before:]])
         messages.append({"from": told, "moments": shown.moments[told:], "at": random.randrange(len(shown.moments))})
         told = len(shown.moments)
-        times = [one["time"] for one in shown.moments]
+        times = [moment["time"] for moment in shown.moments]
         expected.append({"end": told - 1, "wholes": wholes(shown.moments), "times": times})
     script = SCRIPT.replace("RUN", (ROOT / "web" / "src" / "run.ts").as_uri())
     done = subprocess.run(

@@ -74,7 +74,7 @@ def add_pit(model: sct.SupervisoryControlModel) -> None:
 def input_values(asked: sct.Event) -> Iterator[dict[str, Value]]:
     """All that may come with an event."""
     for values in product(*(values_of(own.type) for own in asked.inputs)):
-        yield {own.name: getattr(one, "name", one) for own, one in zip(asked.inputs, values, strict=True)}
+        yield {own.name: getattr(value, "name", value) for own, value in zip(asked.inputs, values, strict=True)}
 
 
 def making_it_possible(engine: Engine, state: State, name: str) -> set[str]:

@@ -97,7 +97,7 @@ def test_so_does_a_layer_that_runs(porter: rosgraph.RosGraph, tmp_path: Path) ->
     sendings = {sending.name: sending for publisher in porter.publishers for sending in publisher.sendings}
     assert layer.passes(sendings["open"])
     assert not layer.passes(sendings["enter"])
-    [report] = [json.loads(text) for what, text in port.told if what == "blocked"]
+    [report] = [json.loads(text) for topic, text in port.told if topic == "blocked"]
     assert (report["name"], report["reason"], report["because"]) == ("Base.enter", "synthesis", [WHY])
     schema = json.loads(locate("schemas/blocked.schema.json").read_text(encoding="utf-8"))
     Draft202012Validator(schema).validate(report)

@@ -113,8 +113,8 @@ class Explicit:
     def loop_states(self) -> set[State]:
         start: Configuration = (self.oracle.initial, None)
         known, front = {start}, [start]
-        for here in front:
-            for _, after in self.loop_moves(here):
+        for configuration in front:
+            for _, after in self.loop_moves(configuration):
                 if after not in known:
                     known.add(after)
                     front.append(after)
@@ -138,7 +138,7 @@ class Explicit:
                 for event, after in self.loop_moves(here)
             )
 
-        while more := {here for here in left if leads(here)}:
+        while more := {configuration for configuration in left if leads(configuration)}:
             alive |= more
             left -= more
         return {state for state in self.loop_states if (state, None) not in alive}

@@ -49,7 +49,7 @@ def supervised(folder: Path, *definitions: str) -> sct.SupervisoryControlModel:
 
 def verdict(made: sct.SupervisoryControlModel) -> Verdict:
     (claimed,) = made.properties
-    return next(one for one in verify_system(made) if one.property == f"{claimed.text} (line 19)")
+    return next(verdict for verdict in verify_system(made) if verdict.property == f"{claimed.text} (line 19)")
 
 
 @pytest.mark.parametrize(
@@ -131,7 +131,7 @@ def test_what_is_wrong_is_found(tmp_path: Path, definition: str, finding: str) -
 def test_the_words_are_names_elsewhere(tmp_path: Path) -> None:
     component = "component property { incoming message reachable with type: none }"
     made = supervised(tmp_path, component, "requirement property.reachable needs Base.docked")
-    assert [one.text for one in made.requirements] == ["requirement reachable needs Base.docked"]
+    assert [requirement.text for requirement in made.requirements] == ["requirement reachable needs Base.docked"]
 
 
 def test_format_keeps_what_is_laid_out() -> None:

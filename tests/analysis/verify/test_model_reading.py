@@ -174,7 +174,9 @@ def literals(expression: ex.Expression) -> list[ex.IntegerLiteral]:
 
 
 def disables_is_built_as_needs(model: sct.SupervisoryControlModel) -> None:
-    disabling = next(one for one in model.requirements if one.kind == sct.RequirementKind.disables)
+    disabling = next(
+        requirement for requirement in model.requirements if requirement.kind == sct.RequirementKind.disables
+    )
     disabling.kind = sct.RequirementKind.needs
 
 
@@ -189,14 +191,16 @@ def a_range_is_one_too_large(model: sct.SupervisoryControlModel) -> None:
 
 
 def everything_is_marked(model: sct.SupervisoryControlModel) -> None:
-    for one in model.plants:
-        for location in one.locations:
+    for plant in model.plants:
+        for location in plant.locations:
             location.marked = True
 
 
 def a_table_is_inverted(model: sct.SupervisoryControlModel) -> None:
     """That of `Platform.tries / 2 > 0.5`."""
-    disabling = next(one for one in model.requirements if one.kind == sct.RequirementKind.disables)
+    disabling = next(
+        requirement for requirement in model.requirements if requirement.kind == sct.RequirementKind.disables
+    )
     assert isinstance(disabling.condition, ex.Conjunction)
     disabling.condition.right = ex.Negation(operand=disabling.condition.right)
 
@@ -244,7 +248,9 @@ def an_instance_is_read_twice(model: sct.SupervisoryControlModel) -> None:
 
 
 def a_constant_is_one_more(model: sct.SupervisoryControlModel) -> None:
-    disabling = next(one for one in model.requirements if one.kind == sct.RequirementKind.disables)
+    disabling = next(
+        requirement for requirement in model.requirements if requirement.kind == sct.RequirementKind.disables
+    )
     literals(disabling.condition)[0].value += 1
 
 
@@ -381,7 +387,9 @@ def an_order_forgets_nothing(model: sct.SupervisoryControlModel) -> None:
 
 
 def a_count_goes_one_further(model: sct.SupervisoryControlModel) -> None:
-    counted = next(one for one in required(model, "service_dock.c_trigger") if one.automaton is not None)
+    counted = next(
+        requirement for requirement in required(model, "service_dock.c_trigger") if requirement.automaton is not None
+    )
     literals(counted.condition)[0].value += 1
 
 
@@ -404,7 +412,7 @@ def never_is_built_as_always(model: sct.SupervisoryControlModel) -> None:
 
 
 def a_property_is_another(model: sct.SupervisoryControlModel) -> None:
-    negate(next(one for one in model.properties if isinstance(one, sct.ReachabilityProperty)))
+    negate(next(claim for claim in model.properties if isinstance(claim, sct.ReachabilityProperty)))
 
 
 def it_begins_elsewhere(model: sct.SupervisoryControlModel) -> None:

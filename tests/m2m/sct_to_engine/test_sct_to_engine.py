@@ -76,7 +76,9 @@ def effect_of(made: engine.EngineModel, name: str) -> list[str]:
             lines.append(f"{step.variable.name} := {text(step.value)}")
         else:
             for case in step.cases:
-                does = "; ".join(f"{one.variable.name} := {text(one.value)}" for one in case.assignments)
+                does = "; ".join(
+                    f"{assignment.variable.name} := {text(assignment.value)}" for assignment in case.assignments
+                )
                 lines.append(f"{'else' if case.condition is None else text(case.condition)}: {does}")
     return lines
 

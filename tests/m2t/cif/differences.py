@@ -15,42 +15,42 @@ _MOST = 400
 
 
 def differences(
-    one: sct.SupervisoryControlModel, other: sct.SupervisoryControlModel, *, exact: bool = False
+    mine: sct.SupervisoryControlModel, yours: sct.SupervisoryControlModel, *, exact: bool = False
 ) -> list[str]:
     """What is in one model and not in the other, of what CIF holds.
 
     Expressions are the same where they have the same value in all states (of many states: in some, the first and the
     last among them), updates after saturation; with `exact`, where they are the same tree.
     """
-    return list(_Comparison(one, other, exact).run())
+    return list(_Comparison(mine, yours, exact).run())
 
 
 class _Comparison:
-    def __init__(self, one: Any, other: Any, exact: bool) -> None:
-        self.one, self.other, self.exact = one, other, exact
-        events = {_name(event) for plant in other.plants for event in plant.events}
+    def __init__(self, mine: Any, yours: Any, exact: bool) -> None:
+        self.mine, self.yours, self.exact = mine, yours, exact
+        events = {_name(event) for plant in yours.plants for event in plant.events}
         #: Events that CIF need not have, since they can't happen.
         self.absent = {
             event
-            for plant in one.plants
+            for plant in mine.plants
             for event in plant.events
-            if _name(event) not in events and _never(event, one.plants)
+            if _name(event) not in events and _never(event, mine.plants)
         }
 
     def run(self) -> Iterator[str]:
-        yield from self.names("the model", [self.one], [self.other])
-        yield from self.names("enumerations", self.one.enumerations, self.other.enumerations)
-        for mine, yours in zip(self.one.enumerations, self.other.enumerations, strict=False):
+        yield from self.names("the model", [self.mine], [self.yours])
+        yield from self.names("enumerations", self.mine.enumerations, self.yours.enumerations)
+        for mine, yours in zip(self.mine.enumerations, self.yours.enumerations, strict=False):
             yield from self.names(f"literals of {mine.name}", mine.literals, yours.literals)
-        yield from self.names("plants", self.one.plants, self.other.plants)
-        for mine, yours in zip(self.one.plants, self.other.plants, strict=False):
+        yield from self.names("plants", self.mine.plants, self.yours.plants)
+        for mine, yours in zip(self.mine.plants, self.yours.plants, strict=False):
             yield from self.plant(mine, yours)
-        supervised = self.other.supervisor is not None
+        supervised = self.yours.supervisor is not None
         if not supervised:
             yield from self.requirements()
         if supervised:
-            guards = [guard for guard in self.one.supervisor.guards if guard.event not in self.absent]
-            for mine, yours in zip_longest(guards, self.other.supervisor.guards):
+            guards = [guard for guard in self.mine.supervisor.guards if guard.event not in self.absent]
+            for mine, yours in zip_longest(guards, self.yours.supervisor.guards):
                 if _name(mine.event) != _name(yours.event):
                     yield f"guard of {_name(mine.event)} is of {_name(yours.event)}"
                 yield from self.expression("requirement part", mine.requirement, yours.requirement)
@@ -58,10 +58,14 @@ class _Comparison:
 
     def requirements(self) -> Iterator[str]:
         """What is asked of one event twice in the same words may stand there once."""
-        mine, yours = [], list(self.other.requirements)
-        for requirement in self.one.requirements:
-            again = [one for one in mine if (one.event, str(one.kind)) == (requirement.event, str(requirement.kind))]
-            if not any(_shape(one.condition) == _shape(requirement.condition) for one in again):
+        mine, yours = [], list(self.yours.requirements)
+        for requirement in self.mine.requirements:
+            again = [
+                earlier
+                for earlier in mine
+                if (earlier.event, str(earlier.kind)) == (requirement.event, str(requirement.kind))
+            ]
+            if not any(_shape(earlier.condition) == _shape(requirement.condition) for earlier in again):
                 mine.append(requirement)
         for requirement, other in zip_longest(mine, yours):
             if _name(requirement.event) != _name(other.event) or str(requirement.kind) != str(other.kind):
@@ -80,27 +84,27 @@ class _Comparison:
             there = [member for member in getattr(mine, members) if member not in self.absent]
             yield from self.names(f"{members} of {mine.name}", there, getattr(yours, members))
         events = [event for event in mine.events if event not in self.absent]
-        for one, other in zip(events, yours.events, strict=False):
-            if one.controllable != other.controllable:
-                yield f"{_name(one)} is controllable or not"
-        for one, other in zip([*mine.inputs, *mine.variables], [*yours.inputs, *yours.variables], strict=False):
-            if _domain(one.type) != _domain(other.type):
-                yield f"the type of {_name(one)} differs"
-        for one, other in zip(mine.variables, yours.variables, strict=False):
-            yield from self.expression(f"initial value of {one.name}", one.initial, other.initial)
-        for one, other in zip(mine.locations, yours.locations, strict=False):
-            yield from self.location(one, other)
+        for event, other in zip(events, yours.events, strict=False):
+            if event.controllable != other.controllable:
+                yield f"{_name(event)} is controllable or not"
+        for variable, other in zip([*mine.inputs, *mine.variables], [*yours.inputs, *yours.variables], strict=False):
+            if _domain(variable.type) != _domain(other.type):
+                yield f"the type of {_name(variable)} differs"
+        for variable, other in zip(mine.variables, yours.variables, strict=False):
+            yield from self.expression(f"initial value of {variable.name}", variable.initial, other.initial)
+        for location, other in zip(mine.locations, yours.locations, strict=False):
+            yield from self.location(location, other)
 
     def location(self, mine: sct.Location, yours: sct.Location) -> Iterator[str]:
         if (mine.initial, mine.marked) != (yours.initial, yours.marked):
             yield f"location {_name(mine)} is marked or initial or not"
         present = [edge for edge in edges_from(mine) if edge.event not in self.absent]
-        for one, other in zip_longest(present, edges_from(yours)):
-            where = f"{_name(mine)} -{_name(one.event)}->"
-            if _name(one.event) != _name(other.event) or _index(one.target) != _index(other.target):
+        for edge, other in zip_longest(present, edges_from(yours)):
+            where = f"{_name(mine)} -{_name(edge.event)}->"
+            if _name(edge.event) != _name(other.event) or _index(edge.target) != _index(other.target):
                 yield f"{where} is for {_name(other.event)} to {_name(other.target)}"
-            yield from self.expression(f"guard of {where}", one.guard, other.guard)
-            for update, twin in zip_longest(one.updates, other.updates):
+            yield from self.expression(f"guard of {where}", edge.guard, other.guard)
+            for update, twin in zip_longest(edge.updates, other.updates):
                 if update.variable.name != twin.variable.name:
                     yield f"{where} updates {twin.variable.name}"
                 yield from self.expression(f"update of {where}", update.value, twin.value, update.variable.type)

@@ -29,7 +29,10 @@ class Walk:
         order = (*roles.cancels, *roles.triggers, *roles.silent, *data, *roles.incoming, *roles.timeouts)
         self._events = [f"{event.eContainer().name}.{event.name}" for event in order]
         self._by_name = dict(zip(self._events, order, strict=True))
-        self._inputs = {plant: number for number, plant in enumerate(x for p in model.plants for x in p.inputs)}
+        self._inputs = {
+            carried: number
+            for number, carried in enumerate(carried for plant in model.plants for carried in plant.inputs)
+        }
 
     def steps(self, number: int) -> None:
         for _ in range(number):

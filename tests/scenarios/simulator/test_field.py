@@ -94,6 +94,6 @@ def test_the_driver_arrives_gives_up_and_gives_way() -> None:
     driver.accept(world, 4, goal(9.0, 1.0))
     assert not driver.cancel(world, 3)
     assert driver.cancel(world, 4)
-    ends = [(number, what) for number, what, _ in driver.events]
+    ends = [(number, outcome) for number, outcome, _ in driver.events]
     assert ends == [(1, "succeeded"), (2, "aborted"), (3, "aborted"), (4, "canceled")]
     assert (driver.arrived, driver.under_way) == (1, False)

@@ -34,7 +34,7 @@ def passed(world: World, navigation: Navigation, seconds: float) -> list[str]:
         world.step()
         if step % 10 == 0:
             navigation.say(world)
-    return [what for _, what, _ in navigation.events if what != "feedback"]
+    return [kind for _, kind, _ in navigation.events if kind != "feedback"]
 
 
 def test_who_does_not_know_where_it_is_rejects_goals() -> None:
@@ -49,7 +49,7 @@ def test_it_arrives() -> None:
     assert navigation.accept(world, 1, goal(2.5, 1.2))
     assert passed(world, navigation, 15.0) == ["succeeded"]
     assert (world.pose.x, world.pose.y) == pytest.approx((2.5, 1.2), abs=0.12)
-    told = [data for _, what, data in navigation.events if what == "feedback"]
+    told = [data for _, kind, data in navigation.events if kind == "feedback"]
     assert told[0]["distance_remaining"] > told[-1]["distance_remaining"]
     assert {feedback["number_of_recoveries"] for feedback in told} == {0}
 
@@ -68,7 +68,7 @@ def test_it_helps_itself_and_gives_up_in_the_end() -> None:
     navigation = located(world)
     navigation.accept(world, 1, goal(2.5, 1.0))
     assert passed(world, navigation, 60.0) == ["aborted"]
-    assert max(data["number_of_recoveries"] for _, what, data in navigation.events if what == "feedback") >= 6
+    assert max(data["number_of_recoveries"] for _, kind, data in navigation.events if kind == "feedback") >= 6
     assert world.drive.speed == (0.0, 0.0)
 
 
@@ -89,7 +89,7 @@ def test_a_newer_goal_ends_the_old_one() -> None:
     navigation.accept(world, 1, goal(2.5, 1.0))
     navigation.accept(world, 2, goal(0.8, 1.0))
     passed(world, navigation, 8.0)
-    assert [(number, what) for number, what, _ in navigation.events if what != "feedback"] == [
+    assert [(number, kind) for number, kind, _ in navigation.events if kind != "feedback"] == [
         (1, "aborted"),
         (2, "succeeded"),
     ]

@@ -46,7 +46,10 @@ def _states(
     """Of the states it comes to those where it allows each controllable event, and those where the plants can do it."""
     allowed: dict[str, set[Values]] = {name: set() for name in controllable}
     possible: dict[str, set[Values]] = {name: set() for name in allowed}
-    numbers = {label: supervisor.EventIndex(label) for label in sorted(set().union(*(one.alphabet for one in flat)))}
+    numbers = {
+        label: supervisor.EventIndex(label)
+        for label in sorted(set().union(*(generator.alphabet for generator in flat)))
+    }
     start = (supervisor.InitState(), tuple(0 for _ in flat))
     pending, seen = [start], {start}
     while pending:
@@ -117,7 +120,7 @@ def _equals(element: Element, value: Any) -> ex.Expression:
     if isinstance(element.type, ex.BooleanType):
         return read if value else ex.Negation(operand=read)
     if isinstance(element.type, ex.EnumerationType):
-        literal = next(one for one in element.type.enumeration.literals if one.name == value)
+        literal = next(literal for literal in element.type.enumeration.literals if literal.name == value)
         return ex.Equation(left=read, right=ex.EnumerationLiteralReference(literal=literal))
     number = ex.IntegerLiteral(value=abs(value))
     return ex.Equation(left=read, right=ex.UnaryMinus(operand=number) if value < 0 else number)
