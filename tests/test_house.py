@@ -175,7 +175,7 @@ def test_every_other_library_is_the_standard_one() -> None:
     assert {name for _, nodes in modules() for name, *_ in imports(nodes) if name not in known} == set()
 
 
-#: What opens, makes or moves files, and who may: what others name goes through `files` and `output`.
+#: What opens, makes or moves files, and who may: what others name goes through `files`.
 OPENING = {
     "open",
     "fdopen",
@@ -193,7 +193,7 @@ OPENERS = {
     "files.writing",
     "cli",  # the null device, for streams that are closed
     "cli.format",  # the standard output
-    "diagnostics.rules",  # what ships with the tool, here and in the next seven
+    "diagnostics.rules",  # what ships with the tool, here and in those below without a word of their own
     "semantics.naming",
     "synthesis.memory",  # what the kernel tells of the process
     "m2t.ros.packages",
@@ -202,7 +202,7 @@ OPENERS = {
     "view.page",
     "node_tests.trace_test",
     "runtime.ros2.interfaces",  # a tool of its own, whose files are made for the generators
-    "runtime.core.event_log",  # what `output` has opened
+    "runtime.core.event_log",  # what `files.writing` has opened
     "node_tests.trace_player",  # ships with generated packages, and sees nothing of ours
     "analysis.verify.c_program",  # a temporary folder, here and in the next two
     "analysis.verify.c_exploration",
@@ -264,6 +264,27 @@ def test_the_rule_allows() -> None:
         ("cli", "__version__"),
     ]:
         assert may(tuple(importer.split(".")), tuple(imported.split("."))), f"{importer} -> {imported}"
+
+
+def arrows() -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
+    """The arrows of the page's picture between modules, each module as the parts of its name."""
+    picture = PAGE.partition("```mermaid\n")[2].partition("```")[0]
+    labels = dict(re.findall(r'(\w+) ?\["(\.?\w+)', picture))
+    modules = {node: (name,) if room((name,)) else ("m2m", name) for node, name in labels.items() if name[0] != "."}
+    ends = re.findall(r'(\w+)(?:\[".*?"\])? --(?: ".+?" --)?> (\w+)', picture)
+    assert len(ends) == picture.count("-->")
+    return [
+        tuple(modules.get(node, (node,)) for node in pair) for pair in ends if {*pair}.isdisjoint({"rscd", "ciftext"})
+    ]
+
+
+def test_the_picture_has_every_package() -> None:
+    assert {module[0] for pair in arrows() for module in pair} == ROOMS - {"cli", "__main__", ""}
+    assert [module for pair in arrows() for module in pair if not any(PACKAGE.glob("/".join(module) + "*"))] == []
+
+
+def test_no_import_goes_along_an_arrow_of_the_picture() -> None:
+    assert [(start, end) for start, end in arrows() if start[0] != end[0] and may(start, end)] == []
 
 
 def test_the_page_names_every_package() -> None:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
+from robosc.semantics.naming import ROBOSC_FUNCTIONS
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
@@ -75,7 +77,6 @@ SEND = ("send", "change")
 AT_MOST = ("at", "most")
 UNITS = ("ms", "s", "min")
 QUANTIFIERS = ("all", "any", "count")
-FUNCTIONS = (*("abs", "atan2", "ceil", "cos", "double", "floor", "max", "min", "mod", "round", "sin", "size", "sqrt"),)
 
 _NAME = r"\^?[A-Za-z_][A-Za-z0-9_]*"
 #: Reserved words before a colon that are no names of fields.
@@ -127,7 +128,7 @@ def rules() -> Iterator[Rule]:
     yield Rule(rf"{_any([word for word in reserved if word not in _KEYS])}(?=\s*:(?!=))", (Kind.NAME,))
     # Words that need more behind them
     yield Rule(rf"{_any(QUANTIFIERS)}\b(?=\s+{_NAME}(?:\s*:|\s+in\b))", (Kind.WORD_OPERATOR,))
-    yield Rule(rf"{_any(FUNCTIONS)}\b(?=\s*\()", (Kind.FUNCTION,))
+    yield Rule(rf"{_any(ROBOSC_FUNCTIONS)}\b(?=\s*\()", (Kind.FUNCTION,))
     no_operand = rf"(?!{_any(_BEHIND_NAMES)}\b)"
     for kind, words in IN_CONTEXT.items():
         yield Rule(rf"{_any(words)}\b(?=\s*$|\s+{no_operand}[\w^({{!\-\"'\[]|\()", (kind,))

@@ -77,7 +77,7 @@ def causes(model: sct.SupervisoryControlModel, event: sct.Event) -> list[ex.Expr
 
 
 class Watcher:
-    """What there is to see in one control loop: of `happening` ask it before an event, of `at_rest` after each call."""
+    """What there is to see in one control loop: `before_event` before each event, `at_rest` after each call."""
 
     def __init__(self, loop: ControlLoop) -> None:
         self._engine = loop.engine
@@ -93,13 +93,13 @@ class Watcher:
         self._choices = [[alternative.event.name for alternative in choice.alternatives] for choice in executed.choices]
         self._seen_at_rest: dict[tuple[int, ...], frozenset[Goal]] = {}
 
-    def happening(self, event: str) -> Iterator[Goal]:
+    def before_event(self, event: str) -> Iterator[Goal]:
         """What is seen as an enabled event happens, with the inputs that are set."""
         for edge, taken in self._transitions.tried(event):
             yield Goal(edge, taken)
-        happening = Goal(self._events[event])
-        if happening in self._goals:
-            yield happening
+        goal = Goal(self._events[event])
+        if goal in self._goals:
+            yield goal
 
     def at_rest(self) -> frozenset[Goal]:
         """What is seen where the control loop has done what it can do at once: then it has asked all guards."""

@@ -94,7 +94,7 @@ class Plan:
     def _before(self, event: str) -> bool:
         if event in self._resets and self._pauses:
             return False
-        self._shown |= self._mask(self._watcher.happening(event))
+        self._shown |= self._mask(self._watcher.before_event(event))
         return True
 
     def _mask(self, seen: Iterable[Goal]) -> int:

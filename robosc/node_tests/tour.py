@@ -52,7 +52,7 @@ class _Controller(DrivenController):
         may_happen = super()._before(name)
         if may_happen:
             self.happened.add(name)
-            self._shown.update(self._watcher.happening(name))
+            self._shown.update(self._watcher.before_event(name))
         return may_happen
 
     def look(self) -> None:

@@ -13,9 +13,20 @@ if TYPE_CHECKING:
 
     from robosc.metamodel import expression as ex
 
-_RESERVED = re.compile(r"^UnreservedName:\s*/\(\?!\(\?:([a-z|]+)\)", re.MULTILINE)
+_GRAMMAR = locate("grammar/robosc.tx").read_text(encoding="utf-8")
+
+
+def _words(pattern: str) -> list[str]:
+    """The words that are the group of a pattern of the grammar."""
+    found = re.search(pattern, _GRAMMAR, re.MULTILINE)
+    assert found
+    return found[1].split("|")
+
+
 #: The words of RoboSC that a name in an expression has a `^` before.
-ROBOSC_KEYWORDS = frozenset(_RESERVED.findall(locate("grammar/robosc.tx").read_text(encoding="utf-8"))[0].split("|"))
+ROBOSC_KEYWORDS = frozenset(_words(r"^UnreservedName:\s*/\(\?!\(\?:([a-z|]+)\)"))
+#: The names of its functions.
+ROBOSC_FUNCTIONS = tuple(_words(r"^BuiltIn: /\(\?:([a-z0-9|]+)\)"))
 _WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 

@@ -64,7 +64,7 @@ def test_as_json(run: Run) -> None:
                 "details": ["`Valve.open` holds"],
             }
         ],
-        "trouble": None,
+        "counterexample": None,
         "changes": [
             {
                 "file": str(TANK),

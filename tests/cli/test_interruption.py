@@ -109,6 +109,8 @@ def test_verify_leaves_neither_files_nor_processes(door: Path, tmp_path: Path, s
         capture_output=True,
         text=True,
         check=False,
+        # `nohup` would let it ignore one of them.
+        preexec_fn=lambda: signal.signal(sent, signal.SIG_DFL),
     )
     assert (done.returncode, done.stderr) == (130 if sent == signal.SIGINT else -sent, "")
     assert list(temporary.iterdir()) == []

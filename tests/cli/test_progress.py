@@ -3,6 +3,7 @@
 import io
 import subprocess
 import sys
+import threading
 import time
 
 import pytest
@@ -47,13 +48,16 @@ def test_what_is_quick_is_not_mentioned(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_not_in_a_file(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stderr", file := io.StringIO())
+    before = threading.active_count()
     with progress("thinking hard"):
-        time.sleep(0.1)
+        assert threading.active_count() == before
     assert file.getvalue() == ""
 
 
 def test_a_failure_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stderr", terminal := Terminal())
+
+    before = set(threading.enumerate())
 
     def fail() -> None:
         with progress("thinking hard"):
@@ -63,7 +67,8 @@ def test_a_failure_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(ValueError, match="no"):
         fail()
     said = terminal.getvalue()
-    time.sleep(0.2)
+    for thread in set(threading.enumerate()) - before:
+        thread.join(120)
     assert terminal.getvalue() == said
 
 

@@ -139,6 +139,8 @@ def test_logs_events_with_their_data(courier: Courier) -> None:
 
 
 def test_a_compiled_node_tells_its_state_as_a_message(courier: Courier) -> None:
+    if not any(step["typed"] for step in courier.steps.values()):
+        pytest.skip("the package of the message's type is built with a compiled node")
     text = (HERE.parent / "m2t" / "typed_state" / "ros2" / "courier_msgs" / "msg" / "State.msg").read_text()
     values: dict[str, list[str]] = {}
     constants: list[str] = []
@@ -149,8 +151,6 @@ def test_a_compiled_node_tells_its_state_as_a_message(courier: Courier) -> None:
             values[name], constants = constants, []
     for name, step in courier.steps.items():
         typed = step["typed"]
-        if not typed:  # the package of its type is built with the node
-            pytest.skip("run straight from its model")
         for component, status in step["components"].items():
             state = values[component.lower()][typed[component.lower()]]
             assert state == f"{component}_is_{status['state']}".upper()

@@ -86,6 +86,7 @@ def test_it_shows_what_the_node_decides(
             assert page.locator("#controls button").count() == 0
             clock = ["use_sim_time:=true"] if ros.version == 2 else []
             node = processes.start("node", nodes.node(PACKAGE, f"event_log:={events}", *clock))
+            says(processes, page, "")
             options = ["--scenario", "line_follower", "--ros", str(ros.version), "--speed", "5"]
             world = processes.start("world", [ros.python, SIMULATOR, *options])
             processes.wait_until(lambda: world.poll() is not None, "the scenario has ended", seconds=900)
@@ -114,15 +115,11 @@ def compare(moments: list[dict[str, Any]], log: list[dict[str, Any]]) -> None:
     happened = [entry for entry in log if entry["direction"] != "outside"]
     names = [entry["event"] for entry in happened]
     seen = [moment["event"] for moment in moments if "event" in moment]
-    first = next((at for at in range(len(names)) if names[at : at + len(seen)] == seen), None)
-    assert first is not None, "each event is shown, once, in its order"
-    # ROS 2 may find the listener late.
-    assert len(seen) > len(names) / 2
+    assert seen == names[: len(seen)], "each event is shown, once, in its order"
+    # What the node tells as it ends may be lost.
+    assert len(seen) > 0.9 * len(names)
     components = [plant.name for plant in model.plants if plant.kind == sct.PlantKind.behaviour]
     at = 0
-    for entry in happened[:first]:
-        assert simulation.perform(entry["event"], entry.get("data", {})).accepted
-        at += 1
     known = list(zip(moments, wholes(moments), strict=True))
     for _, report in groupby(known, key=lambda pair: pair[0]["time"]):
         whole: dict[str, Any] = {}

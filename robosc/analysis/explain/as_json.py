@@ -42,7 +42,7 @@ def _explanation(told: Explanation, at: At) -> dict[str, Any]:
         "trace": trace_data(told.situation.trace),
         "plants": _notes(told.plants, at),
         "requirements": _notes(told.requirements, at),
-        "trouble": counterexample
+        "counterexample": counterexample
         and {
             "trace": trace_data(counterexample.trace),
             "onwards": trace_data(counterexample.onwards),

@@ -190,7 +190,7 @@ class _Preparation:
         groups = {group: number for number, group in enumerate(model.groups, 1)}
         sources = {source: number for number, source in enumerate(model.sources, 1)}
         return {
-            "watching": model.incremental,
+            "incremental": model.incremental,
             "index": unsigned_type(len(model.events)),
             "cancels": len(self._events[engine.Role.cancel]),
             "triggers": len(self._events[engine.Role.trigger]),

@@ -104,10 +104,10 @@ class _Comparison:
             if _name(edge.event) != _name(other.event) or _index(edge.target) != _index(other.target):
                 yield f"{where} is for {_name(other.event)} to {_name(other.target)}"
             yield from self.expression(f"guard of {where}", edge.guard, other.guard)
-            for update, twin in zip_longest(edge.updates, other.updates):
-                if update.variable.name != twin.variable.name:
-                    yield f"{where} updates {twin.variable.name}"
-                yield from self.expression(f"update of {where}", update.value, twin.value, update.variable.type)
+            for update, counterpart in zip_longest(edge.updates, other.updates):
+                if update.variable.name != counterpart.variable.name:
+                    yield f"{where} updates {counterpart.variable.name}"
+                yield from self.expression(f"update of {where}", update.value, counterpart.value, update.variable.type)
 
     def expression(self, what: str, mine: Any, yours: Any, target: Any = None) -> Iterator[str]:
         if mine is None or yours is None:
