@@ -536,6 +536,29 @@ def test_of_too_many_values_it_tries_some(models: tuple[rsc.Base, sct.Supervisor
     assert validate_model(*models, Effort(states=10_000, inputs=2, values=0, random=3000)).outcome is Outcome.REFUTED
 
 
+@pytest.mark.parametrize("values", [5_000, 20_000])
+def test_one_value_of_many_is_found(tmp_path: Path, values: int) -> None:
+    """Be there few enough to try all in each state, or only once."""
+    path = tmp_path / "robot.rscd"
+    path.write_text(f"""robot R {{
+        component Scale {{
+            outgoing message weight with type: integer(0..{values})
+            behaviour {{
+                initial marked state light {{ on response from weight if value = 3333 goto heavy }}
+                state heavy {{ on response from weight goto light }}
+            }}
+        }}
+    }}""")
+    robot = robosc.load(path)
+    model = robosc_to_sct.transform(robot)[0]
+    effort = Effort(inputs=10_000, random=1_000)
+    assert validate_model(robot, model, effort).outcome is Outcome.PROVED
+    for edge in edges(model, "component_Scale.light", "message_weight.u_response"):
+        for literal in literals(edge.guard):
+            literal.value += literal.value == 3333
+    assert validate_model(robot, model, effort).outcome is Outcome.REFUTED
+
+
 def test_arguments_are_the_values_of_what_is_given(tmp_path: Path) -> None:
     """The supervisor is told of data compared with them."""
     text = """robot R {

@@ -90,12 +90,18 @@ class _Pair:
         self.known: dict[int, tuple[tuple[int, int], ...]] = {}
         self.domains = plants.inputs
         self.is_sampled = prod(map(_size, self.domains.values())) > most
+        #: Inputs with which the readings differ in some state, reachable or not.
+        self.differing: dict[str, Value] | None = None
+
+    def all_choices(self) -> Iterator[dict[str, Value]]:
+        """All values of all inputs."""
+        for values in product(*self.domains.values()):
+            yield dict(zip(self.domains, values, strict=True))
 
     def choices(self, random: Random) -> Iterator[dict[str, Value]]:
         """Values of all inputs; some, where there are too many."""
         if not self.is_sampled:
-            for values in product(*self.domains.values()):
-                yield dict(zip(self.domains, values, strict=True))
+            yield from self.all_choices()
         else:
             ends = [(domain[0], domain[-1]) for domain in self.domains.values()]
             for values in product(*ends) if len(ends) < 10 else ():
@@ -104,7 +110,9 @@ class _Pair:
                 yield self.choice(random)
 
     def choice(self, random: Random) -> dict[str, Value]:
-        """A random value of each input."""
+        """A random value of each input; every other time those with which the readings may differ."""
+        if self.differing is not None and random.random() < 0.5:
+            return self.differing
         return {name: domain[random.randrange(_size(domain))] for name, domain in self.domains.items()}
 
 
@@ -252,11 +260,12 @@ class Lockstep:
                 held = dict(zip(reads, values, strict=True))
                 if len({_holds(claim, held) for claim in claims}) > 1:
                     return False
-                try:
-                    for inputs in pair.choices(self._random) if pair else ():
+                for inputs in pair.all_choices() if pair else ():
+                    try:
                         self._effect(cast("_Pair", pair), held, inputs, ())
-                except DifferenceError:
-                    return False  # It may be out of reach.
+                    except DifferenceError:  # It may be out of reach.
+                        cast("_Pair", pair).differing = inputs
+                        return False
         return True
 
     def _wander(self, steps: int) -> None:
