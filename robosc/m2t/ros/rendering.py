@@ -12,6 +12,7 @@ from jinja2 import ChoiceLoader
 
 from robosc.m2t.c.comments import comment_text, string_literal
 from robosc.m2t.templates import environment
+from robosc.semantics.communication import QUEUE_DEPTH
 from robosc.semantics.definition import TRANSITIONS_KEPT
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ def node_environment(middleware: str) -> Environment:
         attribute=xml_attribute,
     )
     templates.globals["transitions_kept"] = TRANSITIONS_KEPT
+    templates.globals["queue_depth"] = QUEUE_DEPTH
     return templates
 
 

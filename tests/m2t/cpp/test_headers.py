@@ -16,6 +16,7 @@ import pytest
 import robosc
 from robosc.diagnostics.visible import HIDDEN
 from robosc.runtime.core.json_text import json_text
+from robosc.semantics.communication import QUEUE_DEPTH
 
 if TYPE_CHECKING:
     from robosc.configuration import Configuration
@@ -99,6 +100,17 @@ def test_compiles_alone(header: str, request: pytest.FixtureRequest) -> None:
 def test_hidden_characters_are_those_of_the_tool() -> None:
     rows = re.findall(r"\{0x([0-9A-F]+), 0x([0-9A-F]+)\},", (INCLUDE / "robosc/json.hpp").read_text(encoding="utf-8"))
     assert [(int(first, 16), int(last, 16)) for first, last in rows] == list(HIDDEN)
+
+
+def test_as_many_messages_wait_as_in_the_node_that_is_not_generated() -> None:
+    text = (INCLUDE / "robosc/queue_depth.hpp").read_text(encoding="utf-8")
+    assert re.findall(r"kQueueDepth = (\d+);", text) == [str(QUEUE_DEPTH)]
+    queue = re.compile(rf"(?:advertise|subscribe|create_publisher|Publisher\(|QoS).*\b{QUEUE_DEPTH}\b")
+    texts = {
+        path: path.read_text(encoding="utf-8") for path in (*INCLUDE.rglob("*.hpp"), *INCLUDE.parent.rglob("*.j2"))
+    }
+    assert len(texts) > len(HEADERS)
+    assert [path.name for path, text in texts.items() if queue.search(text)] == []
 
 
 @pytest.mark.parametrize("compiler", ["g++", "clang++"])

@@ -14,6 +14,7 @@
 #include <boost/make_shared.hpp>
 
 #include "robosc/goal_proxy.hpp"
+#include "robosc/queue_depth.hpp"
 #include "robosc_ros1/countdown.hpp"
 
 namespace robosc {
@@ -36,17 +37,19 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
       : Base(" within " + std::to_string(timeout.count()) + " ms", std::move(handlers)),
         timeout_(std::chrono::duration<double>(timeout).count()) {
     const auto hints = ros::TransportHints().tcpNoDelay();
-    goal_publisher_ = node_.advertise<ActionGoal>(robot_side + "/goal", 10);
-    cancel_publisher_ = node_.advertise<actionlib_msgs::GoalID>(robot_side + "/cancel", 10);
-    status_publisher_ = node_.advertise<actionlib_msgs::GoalStatusArray>(controller_side + "/status", 10);
-    feedback_publisher_ = node_.advertise<ActionFeedback>(controller_side + "/feedback", 10);
-    result_publisher_ = node_.advertise<ActionResult>(controller_side + "/result", 10);
+    goal_publisher_ = node_.advertise<ActionGoal>(robot_side + "/goal", kQueueDepth);
+    cancel_publisher_ = node_.advertise<actionlib_msgs::GoalID>(robot_side + "/cancel", kQueueDepth);
+    status_publisher_ = node_.advertise<actionlib_msgs::GoalStatusArray>(controller_side + "/status", kQueueDepth);
+    feedback_publisher_ = node_.advertise<ActionFeedback>(controller_side + "/feedback", kQueueDepth);
+    result_publisher_ = node_.advertise<ActionResult>(controller_side + "/result", kQueueDepth);
 
-    goal_subscription_ = node_.subscribe(controller_side + "/goal", 10, &ActionProxy::on_goal, this, hints);
-    cancel_subscription_ = node_.subscribe(controller_side + "/cancel", 10, &ActionProxy::on_cancel, this, hints);
-    status_subscription_ = node_.subscribe(robot_side + "/status", 10, &ActionProxy::on_status, this, hints);
-    feedback_subscription_ = node_.subscribe(robot_side + "/feedback", 10, &ActionProxy::on_feedback, this, hints);
-    result_subscription_ = node_.subscribe(robot_side + "/result", 10, &ActionProxy::on_result, this, hints);
+    goal_subscription_ = node_.subscribe(controller_side + "/goal", kQueueDepth, &ActionProxy::on_goal, this, hints);
+    cancel_subscription_ =
+        node_.subscribe(controller_side + "/cancel", kQueueDepth, &ActionProxy::on_cancel, this, hints);
+    status_subscription_ = node_.subscribe(robot_side + "/status", kQueueDepth, &ActionProxy::on_status, this, hints);
+    feedback_subscription_ =
+        node_.subscribe(robot_side + "/feedback", kQueueDepth, &ActionProxy::on_feedback, this, hints);
+    result_subscription_ = node_.subscribe(robot_side + "/result", kQueueDepth, &ActionProxy::on_result, this, hints);
   }
 
  private:

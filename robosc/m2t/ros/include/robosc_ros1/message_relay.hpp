@@ -2,12 +2,13 @@
 #ifndef ROBOSC_ROS1_MESSAGE_RELAY_HPP_
 #define ROBOSC_ROS1_MESSAGE_RELAY_HPP_
 
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <utility>
 
 #include <ros/ros.h>
+
+#include "robosc/queue_depth.hpp"
 
 namespace robosc {
 inline namespace v1 {
@@ -19,14 +20,13 @@ class MessageRelay {
   /// `pass`: whether a message goes on.
   MessageRelay(const std::string& from, const std::string& to, std::function<bool(const Message&)> pass)
       : to_(to), pass_(std::move(pass)) {
-    publisher_ = node_.advertise<Message>(to_, kDepth);
-    subscription_ =
-        node_.subscribe<Event>(from, kDepth, boost::function<void(Event)>([this](Event event) { received(event); }),
-                               ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
+    publisher_ = node_.advertise<Message>(to_, kQueueDepth);
+    subscription_ = node_.subscribe<Event>(from, kQueueDepth,
+                                           boost::function<void(Event)>([this](Event event) { received(event); }),
+                                           ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
   }
 
  private:
-  static constexpr std::uint32_t kDepth = 10;
   using Event = const ros::MessageEvent<const Message>&;
 
   void received(Event event) {
@@ -35,7 +35,7 @@ class MessageRelay {
     if (!latched_ && latching != event.getConnectionHeader().end() && latching->second == "1") {
       latched_ = true;
       publisher_.shutdown();
-      publisher_ = node_.advertise<Message>(to_, kDepth, true);
+      publisher_ = node_.advertise<Message>(to_, kQueueDepth, true);
     }
     publisher_.publish(event.getConstMessage());
   }
