@@ -32,6 +32,22 @@ _RULES = {
     "StringToken": "a string",
     "AnnotationName": "an annotation",
 }
+#: How deep brackets and groups may be nested, one in the other: the parser follows them by calls inside each other,
+#: which Python bounds.
+DEEPEST = 50
+#: Names are matched whole, so that a part of one is no keyword.
+_NESTING = re.compile(
+    r'"(?:[^\\"\n]|\\.)*"|//[^\n]*|/\*.*?\*/|@@?[\w:]+|\.\.|[.^]?\$?\w+(?:\.\$?\w+)*|[][(){}]', re.DOTALL
+)
+_CLOSINGS = {")": "(", "]": "[", "}": "{"}
+_BRACKETS = frozenset(_CLOSINGS.values())
+_BLOCKS = frozenset(["group", "location"])
+#: These end with `end` as groups do, but do not count: of expressions the parser reads them flat.
+_FLAT = frozenset(["if", "switch", "while"])
+#: What starts a statement, and stands in no expression and in no list of parameters.
+_STARTERS = frozenset(["group", "plant", "requirement", "supervisor", "automaton", "invariant", "edge"]) | frozenset(
+    ["disc", "const", "input", "enum", "equation", "initial", "marked"]
+)
 #: What several words stand for that the grammar wants at once.
 _GROUPS = (
     ("an expression", {"true", "NumberToken", "not"}),
@@ -49,6 +65,8 @@ def _grammar() -> Any:
 def parse(text: Text) -> tuple[Any, list[Diagnostic]]:
     """The specification in a text, None where it has faults; these are findings of the rule `syntax`."""
     content, findings = text.content, list[Any]()
+    if (deep := _too_deep(text)) is not None:
+        return None, [deep]
     reported = -1
     while True:
         try:
@@ -59,7 +77,7 @@ def parse(text: Text) -> tuple[Any, list[Diagnostic]]:
             failed = fault.__cause__
         except RecursionError:
             return None, [
-                text.error("syntax", 0, 0, "groups or calls are nested too deeply", "take some of them apart")
+                text.error("syntax", 0, 0, "this is nested too deeply", "take statements of its functions apart")
             ]
         else:
             return None, findings
@@ -74,6 +92,37 @@ def parse(text: Text) -> tuple[Any, list[Diagnostic]]:
         first, reported = _statement(content, start)
         blanked = re.sub(r"[^\n]", " ", content[first:reported])
         content = content[:first] + blanked + content[reported:]
+
+
+def _too_deep(text: Text) -> Diagnostic | None:
+    """What is wrong at the first bracket or group that is nested too deep in a text; None where nothing is.
+
+    A bracket that is not closed makes nothing deep that comes after its statement.
+    """
+    around: list[tuple[str, int]] = []  # what is open, and how deep it is
+    for token in _NESTING.finditer(text.content):
+        word = token[0]
+        top, depth = around[-1] if around else ("", 0)
+        if word in _STARTERS:
+            while around and around[-1][0] not in _BLOCKS:
+                around.pop()
+            top, depth = around[-1] if around else ("", 0)
+        elif word == "end":
+            while around and around.pop()[0] in _BRACKETS:
+                pass
+        elif top and _CLOSINGS.get(word) == top:
+            around.pop()
+        # An automaton is open from its first location on; a location in brackets is a parameter.
+        opens_automaton = word == "location" and top != word and top not in _BRACKETS
+        if word in _FLAT or opens_automaton:
+            around.append((word, depth))
+        elif word in _BRACKETS or word == "group":
+            if depth == DEEPEST:
+                mend = "move it out of groups" if word == "group" else "give parts of it to algebraic variables"
+                message = f"this is nested more than {DEEPEST} levels deep"
+                return text.error("syntax", token.start(), token.end(), message, mend)
+            around.append((word, depth + 1))
+    return None
 
 
 def _made(text: Text) -> Any:

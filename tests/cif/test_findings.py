@@ -2,11 +2,13 @@
 
 import random
 import re
+import threading
 from pathlib import Path
 
 import pytest
 
 from robosc.cif import read
+from robosc.cif.parsing import DEEPEST
 from robosc.diagnostics import ModelError
 from robosc.language.text import Documents
 from robosc.synthesis import synthesize
@@ -82,9 +84,9 @@ WRONG = {
     ),
     "a file that is not there": ('import "no.cif"; controllable c;\n' + _P, [("1:1", None)]),
     "a number": ("controllable c;\n" + _P + "requirement 99999999999 > 1;", [("3:13", None)]),
-    "too deep": (
-        "controllable c;\n" + _P + f"requirement {'(' * 500}true{')' * 500};",
-        [("1:1", "take some of them apart")],
+    "too deep statements of a function": (
+        "controllable c;\n" + _P + f"func int f(): {'while true: ' * 500}return 1; {'end ' * 500}end",
+        [("1:1", "take statements of its functions apart")],
     ),
     "too long": (
         "controllable c; alg bool a0 = p.a, "
@@ -132,6 +134,70 @@ def test_a_fault_is_said_at_its_place(name: str) -> None:
     for (_, message, hint), (_, mend) in zip(found, wanted, strict=True):
         assert message
         assert mend is None or mend == hint
+
+
+#: What is nested, in lines of one level each: before, at each level, inside, at the end of each, after, and in which
+#: column a level begins.
+NESTED = {
+    "parentheses": ("requirement\n", "(\n", "p.a", ")", ";", 1),
+    "negations": ("requirement\n", "not(\n", "p.a", ")", ";", 4),
+    "calls": ("requirement\n", "abs(\n", "1", ")", " = 1;", 4),
+    "calls in an update": (
+        "plant q: disc int[0..1] x; location: initial; edge c do x :=\n",
+        "max(0,\n",
+        "1",
+        ")",
+        "; end",
+        4,
+    ),
+    "groups": ("", "group g:\n", "const int n = 1;", " end", "", 1),
+    "groups, behind an automaton in each": (
+        "",
+        "group g: plant q: location a: initial; edge c; location b; end\n",
+        "const int n = 1;",
+        " end",
+        "",
+        1,
+    ),
+    "definitions of groups": ("", "group def G(event e; location l):\n", "const int n = 1;", " end", "", 12),
+    "parentheses among flat words": ("requirement\n", "(if p.a:\n", "p.a", " else p.a end)", ";", 1),
+}
+
+
+@pytest.mark.parametrize("name", NESTED)
+def test_what_is_nested_too_deep_is_found_at_its_place(name: str) -> None:
+    """On a stack of 512 KiB, too, and with what is as deep as it may be just before."""
+    before, opening, core, closing, after, column = NESTED[name]
+    # The parentheses of the innermost definition are a level, too, and the first to be too deep.
+    most = DEEPEST - ("definitions" in name)
+    read_in_thread = []
+
+    def run() -> None:
+        for depth in (most, most + 1, 5000):
+            text = "controllable c;\n" + _P + before + opening * depth + core + closing * depth + after
+            read_in_thread.append(findings(text))
+
+    size = threading.stack_size(512 * 1024)
+    try:
+        thread = threading.Thread(target=run)
+        thread.start()
+        thread.join()
+    finally:
+        threading.stack_size(size)
+    fine, *deep = read_in_thread
+    assert fine == []
+    line = 3 + before.count("\n") + most
+    assert [[place for place, _, _ in found] for found in deep] == [[f"{line}:{column}"]] * 2
+    [(_, message, hint)] = deep[0]
+    assert message == f"this is nested more than {DEEPEST} levels deep"
+    assert hint
+
+
+def test_what_is_not_closed_makes_nothing_deep() -> None:
+    faults = "group g: requirement ((p.a; const int n = (if true: (1 else 2 end; end\n" * 60
+    found = findings("controllable c;\n" + _P + faults)
+    assert found
+    assert not any("levels deep" in message for _, message, _ in found)
 
 
 #: So many definitions, one made of the other, are more than Python's stack is deep.
