@@ -46,6 +46,12 @@ longest alone.
 `python benchmarks/walks.py` measured it on {machine}, and wrote this page; tests count the calls of the same walks.
 """
 
+TAIL = """
+What grows with the square, and is none of these: transitions of one state on one event, each with a condition of its
+own. The first whose condition holds is taken, so an edge of the model of plants denies the conditions before it: those of
+N transitions are N²/2 conditions, in CIF, too. 20, 40 and 80 of them make 1,138, 4,268 and 16,528 elements.
+"""
+
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -142,7 +148,7 @@ def page(results: dict[str, Any]) -> str:
             f"{exponent(series):.2f}" for series in (measured, [point for point in measured if point["finished"]][-2:])
         ]
         lines.append(f"| {title} | {' | '.join(cells)} | {memory:.0f} | {' | '.join(steep)} |")
-    return "\n".join([*lines, ""])
+    return "\n".join([*lines, TAIL])
 
 
 def _seconds(point: dict[str, Any] | None) -> str:
