@@ -48,8 +48,8 @@ longest alone.
 
 TAIL = """
 What grows with the square, and is none of these: transitions of one state on one event, each with a condition of its
-own. The first whose condition holds is taken, so an edge of the model of plants denies the conditions before it: those of
-N transitions are N²/2 conditions, in CIF, too. 20, 40 and 80 of them make 1,138, 4,268 and 16,528 elements.
+own. The first whose condition holds is taken, so an edge of the model of plants denies the conditions before it: those
+of N transitions are N²/2 conditions, in CIF, too. 20, 40 and 80 of them make 1,138, 4,268 and 16,528 elements.
 """
 
 
