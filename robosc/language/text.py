@@ -92,19 +92,20 @@ class Text:
 
     def _line(self, number: int) -> tuple[int, int]:
         """The offsets of the start and the end of a line, counted from 0, its line break left out."""
-        if number >= len(self._line_starts):
+        starts = self._line_starts
+        if number >= len(starts):
             return len(self.content), len(self.content)
-        ends = self._line_starts[number + 1 :][:1]
-        return self._line_starts[number], ends[0] - 1 if ends else len(self.content)
+        return starts[number], starts[number + 1] - 1 if number + 1 < len(starts) else len(self.content)
 
     def after(self, edits: Iterable[Edit]) -> str:
         """The text after edits that do not overlap."""
-        content = self.content
-        for edit in sorted(edits, reverse=True):
+        pieces: list[str] = []
+        behind = 0
+        for edit in sorted(edits):
             span = edit.span
-            start, end = self.offset(span.line, span.column), self.offset(span.end_line, span.end_column)
-            content = content[:start] + edit.text + content[end:]
-        return content
+            pieces += self.content[behind : self.offset(span.line, span.column)], edit.text
+            behind = self.offset(span.end_line, span.end_column)
+        return "".join([*pieces, self.content[behind:]])
 
     def source(self, start: int, end: int) -> Place:
         """The place between two offsets."""

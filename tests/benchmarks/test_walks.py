@@ -12,8 +12,10 @@ import robosc
 from benchmarks import walks
 from benchmarks.walk_families import FAMILIES, write
 from robosc.checks import check
-from robosc.diagnostics import ModelError
+from robosc.diagnostics import Edit, ModelError
 from robosc.language import grammar, read, recovery
+from robosc.language.outlining import around, folds, outline
+from robosc.language.text import Text
 from robosc.metamodel import sct
 
 pytestmark = pytest.mark.slow
@@ -78,6 +80,51 @@ def test_reading_and_checking(family, tmp_path):
         reading(path)  # What is loaded and built once is no part of it.
         counts.append(calls(reading, path)[0])
     assert exponent(*counts) < MOST, counts
+
+
+def outlining(file):
+    return outline(file), folds(file), around(file, 0)
+
+
+@pytest.mark.parametrize("family", ["operators", "states", "lines"])
+def test_outlining(family, tmp_path):
+    counts = []
+    for number in (4 * size for size in SIZES):
+        (tmp_path / str(number)).mkdir()
+        path = write(family, number, tmp_path / str(number))
+        file = read(path).file
+        outlining(file)
+        counts.append(calls(outlining, file)[0])
+    assert exponent(*counts) < MOST, counts
+
+
+def test_an_offset_in_a_long_text_copies_nothing():
+    text = Text("long.rscd", "\n" * 100_000)
+    assert text.offset(1, 1) == 0
+    assert memory(text.offset, 1, 1) < 1000
+
+
+class Copied(str):
+    """A text that tells how many characters are copied out of it."""
+
+    characters = 0
+
+    def __getitem__(self, part):
+        piece = Copied(super().__getitem__(part))
+        Copied.characters += len(piece)
+        return piece
+
+    def __add__(self, other):
+        return Copied(super().__add__(other))
+
+
+def test_many_edits_copy_a_text_once():
+    content = Copied("needs\n" * 1000)
+    text = Text("long.rscd", content)
+    edits = [Edit(text.span(start, start + 1), "N") for start in range(0, len(content), 6)]
+    Copied.characters = 0
+    assert text.after(edits) == "Needs\n" * 1000
+    assert Copied.characters <= len(content)
 
 
 def test_memory_for_namespaces(tmp_path):
