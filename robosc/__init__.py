@@ -219,4 +219,9 @@ def generate(
     if has_errors(findings):
         raise ModelError(findings)
     made = known[target]
-    return made.files(models, configuration, made.tests(models, configuration) if with_tests else None, into=into)
+    tests = None
+    if with_tests:
+        from robosc.node_tests.trace_test import trace_test_of
+
+        tests = trace_test_of(made, models, configuration)
+    return made.files(models, configuration, tests, into=into)

@@ -69,6 +69,7 @@ LIBRARIES = {
     "actionlib_msgs": {"runtime"},
     "arpeggio": {"language", "cif"},
     "click": {"cli"},
+    "diagnostic_msgs": {"runtime"},
     "genpy": {"runtime"},
     "lsprotocol": {"editor"},
     "mcap": {"recordings"},
@@ -110,13 +111,16 @@ def modules() -> list[tuple[tuple[str, ...], list[ast.AST]]]:
 
 
 def imports(nodes: list[ast.AST]) -> Iterator[tuple[str, ...]]:
-    """The parts of the name of every module that a module imports, anywhere, for type checkers too."""
+    """The parts of the name of every module that a module imports, anywhere, for type checkers or by a string too."""
     for node in nodes:
         if isinstance(node, ast.Import):
             yield from (tuple(alias.name.split(".")) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, "imports are absolute"
             yield from (tuple(f"{node.module}.{alias.name}".split(".")) for alias in node.names)
+        elif isinstance(node, ast.Call) and ast.unparse(node.func) in {"import_module", "importlib.import_module"}:
+            names = (name.value for name in node.args[:1] if isinstance(name, ast.Constant))
+            yield from (tuple(name.split(".")) for name in names)
 
 
 def room(parts: tuple[str, ...]) -> str:
@@ -133,7 +137,8 @@ def may(importer: tuple[str, ...], imported: tuple[str, ...]) -> bool:
         return here in EXECUTING | {"m2m", "", "cli"}
     if here == there == "m2t":
         ours, theirs = ("".join(parts[1:2]) for parts in (importer, imported))
-        return ours == theirs or (theirs in SHARED and theirs in SHARED.get(ours, SHARED))
+        # The list of targets loads each of them when it is asked for.
+        return ours in {theirs, "targets"} or (theirs in SHARED and theirs in SHARED.get(ours, SHARED))
     return here == there or there not in ROOMS or there in ALLOWED.get(here, set())
 
 
@@ -235,6 +240,7 @@ def test_files_that_others_name_go_through_one_place() -> None:
         ("synthesis.bdd", "engine"),
         ("m2m.trace", "synthesis"),
         ("m2t.cif", "m2t.ros"),
+        ("m2t.targets", "node_tests"),
         ("m2t.ros", "m2t.supervisor"),
         ("m2t.c", "m2t.ros"),
         ("m2t.cif", "m2m"),
@@ -258,6 +264,7 @@ def test_the_rule_allows() -> None:
         ("m2t.ros.ros1", "m2t.ros.node"),
         ("m2t.cif", "m2t.templates"),
         ("m2t.cif", "configuration"),
+        ("m2t.targets", "m2t.ros"),
         ("m2t.cif.edges", "m2t.cif.names"),
         ("checks.rule", "metamodel"),
         ("cli.transform", "language"),

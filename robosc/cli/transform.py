@@ -144,7 +144,7 @@ def command(
         with together(), bounded(megabytes << 20, "generating"):
             for target in targets:
                 with progress(f"generating {target.name}"):
-                    tests[target] = target.tests(models, settings, paths.interfaces) if with_tests else None
+                    tests[target] = _tests(target, models, settings, paths) if with_tests else None
                     files[target] = target.files(models, settings, tests[target], into=into)
         if into is None:
             trees = _trees(folder, files, copies, models, settings)
@@ -172,6 +172,13 @@ def _settings(model: str, chosen: str | None, typed_state: bool, into: str | Non
         hint = "leave the typed state out, or --into: without it both packages are written"
         report.add([settings.error(("typedState",), message, hint)])
     return settings
+
+
+def _tests(target: Target, models: Models, settings: Configuration, paths: Paths) -> TraceTest | None:
+    """The test for the package of a target; None where it can't have any."""
+    from robosc.node_tests.trace_test import trace_test_of
+
+    return trace_test_of(target, models, settings, paths.interfaces)
 
 
 def _tell_coverage(tests: Mapping[Target, TraceTest | None]) -> None:

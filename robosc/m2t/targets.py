@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, TypedDict, cast
 from robosc.extensions import Extension, extensions
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
     from contextlib import AbstractContextManager
     from typing import Unpack
 
@@ -111,18 +110,6 @@ class Target:
     def tested_ros(self) -> int | None:
         """The ROS, 1 or 2, on which its packages can be tested with traces; None where they can't."""
         return self.ros if self.package == "controller" else None
-
-    def tests(
-        self, models: Models, configuration: Configuration, interface_paths: Sequence[str] = ()
-    ) -> TraceTest | None:
-        """The tests for its package; None where it can't have any.
-
-        `interface_paths` are folders in which ROS types are looked for, as `robosc.ros_types` does.
-        """
-        if self.tested_ros is None:
-            return None
-        made = import_module("robosc.node_tests.trace_test").trace_test
-        return cast("TraceTest", made(models.rosgraph, configuration, self.tested_ros, interface_paths))
 
     def files(
         self,
@@ -229,5 +216,6 @@ def targets() -> dict[str, Target]:
 
 def together() -> AbstractContextManager[None]:
     """While it lasts, what several targets have in common is made once; nobody changes the models meanwhile."""
-    remembered: Callable[[], AbstractContextManager[None]] = import_module("robosc.m2m.sct_to_engine").remembered
+    from robosc.m2m.sct_to_engine import remembered
+
     return remembered()

@@ -16,14 +16,30 @@ from robosc.semantics.printing import SctPrinter
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
     from os import PathLike
 
     from robosc.configuration import Configuration
+    from robosc.m2t.models import Models
+    from robosc.m2t.targets import Target
     from robosc.metamodel import rosgraph
     from robosc.node_tests.coverage import Goal
     from robosc.node_tests.samples import Incoming
     from robosc.runtime.core.port import Client
+
+
+def trace_test_of(
+    target: Target, models: Models, configuration: Configuration, interface_paths: Sequence[str] = ()
+) -> TraceTest | None:
+    """The test for the package of a target; None where it can't have any.
+
+    The models have a supervisor, and the ROS graph if the target needs it. `interface_paths` are folders in which ROS
+    types are looked for, as `robosc.ros_types` does.
+    """
+    if target.tested_ros is None:
+        return None
+    assert models.rosgraph is not None
+    return trace_test(models.rosgraph, configuration, target.tested_ros, interface_paths)
 
 
 def trace_test(

@@ -12,6 +12,7 @@ from robosc.engine import Engine
 from robosc.m2t.targets import TARGETS, together
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
+from robosc.node_tests.trace_test import trace_test_of
 from robosc.report import digests, printing
 from robosc.report.playing import play
 from robosc.semantics.durations import timer_text
@@ -103,7 +104,7 @@ def _generated(
             if has_errors(found):
                 refused.append({"target": target.name, "reason": found[0].message})
                 continue
-            tests = target.tests(models, configuration, interface_paths)
+            tests = trace_test_of(target, models, configuration, interface_paths)
             missed |= dict.fromkeys(tests.missed if tests else ())
             made = target.files(models, configuration, tests=tests)
             folder = target.folder(models, configuration)

@@ -17,6 +17,7 @@ from robosc.m2t.models import Models
 from robosc.m2t.targets import TARGETS
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel import rosgraph, xmi
+from robosc.node_tests.trace_test import trace_test_of
 from robosc.ros_types import RosTypes
 from robosc.simulation import Simulation
 from tests.fuzz.hostile_xmi import edits
@@ -123,7 +124,7 @@ def used(path: Path, target: str | None) -> None:
         and not has_errors(TARGETS[target].findings(models, robosc.Configuration()))
     ):
         made, settings = TARGETS[target], robosc.Configuration()
-        made.files(models, settings, made.tests(models, settings))
+        made.files(models, settings, trace_test_of(made, models, settings))
 
 
 @pytest.mark.parametrize("change", CHANGES)
