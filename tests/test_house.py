@@ -152,6 +152,12 @@ def test_no_import_breaks_the_rule() -> None:
     assert broken == []
 
 
+def test_no_rule_imports_another() -> None:
+    rules = ("checks", "rules")
+    found = [(importer, imported) for importer, nodes in modules() for imported in imports(nodes)]
+    assert [pair for pair in found if (pair[0][:2], pair[1][1:3]) == (rules, rules)] == []
+
+
 #: What the second reading of a robot's text shares with the first: how expressions are computed, and walks over them.
 COMMON = {"evaluation", "operators", "walks"}
 

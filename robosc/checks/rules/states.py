@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.checks.automata import initial_states, one_initial, start_of
 from robosc.checks.definitions import behaviours, common_transitions, states
 from robosc.checks.mending import Choice, Insertion, Rewriting
 from robosc.checks.rule import Finding, rule
-from robosc.checks.rules.requirement_events import initial_states, one_initial, start_of
 from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
+from robosc.checks.automata import one_out, repeated_events, unknown_events
 from robosc.checks.definitions import (
     assigned_variable,
     behaviours,
@@ -18,7 +19,6 @@ from robosc.checks.definitions import (
 )
 from robosc.checks.mending import Choice, Removal, Replacement, Rewriting, Unassigned
 from robosc.checks.rule import Finding, on_line, rule
-from robosc.checks.rules.requirement_events import one_out, repeated_events, unknown_events
 from robosc.diagnostics import Severity
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import event_names
