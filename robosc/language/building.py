@@ -11,7 +11,7 @@ from robosc.diagnostics import Repair
 from robosc.language.grammar import attribute
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
-from robosc.semantics.operators import PRECEDENCE
+from robosc.semantics.operators import BY_CLASS, Associativity
 
 if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic
@@ -207,6 +207,7 @@ class Builder:
 
 def _binds_first(left: Any, right: Any) -> bool:
     """Whether in `a left b right c` the left operator takes `b`."""
-    if left is ex.Implication and right is ex.Implication:
-        return False
-    return PRECEDENCE[left] >= PRECEDENCE[right]
+    before, behind = BY_CLASS[left], BY_CLASS[right]
+    if before.precedence == behind.precedence:
+        return before.associativity is not Associativity.RIGHT
+    return before.precedence > behind.precedence

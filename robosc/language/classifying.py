@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robosc.language.grammar import pattern, words_of
+from robosc.language.grammar import first_words, pattern, words_of
 from robosc.language.tokens import Kind, Tokens
 from robosc.metamodel import robosc as rsc
+from robosc.metamodel.reflection import literals
 from robosc.semantics.operators import FUNCTIONS
 
 if TYPE_CHECKING:
@@ -39,9 +40,9 @@ _CLASSES: dict[type, str] = {
 }
 CLASSES = (*dict.fromkeys(_CLASSES.values()), "type", "keyword", "comment", "string", "number", "operator")
 _READONLY = (rsc.Constant, rsc.Condition, rsc.FormalParameter, rsc.EnumValue)
-_TYPES = {"boolean", "integer", "double", "string", "none", "array"}
+_TYPES = first_words("BasicDataType", "Array")
 _KINDS = {Kind.NUMBER: "number", Kind.STRING: "string", Kind.OPEN_STRING: "string", Kind.OPEN_COMMENT: "comment"}
-_QUANTIFIERS = {"all", "any", "count"}
+_QUANTIFIERS = frozenset(literals(rsc.Quantifier))
 _BRACKETS = set("{}()[],.:;")
 _STRING_OR_COMMENT = re.compile(rf"{pattern('String')}|(?P<comment>{pattern('Comment')})")
 

@@ -17,6 +17,7 @@ from robosc.language.outline import Outline
 from robosc.language.scopes import by_name
 from robosc.language.tokens import Kind, Tokens, too_complex
 from robosc.metamodel import robosc as rsc
+from robosc.metamodel.reflection import literals
 from robosc.semantics.communication import event_names, sent_type
 from robosc.semantics.naming import written
 from robosc.semantics.operators import FUNCTIONS
@@ -35,7 +36,6 @@ _WORD = re.compile(r"\^?\w*\Z")
 _STRING_OR_COMMENT = re.compile(rf"{pattern('Comment')}|{pattern('String')}|/\*[\s\S]*|[\"'][^\n]*")
 #: Where the name of a topic begins: of a communication, or of one that is imported.
 _TOPIC = re.compile(r"""(?:\bidentifier|\bimport\b.*\bwith\s*\{[^}]*)\s*:\s*(["'])([^"']*)\Z""")
-_QUANTIFIERS = ("all", "any", "count")
 #: What to go on with where a definition is not at its end, the best first, and what is written for it.
 _GOING_ON = {
     **{word: word for word in ("needs", "disables", "with", "from", "import", "use", "to", "then", "else", "in", "->")},
@@ -137,7 +137,7 @@ def _words(block: Block | None, wanted: Iterable[str]) -> Iterator[Proposal]:
         if word.isalpha() and word.islower() and word != "end":
             yield Proposal(word, starts=bool(block and any(word in level.starters for level in _levels(block))))
         elif word == "Quantifier":
-            yield from map(Proposal, _QUANTIFIERS)
+            yield from map(Proposal, literals(rsc.Quantifier))
         elif word == "BuiltIn":
             yield from map(Proposal, FUNCTIONS)
     if "end" in wanted and block is not None and block.level is not None:

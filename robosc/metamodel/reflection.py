@@ -52,6 +52,11 @@ def tree(root: Any) -> Iterator[tuple[str, Any]]:
         pending += reversed(list(contents(element)))
 
 
+def literals(enumeration: Any) -> list[str]:
+    """The names of the values of an enumeration."""
+    return [literal.name for literal in enumeration.eLiterals]
+
+
 def metamodel(name: str) -> Any:
     """The package that an .ecore file declares, with its documentation. Raises KeyError where there is no such file."""
     return packages(documented=True)[name]

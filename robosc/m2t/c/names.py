@@ -41,7 +41,7 @@ class CNames:
     """
 
     def __init__(self, model: sct.SupervisoryControlModel) -> None:
-        self.prefix = _identifier(snake_case(model.name)).strip("_") or "robot"
+        self.prefix = identifier(snake_case(model.name)).strip("_") or "robot"
         if self.prefix[0].isdigit():
             self.prefix = f"robot_{self.prefix}"
         self.macro = self.prefix.upper()
@@ -52,7 +52,7 @@ class CNames:
         self._members |= self._named(model, lambda plant: plant.inputs)
         settings = Names([*KEYWORDS, *_SETTINGS.split()])
         self._settings = {
-            duration: settings.fresh(_identifier(f"{duration.parameter.replace('.', '_')}_ms"))
+            duration: settings.fresh(identifier(f"{duration.parameter.replace('.', '_')}_ms"))
             for duration in model.durations
         }
 
@@ -74,7 +74,7 @@ class CNames:
         """The members of one struct."""
         names = Names(KEYWORDS)
         return {
-            element: names.fresh(_identifier(plant.name if element is plant else f"{plant.name}_{element.name}"))
+            element: names.fresh(identifier(plant.name if element is plant else f"{plant.name}_{element.name}"))
             for plant in model.plants
             for element in elements_of(plant)
         }
@@ -102,8 +102,9 @@ class CNames:
         return self._lookups[owner]
 
     def _prefixed(self, *parts: str) -> str:
-        return _identifier("_".join([self.prefix, *parts]))
+        return identifier("_".join([self.prefix, *parts]))
 
 
-def _identifier(name: str) -> str:
+def identifier(name: str) -> str:
+    """The name in ASCII letters, digits and underscores; other characters become their code."""
     return re.sub(r"[^A-Za-z0-9_]", lambda found: f"_u{ord(found[0]):04x}", name)

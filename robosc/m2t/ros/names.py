@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, TypeVar
 
-from robosc.m2t.c.names import KEYWORDS, CNames
+from robosc.m2t.c.names import KEYWORDS, CNames, identifier
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.semantics.naming import Names
@@ -93,11 +92,6 @@ class CppNames:
 def kept_for(variables: Sequence[rosgraph.NodeVariable], component: str | None) -> list[rosgraph.NodeVariable]:
     """The variables that a node keeps for one component."""
     return [variable for variable in variables if variable.component == component]
-
-
-def identifier(name: str) -> str:
-    """The name in ASCII letters, digits and underscores; other characters become their code."""
-    return re.sub(r"[^A-Za-z0-9_]", lambda found: f"_u{ord(found[0]):04x}", name)
 
 
 def _fresh(elements: Sequence[_Element]) -> dict[_Element, str]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.m2t.c.comments import string_literal
-from robosc.m2t.ros.names import identifier
+from robosc.m2t.c.names import identifier
 from robosc.semantics.component_parts import STATELESS, components, request
 from robosc.semantics.naming import Names
 
