@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from robosc.m2m.trace import Trace
     from robosc.ros_types import Section
     from robosc.semantics.communication import PortEvent
+    from robosc.semantics.inputs import Told
     from robosc.semantics.instances import Instance, InstanceParameter, InstanceVariable, PortInstance
 
 #: The wire types of basic data without `links`, all of std_msgs.
@@ -76,6 +77,12 @@ class _Transformation:
         self.carriers: dict[rosgraph.Reception, tuple[rosgraph.Interface, Section]] = {}
         self.subscriptions: dict[tuple[str, rosgraph.Interface], rosgraph.Subscription] = {}
         self.publishers: dict[tuple[str, rosgraph.Interface], rosgraph.Publisher] = {}
+        self.durations: dict[InstanceParameter, list[sct.Duration]] = {}
+        for (place, _), duration in trace.durations.items():
+            self.durations.setdefault(place, []).append(duration)
+        self.inputs: dict[tuple[PortInstance, PortEvent], list[tuple[Told, sct.Input]]] = {}
+        for carried, declared in trace.inputs.items():
+            self.inputs.setdefault((carried.port, carried.event), []).append((carried, declared))
         self.expressions = NodeExpressions(trace, self.declarations, self.variables, self.parameters, self.wire)
 
     def run(self) -> rosgraph.RosGraph:
@@ -122,8 +129,7 @@ class _Transformation:
         )
         for bound in ("lowest", "highest"):
             setattr(parameter, bound, constant_value(getattr(declared, bound), within))
-        durations = self.trace.durations.items()
-        parameter.durations.extend(duration for (place, _), duration in durations if place == owned)
+        parameter.durations.extend(self.durations.get(owned, ()))
         self.parameters[owned] = parameter
         self.graph.parameters.append(parameter)
 
@@ -237,17 +243,16 @@ class _Transformation:
         value = self.value_of(port, event)
         assert event.section is not None
         self.carriers[reception] = self.interface(port.communication), event.section
-        for carried, declared in self.trace.inputs.items():
-            if carried.port == port and carried.event == event:
-                read: ex.Expression
-                if isinstance(carried, Data):
-                    read = robosc.Access(
-                        value=True, segments=[robosc.PropertySegment(property=part) for part in carried.path]
-                    )
-                else:
-                    read = carried.expression
-                assigned = self.expressions(read, port.instance, value)
-                reception.inputs.append(rosgraph.InputAssignment(input=declared, value=assigned))
+        for carried, declared in self.inputs.get((port, event), ()):
+            read: ex.Expression
+            if isinstance(carried, Data):
+                read = robosc.Access(
+                    value=True, segments=[robosc.PropertySegment(property=part) for part in carried.path]
+                )
+            else:
+                read = carried.expression
+            assigned = self.expressions(read, port.instance, value)
+            reception.inputs.append(rosgraph.InputAssignment(input=declared, value=assigned))
         return reception
 
     def field(self, port: PortInstance, event: PortEvent) -> str:

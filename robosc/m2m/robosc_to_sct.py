@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from robosc.metamodel.places import Place
+    from robosc.semantics.inputs import Told
 
 _Stated = TypeVar("_Stated", bound=robosc.StatedDefinition)
 
@@ -75,7 +76,9 @@ class _Transformation:
         self.expressions = SctExpressions(self.trace)
         self.print = RoboscPrinter()
         self.plant_names = Names()
-        self.told = self.trace.cone.data
+        self.told: dict[PortInstance, list[Told]] = {}
+        for carried in self.trace.cone.data:
+            self.told.setdefault(carried.port, []).append(carried)
 
     def run(self) -> tuple[sct.SupervisoryControlModel, Trace]:
         # Targets first, then what refers to them: a guard may name any component's state.
@@ -135,21 +138,22 @@ class _Transformation:
     def inputs(self, plant: sct.Plant, port: PortInstance) -> None:
         """Algorithm 1, for what is in the cone of influence."""
         names = Names()
-        for carried in self.told:
-            if carried.port == port:
-                made = sct.Input()
-                if isinstance(carried, Data):
-                    parts = [part.name for part in carried.path]
-                    assert carried.type is not None
-                    made.type = self.declarations.type(carried.type)
-                else:
-                    parts = [f"c{1 + sum(given.text is not None for given in plant.inputs)}"]
-                    made.type = self.declarations.computed(carried)
-                    made.text = carried.text
-                made.name = names.fresh("_".join([f"i_{carried.event.kind.name}", *parts]))
-                plant.inputs.append(made)
-                self.trace.event(port, carried.event.kind).inputs.append(made)
-                self.trace.inputs[carried] = made
+        computed = 0
+        for carried in self.told.get(port, ()):
+            made = sct.Input()
+            if isinstance(carried, Data):
+                parts = [part.name for part in carried.path]
+                assert carried.type is not None
+                made.type = self.declarations.type(carried.type)
+            else:
+                computed += 1
+                parts = [f"c{computed}"]
+                made.type = self.declarations.computed(carried)
+                made.text = carried.text
+            made.name = names.fresh("_".join([f"i_{carried.event.kind.name}", *parts]))
+            plant.inputs.append(made)
+            self.trace.event(port, carried.event.kind).inputs.append(made)
+            self.trace.inputs[carried] = made
 
     # Behaviour
 

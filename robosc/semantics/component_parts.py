@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from robosc.metamodel import rosgraph, sct
 from robosc.semantics.definition import reported
 from robosc.semantics.roles import plant_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
+_Element = TypeVar("_Element")
 
 #: What is told in the place of the state of a component that has none.
 STATELESS = "has no states"
@@ -41,21 +42,21 @@ def components(graph: rosgraph.RosGraph) -> list[Parts]:
     clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = [*graph.serviceClients, *graph.actionClients]
     sendings = [sending for publisher in graph.publishers for sending in publisher.sendings]
     sendings += [client.request for client in clients]
-    receptions = [reception for topic in graph.subscriptions for reception in topic.receptions]
-    for event in [*(reception.event for reception in receptions), *(sending.event for sending in sendings)]:
-        plants.setdefault(_owner(event), None)
+    listening = [(_owner(reception.event), topic) for topic in graph.subscriptions for reception in topic.receptions]
+    topics = _grouped(dict.fromkeys(listening))
+    commands = _grouped((_owner(sending.event), sending) for sending in sendings)
+    called = _grouped((_owner(client.request.event), client) for client in clients)
+    for name in [*topics, *commands]:
+        plants.setdefault(name, None)
+    kept = reported(graph)
     return [
         Parts(
             name,
             plant,
-            [] if plant is None else reported(graph, plant),
-            [sending for sending in sendings if _owner(sending.event) == name],
-            [
-                topic
-                for topic in graph.subscriptions
-                if any(_owner(reception.event) == name for reception in topic.receptions)
-            ],
-            [client for client in clients if _owner(client.request.event) == name],
+            [] if plant is None else kept.get(plant.origin, []),
+            commands.get(name, []),
+            topics.get(name, []),
+            called.get(name, []),
         )
         for name, plant in plants.items()
     ]
@@ -64,6 +65,14 @@ def components(graph: rosgraph.RosGraph) -> list[Parts]:
 def request(sending: rosgraph.Sending) -> str:
     """What a model calls the event of a command: `request to move`."""
     return f"request to {sending.name}"
+
+
+def _grouped(owned: Iterable[tuple[str, _Element]]) -> dict[str, list[_Element]]:
+    """Elements by their owner, each in the order given."""
+    found: dict[str, list[_Element]] = {}
+    for owner, element in owned:
+        found.setdefault(owner, []).append(element)
+    return found
 
 
 def _owner(event: sct.Event) -> str:

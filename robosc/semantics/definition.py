@@ -14,7 +14,7 @@ from robosc.semantics.printing import RobotPrinter
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable, Set
 
 _Value = TypeVar("_Value")
 
@@ -25,9 +25,15 @@ TRANSITIONS_KEPT = 5000
 def definition(graph: rosgraph.RosGraph) -> dict[str, Any]:
     """The definition as JSON data: components with states, variables and transitions, communication, requirements."""
     plants = graph.model.plants
+    kept = reported(graph)
+    assigning = {(reaction.event, location) for reaction in graph.reactions for location in reaction.locations}
     return {
         "robot": graph.name,
-        "components": [_component(plant, graph) for plant in plants if plant.kind == sct.PlantKind.behaviour],
+        "components": [
+            _component(plant, kept.get(plant.origin, ()), assigning)
+            for plant in plants
+            if plant.kind == sct.PlantKind.behaviour
+        ],
         "communications": [
             {
                 "name": plant.origin,
@@ -59,15 +65,18 @@ def _lines(value: Any) -> str:
     return "[\n" + ",\n".join(f"  {json.dumps(element)}" for element in value) + "]"
 
 
-def reported(graph: rosgraph.RosGraph, plant: sct.Plant) -> list[rosgraph.NodeVariable]:
-    """The variables of a component that reports show: no arrays and objects, which may be large."""
-    kept = [variable for variable in graph.variables if variable.component == plant.origin]
-    return [variable for variable in kept if not is_structured(variable.type)]
+def reported(graph: rosgraph.RosGraph) -> dict[str | None, list[rosgraph.NodeVariable]]:
+    """The variables that reports show, by component: no arrays and objects, which may be large."""
+    found: dict[str | None, list[rosgraph.NodeVariable]] = {}
+    for variable in graph.variables:
+        if not is_structured(variable.type):
+            found.setdefault(variable.component, []).append(variable)
+    return found
 
 
-def _component(plant: sct.Plant, graph: rosgraph.RosGraph) -> dict[str, Any]:
-    own = reported(graph, plant)
-    assigning = {(reaction.event, location) for reaction in graph.reactions for location in reaction.locations}
+def _component(
+    plant: sct.Plant, own: Iterable[rosgraph.NodeVariable], assigning: Set[tuple[sct.Event, sct.Location]]
+) -> dict[str, Any]:
     return {
         "name": plant.origin or plant.name,
         "states": [

@@ -95,11 +95,13 @@ def watchdog(words: Mapping[Topic, str], topic: rosgraph.Subscription) -> str:
 def topic_words(graph: rosgraph.RosGraph) -> dict[Topic, str]:
     """A word for each subscription and publisher, no two alike: its topic's name in letters, digits and underscores."""
     words: dict[Topic, str] = {}
+    taken: set[str] = set()
     topics: list[Topic] = [*graph.subscriptions, *graph.publishers]
     for topic in topics:
         word = re.sub(r"[^A-Za-z0-9]+", "_", topic.topic).strip("_") or "topic"
         numbered = (f"{word}_{number}" for number in count(2))
-        words[topic] = next(name for name in chain([word], numbered) if name not in words.values())
+        words[topic] = next(name for name in chain([word], numbered) if name not in taken)
+        taken.add(words[topic])
     return words
 
 

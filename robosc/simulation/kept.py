@@ -43,10 +43,11 @@ class Kept:
         if graph is None:
             return
         self._node = NodeData(graph, engine)
+        shown = reported(graph)
         for plant in engine.model.plants:
             if plant.kind == sct.PlantKind.behaviour:
                 self._names |= {
-                    variable: f"{variable.component}.{variable.name}" for variable in reported(graph, plant)
+                    variable: f"{variable.component}.{variable.name}" for variable in shown.get(plant.origin, ())
                 }
         self.initial = {name: _finite(self._node.variables[variable]) for variable, name in self._names.items()}
         for reaction in graph.reactions:

@@ -99,6 +99,7 @@ def _is_written(edge: sct.Edge) -> bool:
 class _Describer:
     def __init__(self, texts: Mapping[str, str], graph: rosgraph.RosGraph | None) -> None:
         self._graph = graph
+        self._reported = {} if graph is None else reported(graph)
         self._lines = {path: text.split("\n") for path, text in texts.items()}
         self.files: dict[str, int] = {path: number for number, path in enumerate(texts)}
 
@@ -154,9 +155,7 @@ class _Describer:
 
     def _kept(self, plant: sct.Plant) -> list[rosgraph.NodeVariable]:
         """What the node keeps of a component beside the supervisor."""
-        if self._graph is None or plant.kind != sct.PlantKind.behaviour:
-            return []
-        return reported(self._graph, plant)
+        return self._reported.get(plant.origin, []) if plant.kind == sct.PlantKind.behaviour else []
 
     def _label(self, edge: sct.Edge) -> dict[str, str]:
         """The text of a transition, as short as a picture needs it, and whole."""

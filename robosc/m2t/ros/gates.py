@@ -10,10 +10,12 @@ from robosc.m2t.ros.events import Reasons
 from robosc.m2t.ros.expressions import CppPrinter
 from robosc.m2t.ros.names import CppNames
 from robosc.metamodel import rosgraph, sct
-from robosc.semantics.edges import edges_from
+from robosc.semantics.edges import departures, edges_by_event
 from robosc.semantics.roles import plant_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from robosc.m2t.ros.node import Node
 
 
@@ -65,14 +67,16 @@ def gates(graph: rosgraph.RosGraph, node: Node) -> dict[rosgraph.Sending, Gate]:
 
 class _Maker:
     def __init__(self, graph: rosgraph.RosGraph) -> None:
-        self._model = graph.model
         self._names = CppNames(graph)
         self._printer = CppPrinter(self._names)
         self._reasons = Reasons(graph.model)
+        self._edges = edges_by_event(graph.model.plants)
+        self._requirements: dict[sct.Event, list[sct.Requirement]] = {}
+        for requirement in graph.model.requirements:
+            self._requirements.setdefault(requirement.event, []).append(requirement)
 
     def gate(self, word: str, event: sct.Event) -> Gate:
         plant = plant_of(event)
-        required = [requirement for requirement in self._model.requirements if requirement.event == event]
         explanation = self._reasons.explanation(event)
         return Gate(
             word,
@@ -81,9 +85,9 @@ class _Maker:
             self._reasons.requirements(event),
             [
                 Reason(self._failing(requirement), string_literal(requirement.text or "a requirement"))
-                for requirement in required
+                for requirement in self._requirements.get(event, ())
             ],
-            [reason for plant in self._model.plants for reason in self._missing(plant, event)],
+            [reason for plant, edges in self._edges.get(event, {}).items() for reason in self._missing(plant, edges)],
             string_literal(explanation) if explanation else None,
         )
 
@@ -91,12 +95,12 @@ class _Maker:
         holds = self._printer(requirement.condition)
         return holds if requirement.kind == sct.RequirementKind.disables else f"!({holds})"
 
-    def _missing(self, plant: sct.Plant, event: sct.Event) -> list[Reason]:
-        """That a plant which takes part in the event can't, with its location."""
-        edges = [(location, edge) for location in plant.locations for edge in edges_from(location, event)]
-        if not edges or (len(edges) == len(plant.locations) and not any(edge.guard for _, edge in edges)):
+    def _missing(self, plant: sct.Plant, edges: Sequence[sct.Edge]) -> list[Reason]:
+        """That a plant can take none of its edges for an event, with its location."""
+        places = departures(plant, edges)
+        if len(places) == len(plant.locations) and not any(edge.guard for edge in edges):
             return []
-        possible = " || ".join(self._taken(location, edge) for location, edge in edges)
+        possible = " || ".join(self._taken(location, edge) for location, edge in places)
         origin = plant.origin or plant.name
         if len(plant.locations) == 1:
             text = string_literal(f"{origin}.{plant.locations[0].name}")

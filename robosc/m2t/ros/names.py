@@ -31,17 +31,16 @@ class CppNames:
             for literal, name in _fresh(enumeration.literals).items()
         }
         self._conversions = _fresh(graph.conversions)
+        #: The variables that a node keeps, by component.
+        self.kept: dict[str, list[rosgraph.NodeVariable]] = {}
+        for variable in graph.variables:
+            self.kept.setdefault(variable.component or "", []).append(variable)
         components = Names(KEYWORDS | _MACROS)
-        self.components = {
-            name: components.fresh(identifier(name))
-            for name in dict.fromkeys(variable.component or "" for variable in graph.variables)
-        }
+        self.components = {name: components.fresh(identifier(name)) for name in self.kept}
         #: What is set on the robot stands beside the components.
         self.parameters = components.fresh("parameters")
         self._variables = {
-            variable: name
-            for component in self.components
-            for variable, name in _fresh(kept_for(graph.variables, component)).items()
+            variable: name for variables in self.kept.values() for variable, name in _fresh(variables).items()
         } | _fresh(graph.parameters)
         self._words = topic_words(graph)
 
@@ -87,11 +86,6 @@ class CppNames:
         if len(plant.locations) == 1:
             return "true"
         return f"{self.state(plant)} == {self.c.enumerator(location)}"
-
-
-def kept_for(variables: Sequence[rosgraph.NodeVariable], component: str | None) -> list[rosgraph.NodeVariable]:
-    """The variables that a node keeps for one component."""
-    return [variable for variable in variables if variable.component == component]
 
 
 def _fresh(elements: Sequence[_Element]) -> dict[_Element, str]:

@@ -9,7 +9,7 @@ from robosc.m2t.c.expressions import type_name
 from robosc.m2t.ros import reports
 from robosc.m2t.ros.events import Reasons, message_named
 from robosc.m2t.ros.expressions import CppPrinter
-from robosc.m2t.ros.names import CppNames, kept_for
+from robosc.m2t.ros.names import CppNames
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.semantics.definition import reported
@@ -245,11 +245,14 @@ class Node:
         for action in graph.actionClients:
             self._carriers[action.feedback] = "feedback", action.interface
         self.components = [
-            (member, [self._variable(variable) for variable in kept_for(graph.variables, component)])
-            for component, member in self._names.components.items()
+            (self._names.components[component], list(map(self._variable, variables)))
+            for component, variables in self._names.kept.items()
         ]
         if graph.parameters:
             self.components.append((self._names.parameters, list(map(self._variable, graph.parameters))))
+        self._reactions: dict[sct.Event, list[rosgraph.Reaction]] = {}
+        for reaction in graph.reactions:
+            self._reactions.setdefault(reaction.event, []).append(reaction)
         #: What is set on the robot: its name there, its type, and where the node keeps it.
         self.parameters = [
             (known.name, self._type(parameter.type), self._names.variable(parameter))
@@ -273,10 +276,10 @@ class Node:
             outside |= {service.request.event, service.response.event, service.error}
         for action in graph.actionClients:
             outside |= {action.request.event, action.feedback.event, action.response.event, action.error}
-        internal = dict.fromkeys(reaction.event for reaction in graph.reactions if reaction.event not in outside)
-        self.internal = [self._handler(event) for event in internal]
+        self.internal = [self._handler(event) for event in self._reactions if event not in outside]
+        shown = reported(graph)
         self.reported = [
-            reports.component(plant, reported(graph, plant), self._names)
+            reports.component(plant, shown.get(plant.origin, ()), self._names)
             for plant in graph.model.plants
             if plant.kind == sct.PlantKind.behaviour
         ]
@@ -374,7 +377,7 @@ class Node:
 
     def _reception(self, reception: rosgraph.Reception) -> EventHandler:
         values = [assignment.value for assignment in reception.inputs]
-        for reaction in self._reactions(reception.event):
+        for reaction in self._reactions.get(reception.event, ()):
             values += [assignment.value for assignment in reaction.assignments]
         inputs = [self._input(assignment) for assignment in reception.inputs]
         return self._handler(reception.event, inputs, reports.received(values, self._names))
@@ -396,16 +399,13 @@ class Node:
             return self._names.literal(value)
         return f"std::{type_name(kind)}{{{value}}}" if isinstance(kind, ex.IntegerType) else str(value).lower()
 
-    def _reactions(self, event: sct.Event) -> list[rosgraph.Reaction]:
-        return [reaction for reaction in self._graph.reactions if reaction.event == event]
-
     def _handler(
         self,
         event: sct.Event,
         inputs: Sequence[Assignment] = (),
         data: reports.EventData | None = None,
     ) -> EventHandler:
-        reactions = self._reactions(event)
+        reactions = self._reactions.get(event, ())
         assignments = [assignment for reaction in reactions for assignment in reaction.assignments]
         assigned = {assignment.variable for assignment in assignments}
         keeps_old = any(
@@ -510,7 +510,7 @@ class Node:
             reads or any(_may_be_infinite(field) for given in sending.alternatives for field in given.fields),
             reads,
             [".".join(path) for path in paths_set(sending)] if sending.onChange else None,
-            self._handler(sending.event) if self._reactions(sending.event) else None,
+            self._handler(sending.event) if sending.event in self._reactions else None,
             [".".join(path) for path in parts_with_headers(sending)],
         )
 

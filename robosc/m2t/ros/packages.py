@@ -164,7 +164,7 @@ class RosTarget:
         into: str | None,
     ) -> dict[str, str]:
         kind, ros = self.kind, self.ros
-        commands = gates(graph, node)
+        commands = gates(graph, node) if configuration.diagnostics_ms else {}
         told = statuses(graph, node, commands) if configuration.diagnostics_ms else []
         included = self._included(node, layer, told, tells_commands=any(status.commands for status in told))
         source, definition = f"src/{name}_node.cpp", f"include/{name}/definition.hpp"

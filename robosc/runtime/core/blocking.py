@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.semantics.edges import edges_from, edges_of
+from robosc.semantics.edges import edges_by_event, edges_from
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
@@ -39,11 +39,11 @@ class Blocking:
     """Looks for reasons: requirements that fail; else plants without a transition; else what synthesis prevents."""
 
     def __init__(self, graph: rosgraph.RosGraph, engine: Engine, data: NodeData) -> None:
-        self._model = graph.model
         self.engine = engine
         self.data = data
         assert graph.model.supervisor is not None
         guards = graph.model.supervisor.guards
+        self._edges = edges_by_event(graph.model.plants)
         self._explained = {guard.event: [guard.explanation] for guard in guards if guard.explanation}
 
     def reason(self, event: sct.Event) -> Reason:
@@ -51,13 +51,11 @@ class Blocking:
         failing = self.engine.failing(event_name(event))
         if failing:
             return Reason("requirement", [requirement.text or "a requirement" for requirement in failing])
-        missing = [place for plant in self._model.plants for place in self._missing(plant, event)]
+        missing = [place for plant in self._edges.get(event, ()) for place in self._missing(plant, event)]
         return Reason("state", missing) if missing else Reason("synthesis", self._explained.get(event, []))
 
     def _missing(self, plant: sct.Plant, event: sct.Event) -> list[str]:
         """The location of a plant that takes part in the event, where it has no transition for it."""
-        if not any(edge.event == event for edge in edges_of(plant)):
-            return []
         here = next(location for location in plant.locations if self.data.is_in(location))
         possible = any(
             edge.event == event and (edge.guard is None or self.data.value(edge.guard)) for edge in edges_from(here)

@@ -35,8 +35,9 @@ class StateReporter:
         self._publishes = configuration.publish_state_information
         self._listeners = 0
         self._transitions: deque[str] = deque(maxlen=TRANSITIONS_KEPT)
+        shown = reported(graph)
         self._components: list[tuple[str, sct.Plant, Sequence[rosgraph.NodeVariable]]] = [
-            (plant.origin or plant.name, plant, reported(graph, plant))
+            (plant.origin or plant.name, plant, shown.get(plant.origin, ()))
             for plant in graph.model.plants
             if plant.kind == sct.PlantKind.behaviour
         ]
