@@ -176,6 +176,34 @@ def topics(number: int) -> Files:
     )
 
 
+def reactions(number: int) -> Files:
+    """Components with two reactions to data, a service, and a time that is set on the robot."""
+    return _robot(
+        *(
+            f"""\
+parameter pause{i}: integer(1..9) = 3
+component Arm{i} {{
+  outgoing message length{i} with type: double
+  outgoing message busy{i} with type: boolean
+  service rest{i} with request: none, response: none
+  behaviour {{
+    variable length: double = 0.0
+    variable busy: boolean = false
+    initial marked state idle {{
+      on response from length{i} do length := value
+      on response from busy{i} do busy := value goto moving
+    }}
+    state moving {{
+      after pause{i} s goto idle
+    }}
+  }}
+}}
+requirement rest{i} needs !Arm{i}.busy"""
+            for i in range(number)
+        ),
+    )
+
+
 def enum_rules(number: int) -> Files:
     """Rules of an enum, each with a value of its own."""
     return _robot(
@@ -216,7 +244,7 @@ FAMILIES: Mapping[str, Callable[[int], Files]] = {
     family.__name__: family
     for family in (
         *(provides, imports, imports_beside, members, operators, namespaces, states, components, lines, topics),
-        *(enum_rules, requirements, faults),
+        *(reactions, enum_rules, requirements, faults),
     )
 }
 
