@@ -1,6 +1,6 @@
 """Requirements of thousands of operators are analysed in a thread with a small stack, whichever way they are nested."""
 
-import threading
+from typing import Any
 
 import pytest
 
@@ -11,8 +11,8 @@ from robosc.m2t.cif.arithmetic import condition
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from tests.sct_models import edge, model, needs, plant
+from tests.small_stack import on_small_stack
 
-STACK = 512 << 10
 OPERATORS = 3000
 
 
@@ -45,24 +45,16 @@ def counter(kind: type[ex.BinaryExpression], *, left: bool) -> sct.SupervisoryCo
 def test_long_requirements_take_no_stack(kind: type[ex.BinaryExpression], left: bool) -> None:
     made = counter(kind, left=left)
     up = made.plants[0].events[0]
-    said: list[object] = []
 
-    def look() -> None:
+    def look() -> tuple[int, list[Any], bool, set[Outcome]]:
         made.supervisor = diagnose(made).supervisor
-        said.append(made.supervisor.controlledStates)
-        told = explored(made, lambda system: explain(system, up, {made.plants[0].variables[0]: 6}))
-        said.append([note.details for note in told.requirements])
-        said.append(explored(made, lambda system: possibility(system, up)).possible)
-        said.append({verdict.outcome for verdict in verify_system(made)})
+        explanation = explored(made, lambda system: explain(system, up, {made.plants[0].variables[0]: 6}))
+        possible = explored(made, lambda system: possibility(system, up)).possible
+        outcomes = {verdict.outcome for verdict in verify_system(made)}
         condition(made.requirements[0].condition)
+        details = [note.details for note in explanation.requirements]
+        return made.supervisor.controlledStates, details, possible, outcomes
 
-    before = threading.stack_size(STACK)
-    try:
-        thread = threading.Thread(target=look)
-        thread.start()
-    finally:
-        threading.stack_size(before)
-    thread.join()
-    states, details, possible, outcomes = said
+    states, details, possible, outcomes = on_small_stack(look)
     assert (states, possible, outcomes) == (7, True, {Outcome.PROVED})
     assert details[0][0].endswith(" does not hold: `C.n` is 6")

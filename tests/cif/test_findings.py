@@ -2,7 +2,6 @@
 
 import random
 import re
-import threading
 from pathlib import Path
 
 import pytest
@@ -14,6 +13,7 @@ from robosc.language.text import Documents
 from robosc.synthesis import synthesize
 from tests.cif.random_specifications import Specification
 from tests.cif.test_language import COUNTS, reading
+from tests.small_stack import on_small_stack
 
 _P = "plant p: location a: initial; marked; edge c; end\n"
 
@@ -170,21 +170,11 @@ def test_what_is_nested_too_deep_is_found_at_its_place(name: str) -> None:
     before, opening, core, closing, after, column = NESTED[name]
     # The parentheses of the innermost definition are a level, too, and the first to be too deep.
     most = DEEPEST - ("definitions" in name)
-    read_in_thread = []
-
-    def run() -> None:
-        for depth in (most, most + 1, 5000):
-            text = "controllable c;\n" + _P + before + opening * depth + core + closing * depth + after
-            read_in_thread.append(findings(text))
-
-    size = threading.stack_size(512 * 1024)
-    try:
-        thread = threading.Thread(target=run)
-        thread.start()
-        thread.join()
-    finally:
-        threading.stack_size(size)
-    fine, *deep = read_in_thread
+    texts = [
+        "controllable c;\n" + _P + before + opening * depth + core + closing * depth + after
+        for depth in (most, most + 1, 5000)
+    ]
+    fine, *deep = on_small_stack(lambda: [findings(text) for text in texts])
     assert fine == []
     line = 3 + before.count("\n") + most
     assert [[place for place, _, _ in found] for found in deep] == [[f"{line}:{column}"]] * 2

@@ -1,7 +1,6 @@
 """What the transformation makes of small models, and that it means what the sct model does."""
 
 import sys
-import threading
 from collections.abc import Sequence
 
 import pytest
@@ -19,6 +18,7 @@ from tests.m2m.sct_to_engine import oracle
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, plant
 from tests.searching import examples
+from tests.small_stack import on_small_stack
 
 _SYMBOLS = {
     ex.Equation: "==", ex.Inequation: "!=", ex.LessThan: "<", ex.LessOrEqual: "<=", ex.GreaterThan: ">",
@@ -367,23 +367,7 @@ def _long(operators: int, *, nested: bool) -> sct.SupervisoryControlModel:
 def test_long_expressions_need_no_deep_calls(nested: bool) -> None:
     """In a thread with half a megabyte, under the limit that Python sets."""
     made = _long(3000, nested=nested)
-    failed: list[BaseException] = []
-
-    def run() -> None:
-        try:
-            executed = Engine(made)
-            executed.perform("p.c_tau1")
-        except BaseException as error:
-            failed.append(error)
-
-    size = threading.stack_size(512 * 1024)
-    try:
-        thread = threading.Thread(target=run)
-        thread.start()
-        thread.join()
-    finally:
-        threading.stack_size(size)
-    assert failed == []
+    on_small_stack(lambda: Engine(made).perform("p.c_tau1"))
     assert sys.getrecursionlimit() <= 3000
 
 
