@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from robosc.semantics.naming import ROBOSC_FUNCTIONS
+from robosc.semantics.naming import ROBOSC_FUNCTIONS, ROBOSC_QUANTIFIERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -76,7 +76,6 @@ IN_CONTEXT: Mapping[Kind, tuple[str, ...]] = {
 SEND = ("send", "change")
 AT_MOST = ("at", "most")
 UNITS = ("ms", "s", "min")
-QUANTIFIERS = ("all", "any", "count")
 
 _NAME = r"\^?[A-Za-z_][A-Za-z0-9_]*"
 #: Reserved words before a colon that are no names of fields.
@@ -127,7 +126,7 @@ def rules() -> Iterator[Rule]:
     reserved = [word for words in RESERVED.values() for word in words]
     yield Rule(rf"{_any([word for word in reserved if word not in _KEYS])}(?=\s*:(?!=))", (Kind.NAME,))
     # Words that need more behind them
-    yield Rule(rf"{_any(QUANTIFIERS)}\b(?=\s+{_NAME}(?:\s*:|\s+in\b))", (Kind.WORD_OPERATOR,))
+    yield Rule(rf"{_any(ROBOSC_QUANTIFIERS)}\b(?=\s+{_NAME}(?:\s*:|\s+in\b))", (Kind.WORD_OPERATOR,))
     yield Rule(rf"{_any(ROBOSC_FUNCTIONS)}\b(?=\s*\()", (Kind.FUNCTION,))
     no_operand = rf"(?!{_any(_BEHIND_NAMES)}\b)"
     for kind, words in IN_CONTEXT.items():

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from robosc.language.grammar import first_words, pattern, words_of
 from robosc.language.tokens import Kind, Tokens
 from robosc.metamodel import robosc as rsc
-from robosc.metamodel.reflection import literals
+from robosc.semantics.naming import ROBOSC_QUANTIFIERS
 from robosc.semantics.operators import FUNCTIONS
 
 if TYPE_CHECKING:
@@ -42,7 +42,6 @@ CLASSES = (*dict.fromkeys(_CLASSES.values()), "type", "keyword", "comment", "str
 _READONLY = (rsc.Constant, rsc.Condition, rsc.FormalParameter, rsc.EnumValue)
 _TYPES = first_words("BasicDataType", "Array")
 _KINDS = {Kind.NUMBER: "number", Kind.STRING: "string", Kind.OPEN_STRING: "string", Kind.OPEN_COMMENT: "comment"}
-_QUANTIFIERS = frozenset(literals(rsc.Quantifier))
 _BRACKETS = set("{}()[],.:;")
 _STRING_OR_COMMENT = re.compile(rf"{pattern('String')}|(?P<comment>{pattern('Comment')})")
 
@@ -94,7 +93,7 @@ def _own(word: str) -> str | None:
         return "type"
     if word in FUNCTIONS:
         return "function"
-    return "keyword" if word in words_of("Base") | _QUANTIFIERS else None
+    return "keyword" if word in words_of("Base").union(ROBOSC_QUANTIFIERS) else None
 
 
 def what_of(target: Any) -> str | None:

@@ -10,7 +10,7 @@ from robosc.diagnostics import Repair
 from robosc.language.grammar import first, is_reserved
 from robosc.language.outline import COMPONENT, DEFINITIONS, RULES
 from robosc.language.tokens import Kind, Token
-from robosc.semantics.naming import enumeration, written
+from robosc.semantics.naming import ROBOSC_QUANTIFIERS, enumeration, written
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -45,7 +45,10 @@ _INVARIANT = "write `requirement never condition` or `requirement always conditi
 _ORDER = "write `requirement b after a`, or `requirement b after each a` where each `b` takes an `a` of its own"
 _COUNT = "write `requirement at most 3 b since a`"
 _TEMPLATE = "write `component name(parameter: type) { … }`, and `component other is name(argument)` for one made of it"
-_QUANTIFIER = "write `all`, `any` or `count`, a name, `in` and an array, or the name of a template, and a colon"
+_QUANTIFIER = (
+    f"write {enumeration(f'`{word}`' for word in ROBOSC_QUANTIFIERS)}, a name, `in` and an array, or the name of a "
+    "template, and a colon"
+)
 _CASES = "write a transition for each case: the first whose condition holds is taken"
 _MODULO = "write `mod(a, b)`"
 _CONDITION = "write `if`"
@@ -59,7 +62,7 @@ _MEANT = {
     **dict.fromkeys(("before", "each"), _ORDER),
     **dict.fromkeys(("at", "most", "least", "since"), _COUNT),
     **dict.fromkeys(("template", "extends", "new", "instance"), _TEMPLATE),
-    **dict.fromkeys(("forall", "exists", "foreach", "all", "any", "count"), _QUANTIFIER),
+    **dict.fromkeys(("forall", "exists", "foreach", *ROBOSC_QUANTIFIERS), _QUANTIFIER),
     **dict.fromkeys(("else", "elif", "elseif"), _CASES),
     **dict.fromkeys(("mod", "%"), _MODULO),
     "reachable": "write `property reachable condition`, or `property reachable condition from condition`",
@@ -89,7 +92,7 @@ _WRITTEN = {
     "var": "variable",
 }
 #: The hints for words of ours that are names where their construct can't stand.
-CONSTRUCTS = {word: _MEANT[word] for word in ("all", "any", "count", "never", "always", "reachable", "each", "after")}
+CONSTRUCTS = {word: _MEANT[word] for word in (*ROBOSC_QUANTIFIERS, "never", "always", "reachable", "each", "after")}
 #: What other languages call the basic types.
 BASIC_TYPES = {
     **dict.fromkeys(("int", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "long"), "integer"),

@@ -10,7 +10,7 @@ from robosc.m2m.requirement_automata import RequirementAutomaton
 from robosc.m2m.trace import Trace
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
-from robosc.semantics.communication import CONTROLLABLE, events
+from robosc.semantics.communication import CONTROLLABLE, ERROR, EXECUTING, IDLE, READY, WAITING, events
 from robosc.semantics.cone_of_influence import cone_of_influence, guard_of
 from robosc.semantics.durations import UNITS, bounds, milliseconds, set_milliseconds, set_on_robot
 from robosc.semantics.expansion import constant_value
@@ -30,24 +30,23 @@ _Stated = TypeVar("_Stated", bound=robosc.StatedDefinition)
 #: What comes from outside, or must always be possible: a component elsewhere than in the right state ignores it.
 _NEVER_BLOCKED = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.cancel)
 
-_IDLE = "idle"
 _SERVICE = (
-    (_IDLE, sct.EventKind.trigger, "wait_for_response"),
-    ("wait_for_response", sct.EventKind.response, "ready"),
-    ("wait_for_response", sct.EventKind.error, "error"),
-    ("ready", sct.EventKind.reset, _IDLE),
-    ("error", sct.EventKind.reset, _IDLE),
+    (IDLE, sct.EventKind.trigger, WAITING),
+    (WAITING, sct.EventKind.response, READY),
+    (WAITING, sct.EventKind.error, ERROR),
+    (READY, sct.EventKind.reset, IDLE),
+    (ERROR, sct.EventKind.reset, IDLE),
 )
 _ACTION = (
-    (_IDLE, sct.EventKind.trigger, "executing"),
-    ("executing", sct.EventKind.feedback, "executing"),
-    ("executing", sct.EventKind.response, "ready"),
-    ("executing", sct.EventKind.error, "error"),
-    ("executing", sct.EventKind.cancel, _IDLE),
-    ("ready", sct.EventKind.reset, _IDLE),
-    ("error", sct.EventKind.reset, _IDLE),
+    (IDLE, sct.EventKind.trigger, EXECUTING),
+    (EXECUTING, sct.EventKind.feedback, EXECUTING),
+    (EXECUTING, sct.EventKind.response, READY),
+    (EXECUTING, sct.EventKind.error, ERROR),
+    (EXECUTING, sct.EventKind.cancel, IDLE),
+    (READY, sct.EventKind.reset, IDLE),
+    (ERROR, sct.EventKind.reset, IDLE),
 )
-_MESSAGE = (("ready", sct.EventKind.trigger, "ready"), ("ready", sct.EventKind.response, "ready"))
+_MESSAGE = ((READY, sct.EventKind.trigger, READY), (READY, sct.EventKind.response, READY))
 #: The transitions that have an event of their own, with its kind and, before a number, its name.
 _OWN_EVENTS = (
     (robosc.TauTransition, sct.EventKind.tau, "tau"),

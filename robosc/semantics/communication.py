@@ -54,6 +54,8 @@ EVENTS: Mapping[type[robosc.CommunicationType], tuple[PortEvent, ...]] = {
         _ERROR,
     ),
 }
+#: The locations of the plants of services and actions (thesis, listings 5.2 and 5.3); that of a message is READY.
+IDLE, WAITING, EXECUTING, READY, ERROR = "idle", "wait_for_response", "executing", "ready", "error"
 #: In the order in which the language lists them.
 _NAMES = ("request", "response", "error", "feedback", "cancel")
 #: The kinds of the events that the controller decides on: all but what comes from the robot.

@@ -27,6 +27,8 @@ def _words(pattern: str) -> list[str]:
 ROBOSC_KEYWORDS = frozenset(_words(r"^UnreservedName:\s*/\(\?!\(\?:([a-z|]+)\)"))
 #: The names of its functions.
 ROBOSC_FUNCTIONS = tuple(_words(r"^BuiltIn: /\(\?:([a-z0-9|]+)\)"))
+#: The words that begin a condition on the elements of an array, or on what was made of a template.
+ROBOSC_QUANTIFIERS = tuple(_words(r"^Quantifier: /\(([a-z|]+)\)"))
 _WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel import rosgraph, sct
-from robosc.semantics.communication import data_type, event, sent_type
+from robosc.semantics.communication import data_type, event, section_of, sent_type
 from robosc.semantics.naming import written
 from robosc.semantics.operators import CONDITIONS, Operator, Rule, operator_of
 from robosc.semantics.walks import fold
@@ -61,9 +61,7 @@ class ObjectType:
         unit: Any = self.definition.eContainer()
         if not isinstance(unit, rsc.InterfaceTypeReference):
             return self.definition
-        owner = unit.eContainer()
-        parts = ("requestType", "responseType", "feedbackType")
-        return unit.package, unit.rosType, next((part for part in parts if getattr(owner, part, None) is unit), "")
+        return unit.package, unit.rosType, section_of(unit)
 
     @property
     def written(self) -> str:

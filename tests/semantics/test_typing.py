@@ -126,6 +126,15 @@ def test_names() -> None:
     assert infer(rsc.Access(item=rsc.Component(name="Lamp"))) == UNKNOWN
 
 
+def test_a_service_and_an_action_of_one_name_have_different_types() -> None:
+    def request(communication: type[rsc.Service | rsc.Action]) -> ObjectType:
+        definition = rsc.ObjectDataType(name="Dock")
+        communication(requestType=rsc.InterfaceTypeReference(package="p", rosType="Dock", definition=definition))
+        return ObjectType(definition)
+
+    assert request(rsc.Service) == request(rsc.Service) != request(rsc.Action)
+
+
 def test_types_with_a_definition_are_nominal() -> None:
     other = rsc.EnumDataType(name="Colour")
     assert EnumType(COLOUR) != EnumType(other)

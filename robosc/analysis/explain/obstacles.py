@@ -10,6 +10,7 @@ from robosc.analysis.paths import Path, trace
 from robosc.analysis.wording import in_words, listed, name, what_is, words
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.communication import ERROR, EXECUTING, IDLE, READY, WAITING
 from robosc.semantics.edges import edges_from
 from robosc.semantics.printing import RobotPrinter, disjunction
 from robosc.semantics.walks import copied
@@ -25,13 +26,13 @@ if TYPE_CHECKING:
 #: How many states a sentence names.
 _NAMED = 4
 _CALLS = (sct.PlantKind.service, sct.PlantKind.action)
-#: The locations that a service or action has (thesis, listings 5.2 and 5.3).
+#: What a service or action does in each of its locations.
 _PHASES = {
-    "idle": "is not under way",
-    "wait_for_response": "still waits for its answer",
-    "executing": "is still under way",
-    "ready": "has ended, and is reset before it can start again",
-    "error": "has failed, and is reset after a while before it can start again",
+    IDLE: "is not under way",
+    WAITING: "still waits for its answer",
+    EXECUTING: "is still under way",
+    READY: "has ended, and is reset before it can start again",
+    ERROR: "has failed, and is reset after a while before it can start again",
 }
 _WAITING = {
     sct.EventKind.trigger: "`on request to {}`",
