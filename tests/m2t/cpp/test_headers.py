@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import re
@@ -19,12 +20,15 @@ from robosc.runtime.core.json_text import json_text
 from robosc.semantics.communication import QUEUE_DEPTH
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from robosc.configuration import Configuration
 
 pytestmark = pytest.mark.build
 
 INCLUDE = Path(robosc.__file__).parent / "m2t" / "ros" / "include"
 HEADERS = sorted(path.relative_to(INCLUDE).as_posix() for path in INCLUDE.rglob("*.hpp"))
+VERSION = "robosc/version.hpp"
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
 
 
@@ -50,12 +54,22 @@ def test_clang_format_leaves_them_as_they_are() -> None:
 
 
 def test_all_are_of_one_version_and_guarded_by_their_names() -> None:
-    """Two packages of one process may come from two releases: what differs has another name for the linker."""
     for header in HEADERS:
         text = (INCLUDE / header).read_text(encoding="utf-8")
         guard = re.sub(r"\W", "_", header).upper() + "_"
         assert f"#ifndef {guard}\n#define {guard}\n" in text
-        assert "\nnamespace robosc {\ninline namespace v1 {\n" in text
+        if header != VERSION:
+            assert "\nnamespace robosc {\ninline namespace ROBOSC_VERSION {\n" in text
+            assert f'\n#include "{VERSION}"\n' in text
+
+
+def test_their_version_follows_what_stands_in_them(golden: Callable[[Path, str], None]) -> None:
+    """Packages of one process may come from two versions of the tool: what differs has another name for the linker."""
+    texts = [f"{header}\n{(INCLUDE / header).read_text(encoding='utf-8')}" for header in HEADERS if header != VERSION]
+    digest = hashlib.sha256("".join(texts).encode()).hexdigest()
+    place = INCLUDE / VERSION
+    named = re.sub(r"(#define ROBOSC_VERSION) \w+", rf"\1 v{digest[:8]}", place.read_text(encoding="utf-8"))
+    golden(place, named)
 
 
 def middleware(header: str) -> list[str] | None:

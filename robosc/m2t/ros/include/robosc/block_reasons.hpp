@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "robosc/json.hpp"
+#include "robosc/version.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// The reasons for which something is blocked; the first of these kinds is told: another one is under way (busy),
 /// requirements that fail, states without a transition for it, and else what synthesis prevents.
@@ -60,7 +61,7 @@ class BlockReasons {
   std::vector<std::string> consequences_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_BLOCK_REASONS_HPP_

@@ -11,8 +11,10 @@
 #include <thread>
 #include <utility>
 
+#include "robosc/version.hpp"
+
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// Keeps callbacks off what is being destroyed. A multi-threaded container unloads a component in one thread while
 /// another one still calls back, or is about to. Guarded callbacks run one at a time; none begins after `close`, which
@@ -67,7 +69,7 @@ void withdraw(Group& group) {
   }
 }
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_CALLBACK_GUARD_HPP_

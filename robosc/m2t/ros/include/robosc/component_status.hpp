@@ -9,9 +9,10 @@
 
 #include "robosc/data.hpp"
 #include "robosc/json.hpp"
+#include "robosc/version.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// A value as people and plots read it.
 inline std::string plain_text(double value) {
@@ -73,7 +74,7 @@ class ComponentStatus {
   Status status_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_COMPONENT_STATUS_HPP_

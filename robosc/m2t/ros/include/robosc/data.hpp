@@ -12,8 +12,10 @@
 #include <type_traits>
 #include <utility>
 
+#include "robosc/version.hpp"
+
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// A whole number of the model. Where a result does not fit, it is the nearest number that does.
 class Integer {
@@ -250,7 +252,7 @@ Value read_or(Value unread, Read read) {
   return reader.complete() ? value : unread;
 }
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_DATA_HPP_

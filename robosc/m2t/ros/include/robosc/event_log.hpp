@@ -18,9 +18,10 @@
 #include <utility>
 
 #include "robosc/json.hpp"
+#include "robosc/version.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// Where a log goes that nobody named: the folder of ROS's own logs. `node` is the node's full name, such as
 /// `/left/base`; where it was renamed, its package is told, too.
@@ -143,7 +144,7 @@ class EventLog {
   std::string data_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_EVENT_LOG_HPP_

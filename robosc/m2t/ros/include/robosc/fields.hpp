@@ -11,9 +11,10 @@
 
 #include "robosc/data.hpp"
 #include "robosc/json.hpp"
+#include "robosc/version.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 template <typename Data, typename = void>
 inline constexpr bool is_array_v = false;
@@ -153,7 +154,7 @@ class FieldWriter {
   int fields_ = 0;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_FIELDS_HPP_

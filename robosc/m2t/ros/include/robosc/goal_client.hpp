@@ -8,8 +8,10 @@
 #include <string>
 #include <utility>
 
+#include "robosc/version.hpp"
+
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// The client of one action, with one goal at a time. A derived class sends the goal and says what its server does.
 ///
@@ -229,7 +231,7 @@ class GoalClient {
   Countdown until_lost_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_GOAL_CLIENT_HPP_

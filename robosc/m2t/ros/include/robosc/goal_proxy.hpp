@@ -6,8 +6,10 @@
 #include <string>
 #include <utility>
 
+#include "robosc/version.hpp"
+
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// What stands between a controller and the robot's action. One goal runs at a time; another one is rejected until that
 /// has ended. A derived class hands on what both sides say, one by one, so that goals keep their identity.
@@ -136,7 +138,7 @@ class GoalProxy {
   bool cancelled_ = false;  ///< By the supervisor.
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_GOAL_PROXY_HPP_

@@ -5,8 +5,10 @@
 #include <csignal>
 #include <mutex>
 
+#include "robosc/version.hpp"
+
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// While one of these lives, a hangup (the terminal or the connection to the robot is gone) ends the process as SIGTERM
 /// does, which rclcpp handles: it would kill the node, and nobody would stop the robot. Where it is ignored (nohup) or
@@ -50,7 +52,7 @@ class Hangup {
 #endif
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_HANGUP_HPP_

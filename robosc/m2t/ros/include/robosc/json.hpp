@@ -13,9 +13,10 @@
 #include <string>
 
 #include "robosc/data.hpp"
+#include "robosc/version.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 inline std::string to_json(bool value) { return value ? "true" : "false"; }
 
@@ -198,7 +199,7 @@ class JsonTree {
   std::string open_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_JSON_HPP_

@@ -4,13 +4,15 @@
 
 #include <cstdint>
 
+#include "robosc/version.hpp"
+
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// `QUEUE_DEPTH` of robosc/semantics/communication.py.
 inline constexpr std::uint32_t kQueueDepth = 10;
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_QUEUE_DEPTH_HPP_

@@ -7,8 +7,10 @@
 #include <optional>
 #include <utility>
 
+#include "robosc/version.hpp"
+
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// Waits for the messages of a topic; the first one counts from `start` on.
 template <typename Countdown>
@@ -54,7 +56,7 @@ class Watchdog {
   bool silent_ = false;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_WATCHDOG_HPP_

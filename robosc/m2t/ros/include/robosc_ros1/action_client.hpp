@@ -11,10 +11,11 @@
 #include <ros/node_handle.h>
 
 #include "robosc/goal_client.hpp"
+#include "robosc/version.hpp"
 #include "robosc_ros1/countdown.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// A client of one action over actionlib. Everything runs on the thread that serves the node's callback queue.
 template <typename Type>
@@ -140,7 +141,7 @@ class ActionClient : public GoalClient<Countdown, typename Type::_action_feedbac
   GoalHandle lost_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS1_ACTION_CLIENT_HPP_

@@ -15,10 +15,11 @@
 
 #include "robosc/goal_proxy.hpp"
 #include "robosc/queue_depth.hpp"
+#include "robosc/version.hpp"
 #include "robosc_ros1/countdown.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// The five topics of an action towards the controller, behind which stand those of the robot.
 template <typename Type>
@@ -250,7 +251,7 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
   std::string ended_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS1_ACTION_PROXY_HPP_

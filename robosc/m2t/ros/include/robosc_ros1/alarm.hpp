@@ -12,8 +12,10 @@
 #include <ros/time.h>
 #include <ros/timer.h>
 
+#include "robosc/version.hpp"
+
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// A clock and one timer on it, which calls a function: the steady clock or, with use_sim_time, ROS time. The calls
 /// come through the node's callback queue, behind the messages that came before.
@@ -77,7 +79,7 @@ class Alarm {
   ros::SteadyTimer steady_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS1_ALARM_HPP_

@@ -11,8 +11,10 @@
 #include <ros/time.h>
 #include <ros/timer.h>
 
+#include "robosc/version.hpp"
+
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// Calls a function at the end of every period, or `once`, after each start: on the steady clock or, with use_sim_time,
 /// in ROS time. The calls come through the node's callback queue.
@@ -85,7 +87,7 @@ class Countdown {
   Timer timer_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS1_COUNTDOWN_HPP_

@@ -10,8 +10,10 @@
 #include <ros/serialization.h>
 #include <ros/time.h>
 
+#include "robosc/version.hpp"
+
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 template <typename Part, typename = void>
 struct has_w : std::false_type {};
@@ -54,7 +56,7 @@ void set_defaults(Message& message, [[maybe_unused]] const ros::Time& time, [[ma
   (set_header(time, frame, parts), ...);
 }
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS1_DEFAULTS_HPP_

@@ -10,8 +10,10 @@
 #include <ros/node_handle.h>
 #include <boost/make_shared.hpp>
 
+#include "robosc/version.hpp"
+
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// Puts calls into a node's callback queue, from any thread; they run one at a time with its messages and timers.
 /// What has not run when this ends never runs.
@@ -44,7 +46,7 @@ class EventQueue {
   ros::CallbackQueueInterface* queue_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS1_EVENT_QUEUE_HPP_

@@ -9,9 +9,10 @@
 #include <ros/serialization.h>
 
 #include "robosc/fields.hpp"
+#include "robosc/version.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// Visits a message as a stream does that writes it.
 struct FiniteNumbers {
@@ -36,7 +37,7 @@ bool finite(const Message& message, OfRos) {
   return numbers.found;
 }
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS1_FINITE_HPP_

@@ -24,8 +24,10 @@
 #include <xmlrpcpp/XmlRpcException.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
+#include "robosc/version.hpp"
+
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// Asks the master every second, on a thread of its own, and reports by name, once: a publisher of another type, a
 /// topic that nobody publishes, a foreign publisher on a topic that the node commands.
@@ -146,7 +148,7 @@ class GraphMonitor {
   std::thread thread_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS1_GRAPH_MONITOR_HPP_

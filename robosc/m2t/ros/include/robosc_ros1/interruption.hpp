@@ -12,8 +12,10 @@
 #include <ros/xmlrpc_manager.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
+#include "robosc/version.hpp"
+
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// Waits for Ctrl-C, SIGTERM, a hangup, `rosnode kill` or a new node of the same name, so that ROS is still there for
 /// the last messages. To be made before any thread starts.
@@ -71,7 +73,7 @@ class Interruption {
   sigset_t signals_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS1_INTERRUPTION_HPP_

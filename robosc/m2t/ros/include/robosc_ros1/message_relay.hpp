@@ -9,9 +9,10 @@
 #include <ros/ros.h>
 
 #include "robosc/queue_depth.hpp"
+#include "robosc/version.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// Takes messages from one topic to another. What is published is latched from the first message on that comes latched.
 template <typename Message>
@@ -48,7 +49,7 @@ class MessageRelay {
   ros::Subscriber subscription_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS1_MESSAGE_RELAY_HPP_

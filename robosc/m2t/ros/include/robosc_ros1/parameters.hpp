@@ -11,8 +11,10 @@
 #include <ros/console.h>
 #include <ros/node_handle.h>
 
+#include "robosc/version.hpp"
+
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// A parameter, or a value where it is not set; throws std::invalid_argument where it has another type. What it means
 /// is said to readers of the code only.
@@ -75,7 +77,7 @@ inline void set_log_level(const ros::NodeHandle& node) {
                               ", not debug, info, warn, error or fatal");
 }
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS1_PARAMETERS_HPP_

@@ -21,11 +21,12 @@
 #include <ros/service_server_link.h>
 #include <ros/service_traits.h>
 
+#include "robosc/version.hpp"
 #include "robosc_ros1/countdown.hpp"
 #include "robosc_ros1/event_queue.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// A client of one service. ROS 1 calls block: a thread of its own makes them, and the answer comes through the node's
 /// callback queue. All functions belong to the thread that serves this queue.
@@ -191,7 +192,7 @@ class ServiceClient {
   std::thread worker_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS1_SERVICE_CLIENT_HPP_

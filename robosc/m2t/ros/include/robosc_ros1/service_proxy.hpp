@@ -12,11 +12,12 @@
 
 #include <ros/ros.h>
 
+#include "robosc/version.hpp"
 #include "robosc_ros1/event_queue.hpp"
 #include "robosc_ros1/service_client.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// A service for the controller behind which stands the robot's one. Who calls it waits for the robot's answer; to whom
 /// is blocked, or gets no answer, the call fails.
@@ -107,7 +108,7 @@ class ServiceProxy {
   ServiceClient<Type> robot_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS1_SERVICE_PROXY_HPP_

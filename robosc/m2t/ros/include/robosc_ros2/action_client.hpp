@@ -19,10 +19,11 @@
 
 #include "robosc/callback_guard.hpp"
 #include "robosc/goal_client.hpp"
+#include "robosc/version.hpp"
 #include "robosc_ros2/countdown.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// A client of one action over rclcpp_action, of goals of its own only. Handlers are called by the node's executor.
 template <typename Type>
@@ -182,7 +183,7 @@ class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typen
   int looks_ = 0;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS2_ACTION_CLIENT_HPP_

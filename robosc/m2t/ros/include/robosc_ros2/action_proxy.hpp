@@ -19,10 +19,11 @@
 
 #include "robosc/callback_guard.hpp"
 #include "robosc/goal_proxy.hpp"
+#include "robosc/version.hpp"
 #include "robosc_ros2/countdown.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// The three services and two topics of an action towards the controller, behind which stand those of the robot.
 template <typename Type>
@@ -328,7 +329,7 @@ class ActionProxy : public GoalProxy<typename Type::Goal, typename Type::Feedbac
   StatusArray statuses_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS2_ACTION_PROXY_HPP_

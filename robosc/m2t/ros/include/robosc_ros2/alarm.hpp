@@ -12,9 +12,10 @@
 #include <rclcpp/rclcpp.hpp>
 
 #include "robosc/callback_guard.hpp"
+#include "robosc/version.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// A clock and one timer on it, which calls a function: the steady clock or, with `use_sim_time`, the time of ROS.
 class Alarm {
@@ -74,7 +75,7 @@ class Alarm {
   rclcpp::TimerBase::SharedPtr timer_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS2_ALARM_HPP_

@@ -4,8 +4,10 @@
 
 #include <rclcpp/rclcpp.hpp>
 
+#include "robosc/version.hpp"
+
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// Handles what has arrived before a time is up: an executor asks timers first.
 template <typename Message, typename Handle>
@@ -15,7 +17,7 @@ void hear_all(rclcpp::Subscription<Message>& subscription, Handle handle) {
   for (int left = 1000; left > 0 && subscription.take(message, info); --left) handle(message);
 }
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS2_ARRIVALS_HPP_

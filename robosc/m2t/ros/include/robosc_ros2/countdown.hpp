@@ -10,9 +10,10 @@
 #include <rclcpp/rclcpp.hpp>
 
 #include "robosc/callback_guard.hpp"
+#include "robosc/version.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// How often something that is waited for is looked at.
 inline constexpr std::chrono::milliseconds kLook(20);
@@ -65,7 +66,7 @@ class Countdown {
   rclcpp::TimerBase::SharedPtr timer_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS2_COUNTDOWN_HPP_

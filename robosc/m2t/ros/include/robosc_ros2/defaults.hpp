@@ -8,8 +8,10 @@
 
 #include <rclcpp/rclcpp.hpp>
 
+#include "robosc/version.hpp"
+
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 template <typename Message, typename = void>
 struct has_header : std::false_type {};
@@ -31,7 +33,7 @@ void set_defaults(Message&, const rclcpp::Time& time, const std::string& frame, 
   (set_header(time, frame, parts), ...);
 }
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS2_DEFAULTS_HPP_

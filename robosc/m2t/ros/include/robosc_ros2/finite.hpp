@@ -13,9 +13,10 @@
 #include <rosidl_typesupport_introspection_cpp/message_introspection.hpp>
 
 #include "robosc/fields.hpp"
+#include "robosc/version.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 inline bool finite(const void* message, const rosidl_message_type_support_t* type) {
   namespace kinds = rosidl_typesupport_introspection_cpp;
@@ -50,7 +51,7 @@ bool finite(const Message& message, OfRos) {
                 get_message_typesupport_handle(type, rosidl_typesupport_introspection_cpp::typesupport_identifier));
 }
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS2_FINITE_HPP_

@@ -13,9 +13,10 @@
 #include <rclcpp/rclcpp.hpp>
 
 #include "robosc/callback_guard.hpp"
+#include "robosc/version.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// Looks once a second at who else is on the node's topics, and says once, by name, what keeps them from working.
 class GraphMonitor {
@@ -116,7 +117,7 @@ class GraphMonitor {
   rclcpp::TimerBase::SharedPtr timer_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS2_GRAPH_MONITOR_HPP_

@@ -13,10 +13,11 @@
 #include <rclcpp/rclcpp.hpp>
 
 #include "robosc/callback_guard.hpp"
+#include "robosc/version.hpp"
 #include "robosc_ros2/arrivals.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// Takes messages from one topic to another.
 ///
@@ -91,7 +92,7 @@ class MessageRelay {
   rclcpp::TimerBase::SharedPtr look_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS2_MESSAGE_RELAY_HPP_

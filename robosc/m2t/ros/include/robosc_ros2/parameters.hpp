@@ -10,8 +10,10 @@
 
 #include <rclcpp/rclcpp.hpp>
 
+#include "robosc/version.hpp"
+
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// A parameter that keeps the value with which the node starts.
 template <typename Value, typename Node>
@@ -78,7 +80,7 @@ inline rcl_interfaces::msg::SetParametersResult accepted(const std::vector<rclcp
   return result;
 }
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS2_PARAMETERS_HPP_

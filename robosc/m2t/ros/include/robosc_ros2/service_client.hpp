@@ -13,10 +13,11 @@
 #include <rclcpp/rclcpp.hpp>
 
 #include "robosc/callback_guard.hpp"
+#include "robosc/version.hpp"
 #include "robosc_ros2/countdown.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// One call at a time, with a time limit. Handlers are called by the node's executor, never from inside `call`.
 template <typename Type>
@@ -88,7 +89,7 @@ class ServiceClient {
   Countdown search_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS2_SERVICE_CLIENT_HPP_

@@ -12,10 +12,11 @@
 #include <rclcpp/rclcpp.hpp>
 
 #include "robosc/callback_guard.hpp"
+#include "robosc/version.hpp"
 #include "robosc_ros2/service_client.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// A service for the controller behind which stands the robot's one. Who calls it waits for the robot's answer; whose
 /// call is blocked, or has no answer, gets a response with nothing set.
@@ -82,7 +83,7 @@ class ServiceProxy {
   ServiceClient<Type> robot_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS2_SERVICE_PROXY_HPP_

@@ -13,9 +13,10 @@
 #include <rclcpp/rclcpp.hpp>
 
 #include "robosc/callback_guard.hpp"
+#include "robosc/version.hpp"
 
 namespace robosc {
-inline namespace v1 {
+inline namespace ROBOSC_VERSION {
 
 /// Waits, not for long, until what was sent has arrived.
 inline void flush(rclcpp::PublisherBase& publisher) {
@@ -86,7 +87,7 @@ class ShutdownHook {
   CallbackGuard guard_;
 };
 
-}  // namespace v1
+}  // namespace ROBOSC_VERSION
 }  // namespace robosc
 
 #endif  // ROBOSC_ROS2_SHUTDOWN_HOOK_HPP_
