@@ -93,9 +93,9 @@ def load(
         raise TypeError("load needs a path or a text")
     path = "<text>" if path is None else str(path)
     if path.endswith(".xmi") and text is None:
-        from robosc.metamodel import xmi
+        from robosc import validity
 
-        base = xmi.load(path)
+        base = validity.load(path)
     else:
         from robosc.language import Documents, read
         from robosc.ros_types import RosTypes

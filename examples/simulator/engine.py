@@ -12,13 +12,13 @@ from pathlib import Path
 
 import robosc
 from robosc import configuration as config
+from robosc.configuration.parameters import controller_parameters, layer_parameters
 from robosc.runtime.core.controller import Controller
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.layer import Layer
 from robosc.runtime.core.node_data import BLANK
 from robosc.runtime.core.port import Outcome
 from robosc.runtime.core.settings import Settings
-from robosc.semantics.parameters import controller_parameters, layer_parameters
 
 from .playing import tell
 from .simulation import Answer, GoalNews

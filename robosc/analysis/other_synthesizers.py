@@ -8,9 +8,9 @@ from robosc.analysis.system import GuardedSystem
 from robosc.diagnostics import Diagnostic, ModelError, Severity
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
-from robosc.metamodel.validity import faults
 from robosc.semantics.roles import event_name
 from robosc.synthesis import MEMORY, Statistics, Synthesis, encoded
+from robosc.validity import faults
 
 if TYPE_CHECKING:
     from robosc.extensions import Extension

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import click
 
 from robosc.cli import CallError
+from robosc.configuration.parameters import model_parameters
 from robosc.language.explaining import did_you_mean
 from robosc.runtime.core.settings import check
 from robosc.semantics.durations import set_milliseconds
 from robosc.semantics.evaluation import literal
-from robosc.semantics.parameters import model_parameters
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

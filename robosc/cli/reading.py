@@ -41,11 +41,11 @@ def read(path: str, paths: Paths, report: Report) -> Root | None:
         return found
 
     if path.endswith(".xmi"):
-        from robosc.metamodel import xmi
+        from robosc import validity
 
         texts: dict[str, str] = {}
         try:
-            root: Root | engine.EngineModel | None = xmi.load(path, texts, locate)
+            root: Root | engine.EngineModel | None = validity.load(path, texts, locate)
         finally:
             report.add((), texts)
         if isinstance(root, engine.EngineModel):

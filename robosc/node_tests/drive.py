@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from robosc.configuration.parameters import Value, controller_parameters
 from robosc.node_tests.robot import Robot
 from robosc.node_tests.samples import all_incoming
 from robosc.node_tests.trace_player import START, Pace
@@ -12,7 +13,6 @@ from robosc.runtime.core.event_log import EventLog
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.json_text import json_text
 from robosc.runtime.core.settings import Settings
-from robosc.semantics.parameters import Value, controller_parameters
 
 if TYPE_CHECKING:
     from collections.abc import Callable

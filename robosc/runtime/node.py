@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.configuration.parameters import controller_parameters, layer_parameters
 from robosc.runtime.core.controller import Controller
 from robosc.runtime.core.event_log import default_log
 from robosc.runtime.core.layer import Layer
 from robosc.runtime.core.node import Node, StartError
 from robosc.runtime.core.settings import SafeMessages, Settings
-from robosc.semantics.parameters import controller_parameters, layer_parameters
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

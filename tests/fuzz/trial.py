@@ -23,7 +23,7 @@ from robosc.language import read
 from robosc.m2t.models import Models
 from robosc.m2t.targets import TARGETS
 from robosc.metamodel import robosc as rsc
-from robosc.metamodel.validity import faults
+from robosc.validity import faults
 from tests.fuzz.mutants import LIBRARIES
 from tests.fuzz.saved_mutants import UNTOLD, saved_mutant
 

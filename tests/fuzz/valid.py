@@ -8,6 +8,7 @@ from random import Random
 from typing import TYPE_CHECKING, Any
 
 from robosc import configuration as config
+from robosc import validity
 from robosc.configuration import Configuration
 from robosc.diagnostics import has_errors
 from robosc.engine import Settings
@@ -15,7 +16,6 @@ from robosc.m2t import cif, xmi
 from robosc.m2t.cif.names import CifNames, is_numbered
 from robosc.m2t.models import Models
 from robosc.metamodel import sct
-from robosc.metamodel import xmi as saved
 from robosc.synthesis import synthesize
 from tests.fuzz.trial import Outcome, tried
 from tests.m2t.cif.differences import differences
@@ -136,8 +136,8 @@ def _saves_the_same(models: Models, folder: Path) -> None:
     for name, text in written.items():
         (folder / name).write_text(text, encoding="utf-8")
     name = models.sct.name
-    graph = saved.load(str(folder / f"{name}.rosgraph.xmi"))
-    again = Models(graph.model, graph, saved.load(str(folder / f"{name}.robosc.xmi")))
+    graph = validity.load(str(folder / f"{name}.rosgraph.xmi"))
+    again = Models(graph.model, graph, validity.load(str(folder / f"{name}.robosc.xmi")))
     assert xmi.generate(again, Configuration()) == written
     assert cif.generate(again, Configuration()) == cif.generate(models, Configuration())
     for file in written:

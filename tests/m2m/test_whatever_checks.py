@@ -16,7 +16,7 @@ from robosc.diagnostics import Diagnostic, as_text, has_errors
 from robosc.language import read
 from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
 from robosc.metamodel import robosc
-from robosc.metamodel.validity import faults
+from robosc.validity import faults
 from tests.fuzz.mutants import LIBRARIES, sources
 from tests.random_robots import random_robot
 from tests.searching import examples

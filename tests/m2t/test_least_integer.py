@@ -11,9 +11,8 @@ import pytest
 
 import robosc
 from robosc.m2t.models import Models
-from robosc.metamodel import xmi
-from robosc.metamodel.validity import faults
 from robosc.simulation import Simulation
+from robosc.validity import faults, load
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -59,7 +58,7 @@ def test_it_is_saved_and_read(models: Models, tmp_path: Path) -> None:
     for name, text in texts.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     for name in texts:
-        assert list(faults(xmi.load(tmp_path / name))) == []
+        assert list(faults(load(tmp_path / name))) == []
 
 
 def test_it_is_computed_with(models: Models) -> None:
@@ -102,4 +101,4 @@ def test_no_saved_model_reaches_further(models: Models, tmp_path: Path) -> None:
             text.replace('value="9223372036854775808"', 'value="9223372036854775809"'), encoding="utf-8"
         )
     with pytest.raises(robosc.ModelError, match="9223372036854775809 is no integer of 64 bits"):
-        xmi.load(tmp_path / "R.sct.xmi")
+        load(tmp_path / "R.sct.xmi")

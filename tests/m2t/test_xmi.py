@@ -7,7 +7,7 @@ from robosc.language import read
 from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
 from robosc.m2t import xmi
 from robosc.m2t.models import Models
-from robosc.metamodel.xmi import load
+from robosc.validity import load
 
 LIBRARY = """
 library {name} {{

@@ -10,7 +10,8 @@ import pytest
 
 from robosc.files.resources import locate
 from robosc.metamodel import robosc
-from robosc.metamodel.xmi import load, to_texts
+from robosc.metamodel.xmi import to_texts
+from robosc.validity import load
 from tests.sct_models import edge, model, needs, plant
 
 pytestmark = pytest.mark.build

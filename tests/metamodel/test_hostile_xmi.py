@@ -16,10 +16,11 @@ from robosc.diagnostics import ModelError, has_errors
 from robosc.m2t.models import Models
 from robosc.m2t.targets import TARGETS
 from robosc.metamodel import robosc as rsc
-from robosc.metamodel import rosgraph, xmi
+from robosc.metamodel import rosgraph
 from robosc.node_tests.trace_test import trace_test_of
 from robosc.ros_types import RosTypes
 from robosc.simulation import Simulation
+from robosc.validity import load
 from tests.fuzz.hostile_xmi import edits
 from tests.fuzz.trial import time_limit
 
@@ -105,7 +106,7 @@ def saved() -> Mapping[str, str]:
 
 def used(path: Path, target: str | None) -> None:
     """What commands do with a saved model; raises ModelError for what can't be done with this one."""
-    root = xmi.load(path)
+    root = load(path)
     if isinstance(root, rsc.Base):
         found = check(root, [], RosTypes(()))
         if has_errors(found) or isinstance(root, rsc.Library):

@@ -9,9 +9,10 @@ from click.testing import CliRunner
 import robosc
 from robosc.cli import main
 from robosc.diagnostics import START, Span
-from robosc.metamodel import sct, xmi
+from robosc.metamodel import sct
 from robosc.metamodel.places import Place, SourceFile, place
 from robosc.metamodel.xmi import to_texts
+from robosc.validity import load
 
 
 @pytest.mark.parametrize(
@@ -98,7 +99,7 @@ def test_two_files_of_one_name_stay_two_in_every_model() -> None:
     assert place(arm) == ("r.rscd", Span(2, 3, 2, 37))
     for name, text in to_texts({"Two.sct.xmi": model, "Two.rosgraph.xmi": graph}).items():
         Path(name).write_text(text)
-    loaded = xmi.load("Two.rosgraph.xmi")
+    loaded = load("Two.rosgraph.xmi")
     assert [element.source for element in loaded.model.eAllContents()] == [
         element.source for element in model.eAllContents()
     ]
@@ -135,7 +136,7 @@ def test_a_model_that_was_saved_before_places_had_files(tmp_path: Path) -> None:
         '    <type xsi:type="robosc:LocalComponent" source="2:15-4:4"/>\n'
         "  </definitions>\n</robosc:Robot>\n"
     )
-    robot = xmi.load(path)
+    robot = load(path)
     assert place(robot.definitions[0]) == ("old.rscd", Span(2, 3, 4, 4))
-    located = xmi.load(path, locate={"old.rscd": "../old.rscd"}.get)
+    located = load(path, locate={"old.rscd": "../old.rscd"}.get)
     assert place(located.definitions[0].type)[0] == "../old.rscd"

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from robosc.diagnostics import Diagnostic, ModelError
 from robosc.diagnostics.rules import page
 from robosc.files.resources import locate
-from robosc.metamodel.xmi import load, to_texts
+from robosc.metamodel.xmi import to_texts
+from robosc.validity import load
 from tests.searching import examples
 
 HEAD = (

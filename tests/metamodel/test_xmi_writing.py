@@ -10,8 +10,9 @@ from robosc.diagnostics import ModelError, Span
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.metamodel.places import Place
-from robosc.metamodel.xmi import load, to_texts
+from robosc.metamodel.xmi import to_texts
 from robosc.metamodel.xmi.format import DEEPEST
+from robosc.validity import load
 from tests.sct_models import edge, model, needs, plant
 
 

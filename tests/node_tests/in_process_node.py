@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from robosc.configuration.parameters import controller_parameters
 from robosc.node_tests.drive import parameters
 from robosc.node_tests.messages import message
 from robosc.node_tests.robot import Robot, RunningGoal
@@ -15,7 +16,6 @@ from robosc.runtime.core.event_log import EventLog
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.port import Outcome
 from robosc.runtime.core.settings import Settings
-from robosc.semantics.parameters import controller_parameters
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import robosc
 from robosc.configuration import Configuration
+from robosc.configuration.parameters import controller_parameters
 from robosc.runtime.core.controller import Controller
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.settings import SafeMessages, Settings
-from robosc.semantics.parameters import controller_parameters
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

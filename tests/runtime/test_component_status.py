@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from robosc.configuration import Configuration
-from robosc.semantics.parameters import controller_parameters, layer_parameters
+from robosc.configuration.parameters import controller_parameters, layer_parameters
 from tests.runtime.fake import World, supervised
 
 if TYPE_CHECKING:

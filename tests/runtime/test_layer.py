@@ -10,11 +10,11 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from robosc.configuration import Configuration
+from robosc.configuration.parameters import layer_parameters
 from robosc.files.resources import locate
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.layer import Layer
 from robosc.runtime.core.settings import Settings
-from robosc.semantics.parameters import layer_parameters
 from tests.runtime.fake import FakePort, Record, supervised
 
 if TYPE_CHECKING:

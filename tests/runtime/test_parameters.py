@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from robosc.configuration import Configuration
+from robosc.configuration.parameters import layer_parameters, model_parameters
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.layer import Layer
 from robosc.runtime.core.settings import Settings, check
-from robosc.semantics.parameters import layer_parameters, model_parameters
 from tests.runtime.fake import FakePort, Record, World, supervised
 
 CRUISE = Path(__file__).parent / "cruise.rscd"

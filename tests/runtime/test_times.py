@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 
 from robosc.configuration import Configuration
+from robosc.configuration.parameters import layer_parameters
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.layer import Layer
 from robosc.runtime.core.settings import Settings
-from robosc.semantics.parameters import layer_parameters
 from tests.runtime.fake import FakePort, Record, World, supervised
 
 GUARD = Path(__file__).parent / "guard.rscd"

@@ -21,6 +21,7 @@ from robosc.m2t.c import engine
 from robosc.m2t.models import Models
 from robosc.metamodel import sct, xmi
 from robosc.semantics.definition import definition
+from robosc.validity import load
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -127,7 +128,7 @@ def test_the_layout_keeps_it() -> None:
 def test_a_saved_model_is_the_same(model: sct.SupervisoryControlModel, tmp_path: Path) -> None:
     file = tmp_path / "Gate.sct.xmi"
     file.write_text(xmi.to_texts({"Gate.sct.xmi": model})["Gate.sct.xmi"])
-    assert engine.generate(xmi.load(file), ControlLoop()) == engine.generate(model, ControlLoop())
+    assert engine.generate(load(file), ControlLoop()) == engine.generate(model, ControlLoop())
 
 
 def test_the_definition_tells_the_time(path: Path) -> None:

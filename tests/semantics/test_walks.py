@@ -21,8 +21,8 @@ from click.testing import CliRunner
 import robosc
 from robosc.cli import main
 from robosc.engine.interpreter import Engine
-from robosc.metamodel.xmi.reading import load
 from robosc.semantics.printing import SctPrinter
+from robosc.validity import load
 
 limit = sys.getrecursionlimit()
 done = []

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeVar
 
+from robosc.configuration.parameters import topic_words
 from robosc.m2t.c.names import KEYWORDS, CNames, identifier
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.semantics.naming import Names
-from robosc.semantics.parameters import topic_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robosc.configuration.parameters import model_parameters
 from robosc.m2t.c.expressions import type_name
 from robosc.m2t.ros import reports
 from robosc.m2t.ros.events import Reasons, message_named
@@ -24,7 +25,6 @@ from robosc.semantics.messages import (
 )
 from robosc.semantics.naming import Names
 from robosc.semantics.operators import PRECEDENCE
-from robosc.semantics.parameters import model_parameters
 from robosc.semantics.roles import Roles
 from robosc.semantics.typing import DOUBLE, ArrayType, infer
 from robosc.semantics.walks import parts

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
 from robosc.configuration import NO_STOP, NO_STOP_ON_SILENCE
+from robosc.configuration.parameters import controller_parameters, layer_parameters
 from robosc.files.resources import locate
 from robosc.m2t.c import engine
 from robosc.m2t.ros import preconditions, typed_state
@@ -18,16 +19,15 @@ from robosc.m2t.ros.rendering import fold, node_environment
 from robosc.m2t.ros.statuses import statuses
 from robosc.metamodel import rosgraph
 from robosc.semantics.definition import definition_text
-from robosc.semantics.parameters import controller_parameters, layer_parameters
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence, Set
 
     from robosc.configuration import Configuration
+    from robosc.configuration.parameters import Parameter
     from robosc.diagnostics import Diagnostic
     from robosc.m2t.models import Models, TraceTest
     from robosc.m2t.ros.statuses import Status
-    from robosc.semantics.parameters import Parameter
 
     Values = Mapping[str, Any]
 

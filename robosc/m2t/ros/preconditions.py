@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from robosc.configuration import Configuration
+from robosc.configuration.parameters import controller_parameters, layer_parameters, model_parameters
 from robosc.diagnostics import START, Diagnostic, Severity
 from robosc.m2t.c.preconditions import preconditions as engine_preconditions
 from robosc.m2t.ros.events import Reasons, message_named
@@ -16,7 +17,6 @@ from robosc.metamodel import rosgraph
 from robosc.metamodel.places import place
 from robosc.metamodel.reflection import tree
 from robosc.semantics.messages import holds_objects, parts_of, path_of
-from robosc.semantics.parameters import controller_parameters, layer_parameters, model_parameters
 from robosc.semantics.typing import DOUBLE, ArrayType, declared_type, infer
 
 if TYPE_CHECKING:

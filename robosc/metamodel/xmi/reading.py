@@ -2,11 +2,11 @@
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator, MutableMapping
+from collections.abc import Callable, Iterable, Iterator, MutableMapping
 from dataclasses import dataclass, field
 from functools import cache, partial
 from pathlib import Path, PurePosixPath
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 from urllib.parse import unquote
 
 from pyecore.ecore import EClass, EEnum
@@ -16,10 +16,11 @@ from robosc.files.reading import read
 from robosc.metamodel._ecore import packages
 from robosc.metamodel.places import Place, SourceFile
 from robosc.metamodel.reflection import features, is_attribute
-from robosc.metamodel.validity import faults
 from robosc.metamodel.xmi.format import XMI, XSI, from_text
 from robosc.metamodel.xmi.markup import Element, parse
 
+#: What is wrong with a model, given its root: elements, and the reasons.
+Faults: TypeAlias = Callable[[Any], Iterable[tuple[Any, str]]]
 #: What a file may hold: a class of each metamodel that describes something whole.
 ROOTS = {
     "robosc": ("Robot", "Library"),
@@ -36,18 +37,20 @@ def load(
     path: str | Path,
     texts: MutableMapping[str, str] | None = None,
     locate: Callable[[str], str | None] | None = None,
+    *,
+    faults: Faults,
 ) -> Any:
     """The root element of the model in an XMI file; files that it refers to are loaded with it.
 
     These must lie in the file's folder or below. Raises ModelError with all findings, located in the files: `syntax`
-    for what is no XML, `xmi` for what is no model of these metamodels, refers to nothing, or breaks a rule that every
-    such model keeps (`robosc.metamodel.validity`). Nothing is ever fetched, and no entity expanded.
+    for what is no XML, `xmi` for what is no model of these metamodels, refers to nothing, or is among the `faults` of
+    a model (`robosc.validity`). Nothing is ever fetched, and no entity expanded.
 
     `texts`: filled with the text of each file that was read, by the file name that findings carry. `locate`: maps the
     name of a source text, as the model stores it, to the path that the user would write; None or no answer: the name
     stays.
     """
-    loading = _Loading(Path(path), {} if texts is None else texts)
+    loading = _Loading(Path(path), {} if texts is None else texts, faults)
     if locate is not None:
         for source in loading.sources.values():
             source.path = locate(source.name) or source.name
@@ -194,7 +197,7 @@ class Document:
 
 
 class _Loading:
-    def __init__(self, path: Path, texts: MutableMapping[str, str]) -> None:
+    def __init__(self, path: Path, texts: MutableMapping[str, str], faults: Faults) -> None:
         self._texts = texts
         self._folder = path.resolve().parent
         self._documents: dict[Path, Document] = {}

@@ -9,6 +9,7 @@ from functools import partial, reduce
 from typing import TYPE_CHECKING, Any
 
 from robosc.configuration import NO_STOP, NO_STOP_ON_SILENCE
+from robosc.configuration.parameters import topic_words, watchdog
 from robosc.engine import Settings as LoopSettings
 from robosc.metamodel import rosgraph
 from robosc.ros_types import Section
@@ -21,7 +22,6 @@ from robosc.runtime.core.settings import SafeMessages
 from robosc.runtime.core.times import RESOLUTION_MS
 from robosc.semantics.messages import holds_objects, parts_with_headers, paths_set
 from robosc.semantics.operators import UnreadableError
-from robosc.semantics.parameters import topic_words, watchdog
 from robosc.semantics.roles import event_name, plant_of
 
 if TYPE_CHECKING:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from robosc.configuration.parameters import model_parameters
 from robosc.engine import ControlLoop, Hooks
 from robosc.metamodel import engine
 from robosc.runtime.core.blocking import Blocking
@@ -16,12 +17,12 @@ from robosc.runtime.core.times import Times
 from robosc.semantics.durations import set_milliseconds
 from robosc.semantics.messages import receptions
 from robosc.semantics.operators import UnreadableError
-from robosc.semantics.parameters import model_parameters
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from robosc.configuration.parameters import Value
     from robosc.engine import Settings as LoopSettings
     from robosc.metamodel import rosgraph, sct
     from robosc.runtime.core.event_loop import EventLoop
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
     from robosc.runtime.core.port import Client, Message, Port
     from robosc.runtime.core.settings import Settings
     from robosc.semantics.component_parts import Parts
-    from robosc.semantics.parameters import Value
 
 
 class EventHandler:

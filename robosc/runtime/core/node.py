@@ -19,6 +19,7 @@ from robosc.runtime.core.settings import check
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from robosc.configuration.parameters import Parameter, Value
     from robosc.metamodel import rosgraph
     from robosc.runtime.core.component_status import ComponentStatus
     from robosc.runtime.core.controller import Controller
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     from robosc.runtime.core.port import Client, Message
     from robosc.runtime.core.proxies import ActionProxy, Answer
     from robosc.runtime.core.settings import Settings
-    from robosc.semantics.parameters import Parameter, Value
 
 #: Seconds that a node waits at most before it looks whether it was interrupted, and for what it sent at its end.
 LONGEST_WAIT = 0.1

@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from robosc.configuration import Configuration
+    from robosc.configuration.parameters import Parameter, Value
     from robosc.metamodel import rosgraph
-    from robosc.semantics.parameters import Parameter, Value
 
 
 def check(parameter: Parameter, value: object) -> Value:

@@ -37,10 +37,10 @@ except ImportError as error:
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from robosc.configuration.parameters import Parameter
     from robosc.runtime.core.layer import Layer
     from robosc.runtime.core.port import Client, Goal, Message
     from robosc.runtime.core.proxies import ActionProxy, Answer
-    from robosc.semantics.parameters import Parameter
 
 #: Nothing tells when a message has left the node.
 _DELIVERY = 0.2

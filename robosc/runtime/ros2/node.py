@@ -55,11 +55,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from robosc.configuration import Configuration
+    from robosc.configuration.parameters import Parameter
     from robosc.runtime.core.event_handler import EventHandler
     from robosc.runtime.core.layer import Layer
     from robosc.runtime.core.port import Client, Goal, Message
     from robosc.runtime.core.proxies import ActionProxy, Answer
-    from robosc.semantics.parameters import Parameter
 
 #: Messages of a topic that are heard before a time that is up.
 MOST_HEARD = 1000

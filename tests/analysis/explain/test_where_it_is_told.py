@@ -8,16 +8,17 @@ from jsonschema import Draft202012Validator
 
 import robosc
 from robosc.configuration import Configuration
+from robosc.configuration.parameters import layer_parameters
 from robosc.files.resources import locate
 from robosc.m2t.models import Models
-from robosc.metamodel import rosgraph, xmi
+from robosc.metamodel import rosgraph
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.layer import Layer
 from robosc.runtime.core.settings import Settings
-from robosc.semantics.parameters import layer_parameters
 from robosc.semantics.roles import event_name
 from robosc.simulation import Simulation
 from robosc.simulation.session import Session
+from robosc.validity import load
 from tests.runtime.fake import FakePort, supervised
 
 PORTER = Path(__file__).parent / "porter.rscd"
@@ -50,7 +51,7 @@ def test_the_supervisor_knows(porter: rosgraph.RosGraph) -> None:
 def test_a_saved_supervisor_knows_it_still(porter: rosgraph.RosGraph, tmp_path: Path) -> None:
     for name, text in robosc.generate("xmi", Models(porter.model, porter)).items():
         (tmp_path / name).write_text(text)
-    read = xmi.load(str(tmp_path / "Porter.sct.xmi"))
+    read = load(str(tmp_path / "Porter.sct.xmi"))
     guards = [(guard.explanation, [own.text for own in guard.requirements]) for guard in read.supervisor.guards]
     assert guards == [
         (guard.explanation, [own.text for own in guard.requirements]) for guard in porter.model.supervisor.guards

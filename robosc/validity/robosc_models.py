@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import robosc
-from robosc.metamodel.model_checks import around, demand
 from robosc.semantics.typing import UNKNOWN, ObjectType, access_types, declared_type, provided_data_type, value_type
+from robosc.validity.model_checks import around, demand
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from robosc.metamodel.model_checks import Checks, Fault, Model
+    from robosc.validity.model_checks import Checks, Fault, Model
 
 
 def _import(imported: robosc.ImportedComponent, _model: Model) -> Iterator[Fault]:

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.metamodel.model_checks import around, demand, fitting_operands, repeated, typed, unique
 from robosc.semantics.durations import LONGEST, SHORTEST, UNITS
 from robosc.semantics.edges import edges_of
 from robosc.semantics.roles import is_from_cif
 from robosc.semantics.typing import BOOLEAN, declared_type
+from robosc.validity.model_checks import around, demand, fitting_operands, repeated, typed, unique
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from robosc.metamodel.model_checks import Checks, Fault, Model
+    from robosc.validity.model_checks import Checks, Fault, Model
 
 #: The features by which elements refer to what is to be of the same model.
 _REFERENCES = ("enumeration", "literal", "location", "variable", "input", "event")

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import re
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from robosc.diagnostics.visible import visible
 from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc, robosc_validity, rosgraph, rosgraph_validity, sct, sct_validity
-from robosc.metamodel.model_checks import Model, demand, faults_of
+from robosc.metamodel import robosc, rosgraph, sct, xmi
+from robosc.validity import robosc_models, rosgraph_models, sct_models
+from robosc.validity.model_checks import Model, demand, faults_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from robosc.metamodel.model_checks import Check, Checks, Fault
+    from robosc.validity.model_checks import Check, Checks, Fault
 
 _LARGEST = 2**63 - 1
 _IDENTIFIER = re.compile("[A-Za-z_][A-Za-z0-9_]*")
@@ -38,6 +40,10 @@ def faults(root: Any) -> Iterator[Fault]:
             yield from found
             if found:
                 return
+
+
+#: The loading of a saved model that keeps these rules.
+load = partial(xmi.load, faults=faults)
 
 
 def _identifier(feature: str) -> Check:
@@ -99,7 +105,7 @@ _CHECKS: Checks = {
 }
 #: The tables for each kind of model; where one finds something, the next are not asked.
 _OWN_CHECKS: Mapping[type, Sequence[Checks]] = {
-    robosc.Base: (robosc_validity.IMPORT_CHECKS, robosc_validity.CHECKS),
-    sct.SupervisoryControlModel: (sct_validity.CHECKS,),
-    rosgraph.RosGraph: (rosgraph_validity.CHECKS,),
+    robosc.Base: (robosc_models.IMPORT_CHECKS, robosc_models.CHECKS),
+    sct.SupervisoryControlModel: (sct_models.CHECKS,),
+    rosgraph.RosGraph: (rosgraph_models.CHECKS,),
 }

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
-from robosc.metamodel.model_checks import demand, fitting_operands, typed
 from robosc.metamodel.reflection import tree
 from robosc.semantics.messages import EACH, path_of, source_of
 from robosc.semantics.typing import BOOLEAN, declared_type
+from robosc.validity.model_checks import demand, fitting_operands, typed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from robosc.metamodel.model_checks import Check, Checks, Fault, Model
+    from robosc.validity.model_checks import Check, Checks, Fault, Model
 
 #: What a field of ROS is in a model.
 _BASIC = (ex.BooleanType, ex.IntegerType, ex.DoubleType, ex.StringType, rosgraph.ArrayType)
