@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 import pytest
@@ -48,7 +48,10 @@ def porter_settings() -> config.Configuration:
 
 @pytest.fixture
 def golden_package(golden: Callable[[Path, str], None]) -> Callable[[Path, dict[str, str]], None]:
-    """`golden_package(folder, files)`: a package but for what others pin: the engine in C, headers that are copied."""
+    """`golden_package(folder, files)`: a package but for what others pin: the engine in C, headers that are copied.
+
+    The definition is the same in each ROS, so it stands once for both.
+    """
 
     def compare(folder: Path, files: dict[str, str]) -> None:
         copied = {path for path in files if (SHIPPED / path.removeprefix("include/")).exists()}
@@ -57,7 +60,9 @@ def golden_package(golden: Callable[[Path, str], None]) -> Callable[[Path, dict[
         assert len(engine) == 2
         for path in copied:
             assert files[path] == (SHIPPED / path.removeprefix("include/")).read_text(encoding="utf-8")
-        decided = set(files) - copied - engine
+        definition = next(path for path in files if path.endswith("/definition.hpp"))
+        golden(HERE.parent / "definitions" / f"{PurePath(definition).parent.name}.hpp", files[definition])
+        decided = set(files) - copied - engine - {definition}
         for path in sorted(decided):
             golden(folder / path, files[path])
         kept = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
+from difflib import unified_diff
 from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
@@ -14,8 +15,7 @@ from catkin_pkg.package import parse_package_string
 from ruamel.yaml import YAML
 
 import robosc
-from robosc import configuration as config
-from robosc.configuration import Configuration
+from robosc.configuration import Configuration, Package
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,8 +34,9 @@ def porter_files(porter: robosc.Models, porter_settings: Configuration) -> dict[
 
 
 @pytest.fixture(scope="module")
-def managed_files(porter: robosc.Models) -> dict[str, str]:
-    return robosc.generate("ros2", porter, config.read(HERE.parent / "cpp" / "managed-porter-config.json"))
+def managed_files(porter: robosc.Models, porter_settings: Configuration) -> dict[str, str]:
+    managed = {"lifecycle": True, "package": Package(name="managed_porter")}
+    return robosc.generate("ros2", porter, porter_settings.model_copy(update=managed))
 
 
 def test_every_file(files: dict[str, str], golden_package: Callable[[Path, dict[str, str]], None]) -> None:
@@ -58,13 +59,16 @@ def test_what_is_special_in_a_managed_node(
     special = sorted(set(managed_files) - same)
     assert special == [
         "CMakeLists.txt",
-        "config/managed_porter.yaml",
         "launch/managed_porter.launch.py",
         "package.xml",
         "src/managed_porter_node.cpp",
     ]
+    changed: list[str] = []
     for path in special:
-        golden(HERE / "managed" / path, managed_files[path])
+        texts = (porter_files[renamed(path)], renamed(managed_files[path]))
+        lines = unified_diff(*(text.splitlines() for text in texts), "", path, n=0, lineterm="")
+        changed += (line for line in lines if not line.startswith(("---", "@@")))
+    golden(HERE / "managed.diff", "\n".join([*changed, ""]))
 
 
 def test_package_lists_what_is_used(files: dict[str, str]) -> None:
