@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from robosc.editor.places import to_offset, to_range
+from robosc.editor.snippets import SNIPPETS
 from robosc.language import read
 from robosc.language.classifying import what_of
 from robosc.language.completing import proposals, topic_at
@@ -35,48 +36,6 @@ _KINDS = {
     "struct": types.CompletionItemKind.Struct,
     "property": types.CompletionItemKind.Field,
     "function": types.CompletionItemKind.Function,
-}
-#: Definitions in whole, by the word that they begin with: what each is called, and its text with places to fill in.
-SNIPPETS = {
-    "robot": [("robot …", "robot ${1:Name} {\n  $0\n}")],
-    "library": [("library …", "library ${1:Name} {\n  $0\n}")],
-    "component": [
-        (
-            "component with states",
-            (
-                "component ${1:Name} {\n"
-                '  outgoing message ${2:told} with identifier: "/${2:told}", type: ${3:boolean}\n\n'
-                "  behaviour {\n"
-                "    initial marked state ${4:off} {\n      on response from ${2:told} goto ${5:on}\n    }\n\n"
-                "    state ${5:on} {\n      on response from ${2:told} goto ${4:off}\n    }\n  }\n}$0"
-            ),
-        ),
-        ("component from a library", "component ${1:Name} from ${2:Library} import ${3:Component}$0"),
-    ],
-    "requirement": [
-        ("requirement … needs", "requirement ${1:communication} needs ${2:condition}$0"),
-        ("requirement … disables", "requirement ${1:condition} disables ${2:communication}$0"),
-        ("requirement never", "requirement never ${1:condition}$0"),
-        (
-            "requirement: automaton",
-            (
-                "requirement ${1:Name}: automaton {\n"
-                "  initial state ${2:first} {\n    on request to ${3:left} goto ${4:second}\n  }\n\n"
-                "  state ${4:second} {\n    on request to ${5:right} goto ${2:first}\n  }\n}$0"
-            ),
-        ),
-    ],
-    "behaviour": [("behaviour with a state", "behaviour {\n  initial marked state ${1:name} {\n    $0\n  }\n}")],
-    "state": [("state …", "state ${1:name} {\n  $0\n}")],
-    "datatype": [
-        (
-            "datatype enum",
-            "datatype enum ${1:Name} from ${2:double} to {\n  ${3:value > 0.0} -> ${4:a}\n  default -> ${5:b}\n}$0",
-        ),
-        ("datatype object", "datatype object ${1:Name} {\n  ${2:field}: ${3:double}\n}$0"),
-    ],
-    "provide": [("provide …", "provide ${1:communication} with ${2:data}$0")],
-    "on": [("on response from …", "on response from ${1:communication} goto ${2:state}$0")],
 }
 
 
@@ -145,7 +104,7 @@ def _items(proposal: Proposal, place: types.Range) -> list[types.CompletionItem]
                 insert_text_mode=types.InsertTextMode.AdjustIndentation,
                 text_edit=types.TextEdit(place, body),
             )
-            for label, body in SNIPPETS.get(proposal.text, ())
+            for label, body, _ in SNIPPETS.get(proposal.text, ())
         )
     return found
 

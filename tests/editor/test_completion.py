@@ -5,8 +5,9 @@ import re
 import pytest
 from lsprotocol import types
 
-from robosc.editor.completion import SNIPPETS, completion, signature_help
+from robosc.editor.completion import completion, signature_help
 from robosc.editor.project import Project, edited
+from robosc.editor.snippets import SNIPPETS
 from robosc.language import Documents, Text, read
 from tests.editor.server import LIBRARY
 
@@ -150,7 +151,7 @@ def test_snippets_are_models(word: str) -> None:
         "state": "robot R {{ component C {{ behaviour {{ {} }} }} }}",
         "on": "robot R {{ component C {{ behaviour {{ state s {{ {} }} }} }} }}",
     }
-    for _, body in SNIPPETS[word]:
+    for _, body, _ in SNIPPETS[word]:
         filled = re.sub(r"\$\{\d+:([^}]*)\}", r"\1", body).replace("$0", "")
         text = around.get(word, "robot R {{ {} }}").format(filled)
         reading = read("/nowhere/snippet.rscd", documents=Documents({"/nowhere/snippet.rscd": text}))

@@ -14,18 +14,20 @@ import robosc
 from robosc import cli
 from robosc.diagnostics import ModelError, as_text
 from robosc.editor.findings import ADD_LIBRARY_FOLDER
+from robosc.editor.snippets import for_vscode
 from robosc.editor.synthesis import COMMANDS
 from robosc.language import formatting
 from robosc.language.text import Text
 from robosc.m2t.targets import TARGETS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
 ROOT = Path(__file__).parents[2]
 EXTENSION = ROOT / "editors" / "vscode"
 MANIFEST: Mapping[str, Any] = json.loads((EXTENSION / "package.json").read_text())
 SNIPPETS: Mapping[str, Mapping[str, Any]] = json.loads((EXTENSION / "snippets" / "robosc.json").read_text())
+ROBOT = "robot that moves while a sensor lets it"
 SOURCES = {path.name: path.read_text() for path in sorted((EXTENSION / "src").glob("*.ts"))}
 
 
@@ -48,13 +50,17 @@ def rules(text: str) -> list[str]:
     return [finding.rule for finding in found]
 
 
+def test_snippets_are_those_of_the_server(golden: Callable[[Path, str], None]) -> None:
+    golden(EXTENSION / "snippets" / "robosc.json", for_vscode())
+
+
 def test_the_snippet_of_a_robot_is_a_robot() -> None:
-    text = expanded(SNIPPETS["Robot"])
+    text = expanded(SNIPPETS[ROBOT])
     assert rules(text) == []
     assert formatting.format_edits(Text("robot.rscd", text)) == []
 
 
-@pytest.mark.parametrize("name", [name for name in SNIPPETS if name != "Robot"])
+@pytest.mark.parametrize("name", [name for name in SNIPPETS if name != ROBOT])
 def test_snippets_are_what_stands_in_a_robot(name: str) -> None:
     assert "syntax" not in rules(f"robot Example {{\n{expanded(SNIPPETS[name])}\n}}\n")
 
