@@ -14,8 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from robosc.ros_types import RosDistribution
-    from robosc.runtime.core.component_status import ComponentStatus
-    from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers, Message
+    from robosc.runtime.core.port import CallHandlers, ComponentStatus, Endpoint, GoalHandlers, Message
 
 
 @dataclass

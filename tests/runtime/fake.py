@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from robosc.metamodel import rosgraph
-    from robosc.runtime.core.component_status import ComponentStatus
-    from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers
+    from robosc.runtime.core.port import CallHandlers, ComponentStatus, Endpoint, GoalHandlers
 
 
 class Record:

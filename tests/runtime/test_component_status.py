@@ -13,7 +13,7 @@ from robosc.configuration.parameters import controller_parameters, layer_paramet
 from tests.runtime.fake import World, supervised
 
 if TYPE_CHECKING:
-    from robosc.runtime.core.component_status import ComponentStatus
+    from robosc.runtime.core.port import ComponentStatus
 
 COURIER = Path(__file__).parents[1] / "m2t" / "cpp" / "courier.rscd"
 SCOUT = Path(__file__).parents[1] / "ros" / "faults" / "scout.rscd"

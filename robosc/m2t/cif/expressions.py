@@ -12,8 +12,7 @@ from robosc.semantics.printing import Printed, Printer
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from robosc.m2t.cif.extension import AbsoluteNames
-    from robosc.m2t.cif.names import CifNames
+    from robosc.m2t.cif.names import AbsoluteNames, CifNames
 
 
 class CifPrinter(Printer):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.m2t.cif.expressions import CifPrinter
-from robosc.m2t.cif.names import KEYWORDS
+from robosc.m2t.cif.names import AbsoluteNames, escaped
 from robosc.m2t.cif.specification import document, edge_text, folded
 from robosc.semantics.naming import Names
 from robosc.semantics.roles import event_name
@@ -13,7 +13,6 @@ from robosc.semantics.roles import event_name
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.metamodel import expression as ex
     from robosc.metamodel import sct
 
 
@@ -23,28 +22,6 @@ def extended(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor) -> 
     Its requirements stay what they are: all of CIF's tools but synthesis take them as automata like others.
     """
     return folded(list(_lines(model, supervisor)))
-
-
-class AbsoluteNames:
-    """Names as they are read outside of all automata."""
-
-    def used(self, element: ex.NamedElement, _plant: sct.Plant | None) -> str:
-        """A name with all around it."""
-        around = element.eContainer().origin
-        return f"{around}.{element.name}" if around else escaped(element.name)
-
-    def declared(self, plant: sct.Plant) -> str:
-        """The name of a plant."""
-        return escaped(plant.origin or "")
-
-    def number(self, _plant: sct.Plant) -> str | None:
-        """No location is a number."""
-        return None
-
-
-def escaped(name: str) -> str:
-    """A name of one identifier with a dollar sign before it where it is a keyword."""
-    return f"${name}" if name in KEYWORDS else name
 
 
 def _lines(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor) -> Iterator[str]:

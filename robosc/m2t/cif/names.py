@@ -29,6 +29,11 @@ and div in mod not or sample sub
 KEYWORDS = frozenset(_WORDS.split())
 
 
+def escaped(name: str) -> str:
+    """A name of one identifier with a dollar sign before it where it is a keyword."""
+    return f"${name}" if name in KEYWORDS else name
+
+
 def is_numbered(plant: sct.Plant) -> bool:
     """Whether a variable holds the number of the plant's location, its only location having all edges.
 
@@ -80,8 +85,7 @@ class CifNames:
 
     def declared(self, element: ex.NamedElement) -> str:
         """The name where the element is declared, and within the same plant."""
-        name = self._names[element]
-        return f"${name}" if name in KEYWORDS else name
+        return escaped(self._names[element])
 
     def number(self, plant: sct.Plant) -> str | None:
         """The variable with the number of the plant's location, None where it has locations in CIF, too."""
@@ -93,3 +97,20 @@ class CifNames:
         if owner is plant or owner not in self._names or not hasattr(owner, "locations"):
             return self.declared(element)
         return f"{self.declared(owner)}.{self.declared(element)}"
+
+
+class AbsoluteNames:
+    """Names as they are read outside of all automata."""
+
+    def used(self, element: ex.NamedElement, _plant: sct.Plant | None) -> str:
+        """A name with all around it."""
+        around = element.eContainer().origin
+        return f"{around}.{element.name}" if around else escaped(element.name)
+
+    def declared(self, plant: sct.Plant) -> str:
+        """The name of a plant."""
+        return escaped(plant.origin or "")
+
+    def number(self, _plant: sct.Plant) -> str | None:
+        """No location is a number."""
+        return None

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from robosc.runtime.core.event_log import shown
 from robosc.runtime.core.json_text import json_text
+from robosc.runtime.core.port import ComponentStatus
 from robosc.semantics.component_parts import STATELESS, Parts, components, request
 from robosc.semantics.roles import event_name
 
@@ -18,16 +19,6 @@ if TYPE_CHECKING:
     from robosc.runtime.core.blocking import Blocking
     from robosc.runtime.core.json_text import Json
     from robosc.runtime.core.port import Port
-
-
-@dataclass(frozen=True)
-class ComponentStatus:
-    """A status: of which component, whether something is wrong, its state and what is wrong, and further values."""
-
-    component: str
-    warns: bool
-    message: str
-    values: Sequence[tuple[str, str]]
 
 
 @dataclass(frozen=True)

@@ -21,11 +21,10 @@ if TYPE_CHECKING:
 
     from robosc.configuration.parameters import Parameter, Value
     from robosc.metamodel import rosgraph
-    from robosc.runtime.core.component_status import ComponentStatus
     from robosc.runtime.core.controller import Controller
     from robosc.runtime.core.event_handler import EventHandler
     from robosc.runtime.core.event_loop import EventLoop
-    from robosc.runtime.core.port import Client, Message
+    from robosc.runtime.core.port import Client, ComponentStatus, Message
     from robosc.runtime.core.proxies import ActionProxy, Answer
     from robosc.runtime.core.settings import Settings
 

@@ -11,7 +11,6 @@ if TYPE_CHECKING:
 
     from robosc.metamodel import rosgraph
     from robosc.ros_types import Section
-    from robosc.runtime.core.component_status import ComponentStatus
 
 #: Data of ROS: an object with fields as attributes; arrays can be indexed and have a length.
 Message: TypeAlias = Any
@@ -56,6 +55,16 @@ class Goal(Protocol):
 
     def cancel(self) -> None:
         """Asks the server to cancel it; a server that does not know it yet may take no notice (ROS 2)."""
+
+
+@dataclass(frozen=True)
+class ComponentStatus:
+    """A status: of which component, whether something is wrong, its state and what is wrong, and further values."""
+
+    component: str
+    warns: bool
+    message: str
+    values: Sequence[tuple[str, str]]
 
 
 class Port(Protocol):

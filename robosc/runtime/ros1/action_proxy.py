@@ -10,7 +10,6 @@ from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 
 from robosc.runtime.core.clients import LOST_RESULT, REFUSED
 from robosc.runtime.core.proxies import ActionProxy, ProxiedGoal
-from robosc.runtime.ros1.node import advertise
 
 if TYPE_CHECKING:
     from robosc.metamodel import rosgraph
@@ -47,11 +46,11 @@ class Ros1ActionProxy(ActionProxy[_Goal]):
         goal, result, feedback = (type(part) for part in (made.action_goal, made.action_result, made.action_feedback))
         self._result_type = result
         inside, outside = node.inside(action.identifier), action.identifier
-        self._goals = advertise(f"{outside}/goal", goal)
-        self._cancels = advertise(f"{outside}/cancel", GoalID)
-        self._results = advertise(f"{inside}/result", result)
-        self._feedback = advertise(f"{inside}/feedback", feedback)
-        self._statuses = advertise(f"{inside}/status", GoalStatusArray)
+        self._goals = node.advertise(f"{outside}/goal", goal)
+        self._cancels = node.advertise(f"{outside}/cancel", GoalID)
+        self._results = node.advertise(f"{inside}/result", result)
+        self._feedback = node.advertise(f"{inside}/feedback", feedback)
+        self._statuses = node.advertise(f"{inside}/status", GoalStatusArray)
         self._heard = node.subscribe(f"{outside}/result", result, self._on_result, None)
         node.subscribe(f"{outside}/feedback", feedback, self._on_feedback)
         node.subscribe(f"{outside}/status", GoalStatusArray, self._on_status)

@@ -129,7 +129,12 @@ class Ros1Node(Node):
     # Topics
 
     def _publisher(self, publisher: rosgraph.Publisher) -> Any:
-        return advertise(publisher.topic, self._types[publisher.interface])
+        return self.advertise(publisher.topic, self._types[publisher.interface])
+
+    @staticmethod
+    def advertise(name: str, kind: Any, *, latch: bool = False) -> Any:
+        """A publisher on a topic."""
+        return rospy.Publisher(name, kind, queue_size=QUEUE_DEPTH, latch=latch, tcp_nodelay=True)
 
     def _subscribe(self, subscription: rosgraph.Subscription, receive: Callable[[Message], None]) -> None:
         self.subscribe(subscription.topic, self._types[subscription.interface], receive)
@@ -158,11 +163,11 @@ class Ros1Node(Node):
             if passes(message):
                 latched = message._connection_header.get("latching") == "1"  # noqa: SLF001  # as genpy has it
                 if latched not in publishers:
-                    publishers[latched] = advertise(target, kind, latch=latched)
+                    publishers[latched] = self.advertise(target, kind, latch=latched)
                 publishers[latched].publish(message)
 
         # Advertised before the first message, so that those who listen are connected when it comes.
-        publishers[False] = advertise(target, kind)
+        publishers[False] = self.advertise(target, kind)
         self.subscribe(source, kind, forward)
 
     def type_name(self, interface: rosgraph.Interface) -> str:
@@ -257,11 +262,6 @@ def start(name: str, arguments: Sequence[str], *, anonymous: bool = False) -> No
         rospy.init_node(name, argv=["robosc", *arguments], anonymous=anonymous, disable_signals=True)
     except rospy.exceptions.ROSInitException as error:
         raise StartError(str(error), "start roscore, or name its ROS_MASTER_URI") from None
-
-
-def advertise(name: str, kind: Any, *, latch: bool = False) -> Any:
-    """A publisher on a topic."""
-    return rospy.Publisher(name, kind, queue_size=QUEUE_DEPTH, latch=latch, tcp_nodelay=True)
 
 
 class _Answer:
