@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from robosc.configuration import ControlLoop
+from robosc.m2m.sct_to_engine import transform
 from robosc.m2t.c import engine
 from robosc.m2t.c.names import CNames
 from robosc.semantics.domains import domain
@@ -144,7 +145,7 @@ class Costs:
 def measured(model: SupervisoryControlModel, folder: Path, targets: Mapping[str, Sequence[str]] = TARGETS) -> Costs:
     """Builds the engine of a model with its supervisor in a folder, and counts; sizes for these targets."""
     names = CNames(model)
-    for path, text in engine.generate(model, ControlLoop()).items():
+    for path, text in engine.generate(transform(model), ControlLoop()).items():
         (folder / path).write_text(text)
     source = folder / f"{names.prefix}_supervisor.c"
     sizes = {target: size(source, names, command) for target, command in targets.items() if shutil.which(command[0])}

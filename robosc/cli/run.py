@@ -72,10 +72,10 @@ def command(
 
 
 def _run(models: Models, configuration: Configuration, version: int, arguments: Sequence[str], *, layer: bool) -> None:
-    from robosc.m2t.ros.events import message_named
     from robosc.runtime.core.node import StartError
     from robosc.runtime.core.settings import SafeMessages
     from robosc.runtime.node import run_controller, run_layer
+    from robosc.semantics.messages import message_named
 
     graph = models.rosgraph
     assert graph is not None

@@ -11,9 +11,7 @@ from robosc.engine.state import Domain, Layout, State, Value
 from robosc.m2m.sct_to_engine import transform
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
-from robosc.semantics.evaluation import evaluate
 from robosc.semantics.roles import Roles, event_name
-from robosc.semantics.walks import parts
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -60,9 +58,7 @@ class Engine:
         }
         self._effects = {event.name: self._steps(event.effect.steps) for event in self.executed.events}
         self._reasons: dict[str, list[tuple[Blocked, Function]]] = {}
-        self._required: dict[str, list[sct.Requirement]] = {}
-        for requirement in model.requirements:
-            self._required.setdefault(event_name(requirement.event), []).append(requirement)
+        self._failing: dict[str, list[tuple[sct.Requirement, Callable[[], bool]]]] = {}
         self._by_name = {event.name: event for event in self.executed.events}
         self._cells = tuple(variable.initial for variable in self.executed.variables)
 
@@ -108,18 +104,13 @@ class Engine:
 
     def reads(self, event: str) -> frozenset[sct.Plant | sct.DiscreteVariable]:
         """The parts of the state on which it depends whether the event can happen, and why it can't."""
-        guard = self._by_name[event].guard
-        conditions = [term.condition for term in guard.terms]
-        conditions += [part for part in (guard.plants, guard.requirement, guard.synthesis) if part is not None]
+        asked = self._by_name[event]
+        conditions = [term.condition for term in asked.guard.terms]
+        parts = [asked.guard.plants, asked.guard.requirement, asked.guard.synthesis]
+        parts += [reason.condition for reason in asked.reasons]
+        conditions += [part for part in parts if part is not None]
         read = {part.variable for part in all_inside(conditions) if isinstance(part, engine.VariableReference)}
-        found = {variable.variable or variable.plant for variable in read}
-        for requirement in self._required.get(event, ()):
-            for part in parts(requirement.condition):
-                if isinstance(part, sct.LocationReference):
-                    found.add(part.location.eContainer())
-                elif isinstance(part, sct.VariableReference):
-                    found.add(part.variable)
-        return frozenset(found)
+        return frozenset(variable.variable or variable.plant for variable in read)
 
     def blocked_by(self, event: str) -> Blocked | None:
         """What keeps the event from happening in this state; None where it is enabled."""
@@ -133,11 +124,13 @@ class Engine:
 
     def failing(self, event: str) -> list[sct.Requirement]:
         """The requirements on the event that forbid it in this state, whatever else does."""
-        return [
-            requirement
-            for requirement in self._required.get(event, ())
-            if bool(evaluate(requirement.condition, self.read)) == (requirement.kind == sct.RequirementKind.disables)
-        ]
+        if event not in self._failing:
+            self._failing[event] = [
+                (reason.requirement, self.condition(reason.condition))
+                for reason in self._by_name[event].reasons
+                if reason.requirement is not None and reason.condition is not None
+            ]
+        return [requirement for requirement, forbids in self._failing[event] if forbids()]
 
     def enabled(self, event: str, state: State | None = None) -> bool:
         """Whether the event can happen in this state, or in another one of this engine."""

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
+
+from robosc.m2m import sct_to_engine
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from robosc.metamodel import robosc, rosgraph, sct
+    from robosc.metamodel import engine, robosc, rosgraph, sct
 
 
 @dataclass(frozen=True)
@@ -18,6 +21,14 @@ class Models:
     sct: sct.SupervisoryControlModel
     rosgraph: rosgraph.RosGraph | None = None
     robosc: robosc.Base | None = None
+
+    @cached_property
+    def engine(self) -> engine.EngineModel:
+        """What a controller executes, made once: the models must not change after.
+
+        Raises ValueError where the model has no supervisor, or one without a guard for a controllable event.
+        """
+        return sct_to_engine.transform(self.sct)
 
 
 @dataclass(frozen=True)

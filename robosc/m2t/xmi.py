@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from robosc.m2m.sct_to_engine import transform
 from robosc.metamodel import xmi
 from robosc.semantics.instances import libraries
 from robosc.semantics.naming import Names
@@ -30,7 +29,7 @@ def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
     name = models.sct.name
     roots: dict[str, Any] = {f"{name}.sct.xmi": models.sct}
     if models.sct.supervisor is not None and not is_from_cif(models.sct):
-        roots[f"{name}.engine.xmi"] = transform(models.sct)
+        roots[f"{name}.engine.xmi"] = models.engine
     if models.rosgraph is not None:
         roots[f"{name}.rosgraph.xmi"] = models.rosgraph
     if models.robosc is not None:

@@ -128,8 +128,21 @@ class Event(Reader):
     choice: Choice | None
     guard: Guard
     effect: Effect
+    reasons: MutableSequence[Reason]
     restarts: MutableSequence[Restart]
-    def __init__(self, *, event: sct.Event | None = ..., role: Role | None = ..., description: str | None = ..., remarks: Iterable[str] = ..., inputs: Iterable[Input] = ..., source: Source | None = ..., group: Group | None = ..., choice: Choice | None = ..., guard: Guard | None = ..., effect: Effect | None = ..., restarts: Iterable[Restart] = ..., name: str | None = ..., readers: Iterable[Reader] = ...) -> None: ...
+    def __init__(self, *, event: sct.Event | None = ..., role: Role | None = ..., description: str | None = ..., remarks: Iterable[str] = ..., inputs: Iterable[Input] = ..., source: Source | None = ..., group: Group | None = ..., choice: Choice | None = ..., guard: Guard | None = ..., effect: Effect | None = ..., reasons: Iterable[Reason] = ..., restarts: Iterable[Restart] = ..., name: str | None = ..., readers: Iterable[Reader] = ...) -> None: ...
+
+class Reason:
+    """What can keep an event from happening, in the words of the robot's model. Where none with a condition applies and the guard does not hold, that of synthesis is the reason."""
+    kind: Origin
+    condition: expression.Expression | None
+    text: str
+    location: StateVariable | None
+    requirement: sct.Requirement | None
+    def eContainer(self) -> Any: ...
+    @property
+    def eClass(self) -> Any: ...
+    def __init__(self, *, kind: Origin | None = ..., condition: expression.Expression | None = ..., text: str | None = ..., location: StateVariable | None = ..., requirement: sct.Requirement | None = ...) -> None: ...
 
 class Role:
     """cancel, trigger: what the controller sends, by the control loop, cancels first; silent: what the control loop performs by itself until none is enabled; data: chooses what a trigger sends; incoming: comes from the robot, the caller performs it; timeout: the time of a timer is up."""

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from robosc.analysis.verify.properties import requirement_identifier, requirement_name
 from robosc.analysis.wording import words
 from robosc.diagnostics import has_errors
-from robosc.engine import Engine
 from robosc.m2t.targets import TARGETS, together
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
@@ -78,7 +77,7 @@ def report(  # noqa: PLR0913 - all that a report is of
         "coverage": {
             "traces": sorted(different.values()),
             "missed": missed,
-            **shown.coverage(model, Engine(model).executed),
+            **shown.coverage(model, models.engine),
         },
         "digests": {
             "tool": {"name": "robosc", "version": version, "sha256": digests.of_tool()},

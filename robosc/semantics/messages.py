@@ -255,3 +255,10 @@ def parts_with_headers(sending: rosgraph.Sending) -> list[tuple[str, ...]]:
     parts = {()} | {path[:length] for path in paths for length in range(1, len(path))}
     given = {path[: path.index("header")] for path in paths if "header" in path}
     return sorted(part for part in parts - given if "header" not in part)
+
+
+def message_named(graph: rosgraph.RosGraph, name: str) -> rosgraph.Sending | None:
+    """The message that the node sends by this name, or by `Component.name`; None where there is none, or several."""
+    sendings = [sending for publisher in graph.publishers for sending in publisher.sendings]
+    found = [sending for sending in sendings if name in (sending.name, sending.event.eContainer().origin)]
+    return found[0] if len(found) == 1 else None

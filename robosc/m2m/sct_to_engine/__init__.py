@@ -16,6 +16,7 @@ from robosc.m2m.sct_to_engine.find_readers import find_readers
 from robosc.m2m.sct_to_engine.lower_expressions import Lowering
 from robosc.m2m.sct_to_engine.lower_timers import lower_timers
 from robosc.m2m.sct_to_engine.merge_effects import EffectTerms, merge_effects
+from robosc.m2m.sct_to_engine.name_reasons import name_reasons
 from robosc.m2m.sct_to_engine.place_state import place_inputs, place_state
 from robosc.m2m.sct_to_engine.share_conditions import Shared, share_conditions
 from robosc.m2m.sct_to_engine.terms import Term, Terms
@@ -107,6 +108,7 @@ def _transform(model: sct.SupervisoryControlModel, polled: int) -> engine.Engine
     for event, element in events.items():
         element.guard = _guard(guards[event], shared)
         element.effect = _effect(effects[event])
+    name_reasons(model, events, guards, lower)
     if incremental:
         find_readers(made, guards, effects, shared)
     return made

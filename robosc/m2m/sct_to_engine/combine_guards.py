@@ -9,7 +9,7 @@ from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from robosc.m2m.sct_to_engine.collect_events import Edges, EdgeTable
     from robosc.m2m.sct_to_engine.lower_expressions import Lowering
@@ -18,8 +18,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class GuardTerms:
-    """When an event can happen: the three parts, each by itself, and their conjunction."""
+    """When an event can happen: the three parts, each by itself, and their conjunction.
 
+    `by_plant` says of each plant that has the event where it has an edge for it; `plants` is their conjunction.
+    """
+
+    by_plant: Mapping[sct.Plant, Term]
     plants: Term
     requirement: Term
     synthesis: Term
@@ -41,12 +45,13 @@ def combine_guards(
     combined = {}
     for event, by_plant in edges.items():
         guard = supervised.get(event)
+        possible = {plant: _possible(plant, taken, lower) for plant, taken in by_plant.items()}
         parts = (
-            lower.terms.junction(engine.And, [_possible(plant, taken, lower) for plant, taken in by_plant.items()]),
+            lower.terms.junction(engine.And, possible.values()),
             lower(guard.requirement if guard else None),
             lower(guard.synthesis if guard else None),
         )
-        combined[event] = GuardTerms(*parts, lower.terms.junction(engine.And, parts))
+        combined[event] = GuardTerms(possible, *parts, lower.terms.junction(engine.And, parts))
     return combined
 
 

@@ -6,7 +6,6 @@ import textwrap
 from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
-from robosc.m2m.sct_to_engine import transform
 from robosc.m2t.c.comments import comment, comment_text, string_literal
 from robosc.m2t.c.expressions import CPrinter, clamp, type_name, unsigned_type
 from robosc.m2t.c.names import CNames
@@ -42,20 +41,19 @@ _HEADINGS = {
 }
 
 
-def generate(
-    model: sct.SupervisoryControlModel, settings: ControlLoop, templates: Path | None = None
-) -> dict[str, str]:
-    """The files `P_supervisor.h` and `P_supervisor.c` of a model with its supervisor.
+def generate(executed: engine.EngineModel, settings: ControlLoop, templates: Path | None = None) -> dict[str, str]:
+    """The files `P_supervisor.h` and `P_supervisor.c` of what a controller executes.
 
     `settings` become the default settings. The preconditions of `robosc.m2t.c.preconditions` must hold.
     """
+    model = executed.model
     names = CNames(model)
     prepared = {
         "p": names.prefix,
         "u": names.macro,
         "settings": settings,
         "stepwise": is_from_cif(model),
-        **_Preparation(transform(model), names).all(),
+        **_Preparation(executed, names).all(),
     }
     loaded = environment("robosc.m2t.c", templates)
     return {

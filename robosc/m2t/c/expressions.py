@@ -61,6 +61,9 @@ class CPrinter(Printer):
         engine.Or: "||",
     }
 
+    #: What stands before the name of a part of the state.
+    state = "state->"
+
     def __init__(self, names: CNames) -> None:
         self._names = names
 
@@ -94,7 +97,7 @@ class CPrinter(Printer):
         """Where the engine keeps a value, the function of a shared condition, an enumerator or a number."""
         match expression:
             case engine.VariableReference():
-                return f"{'old.' if expression.before else 'state->'}{self._names.of(expression.variable)}"
+                return f"{'old.' if expression.before else self.state}{self._names.of(expression.variable)}"
             case engine.InputReference():
                 return f"inputs->{self._names.of(expression.input)}"
             case engine.ConditionReference():

@@ -6,24 +6,32 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.m2t.c.comments import string_literal
-from robosc.m2t.ros.events import Reasons
-from robosc.m2t.ros.expressions import CppPrinter
+from robosc.m2t.c.expressions import CPrinter, integer_type
 from robosc.m2t.ros.names import CppNames
-from robosc.metamodel import rosgraph, sct
-from robosc.semantics.edges import departures, edges_by_event
+from robosc.metamodel import engine, rosgraph, sct
+from robosc.semantics.printing import Printed
 from robosc.semantics.roles import plant_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from robosc.m2t.ros.node import Node
+    from robosc.metamodel import expression as ex
+
+#: What adds a reason to the header's `BlockReasons`, by who gives it.
+_ADDED_BY = {
+    engine.Origin.requirement: "add_requirement",
+    engine.Origin.plants: "add_state",
+    engine.Origin.synthesis: "add_consequence",
+}
 
 
 @dataclass(frozen=True)
 class Reason:
-    """A reason as an expression of C++ (a text), and the condition under which it is one."""
+    """A reason: the condition under which it is one, if any, what adds it, and its text as an expression of C++."""
 
-    condition: str
+    condition: str | None
+    add: str
     text: str
 
 
@@ -31,84 +39,62 @@ class Reason:
 class Gate:
     """What goes to the robot and the supervisor lets through or blocks.
 
-    A word fit for names, the event's enumerator, its communication in the model.
+    A word fit for names, the event's enumerator, its communication in the model, what requirements say about it.
+    Without reasons nothing is known that could block it.
     """
 
     word: str
     event: str
     name: str
-    #: The requirements on it, as the model has them.
-    requirements: list[str]
-    #: Where a requirement fails.
-    failing: list[Reason]
-    #: Where a component or a communication has no transition for it.
-    missing: list[Reason]
-    #: What would follow if synthesis did not forbid it, as a literal of C++.
-    explanation: str | None
-
-    @property
-    def is_open(self) -> bool:
-        """Whether nothing is known that could block it."""
-        return not (self.failing or self.missing or self.explanation)
+    requirements: Sequence[str]
+    reasons: Sequence[Reason]
 
 
-def gates(graph: rosgraph.RosGraph, node: Node) -> dict[rosgraph.Sending, Gate]:
+def gates(graph: rosgraph.RosGraph, node: Node, executed: engine.EngineModel) -> dict[rosgraph.Sending, Gate]:
     """The gate of each command of a node."""
     sendings = [sending for publisher in graph.publishers for sending in publisher.sendings]
     sendings += [service.request for service in graph.serviceClients]
     sendings += [action.request for action in graph.actionClients]
     messages = [message for publisher in node.publishers for message in publisher.messages]
     messages += [client.request for client in node.clients]
-    maker = _Maker(graph)
+    printer = _Printer(CppNames(graph))
+    events = {event.event: event for event in executed.events}
     return {
-        sending: maker.gate(message.word, sending.event) for message, sending in zip(messages, sendings, strict=True)
+        sending: Gate(
+            message.word,
+            message.event,
+            _name(sending.event),
+            message.requirements,
+            [printer.reason(reason) for reason in events[sending.event].reasons],
+        )
+        for message, sending in zip(messages, sendings, strict=True)
     }
 
 
-class _Maker:
-    def __init__(self, graph: rosgraph.RosGraph) -> None:
-        self._names = CppNames(graph)
-        self._printer = CppPrinter(self._names)
-        self._reasons = Reasons(graph.model)
-        self._edges = edges_by_event(graph.model.plants)
-        self._requirements: dict[sct.Event, list[sct.Requirement]] = {}
-        for requirement in graph.model.requirements:
-            self._requirements.setdefault(requirement.event, []).append(requirement)
+def _name(event: sct.Event) -> str:
+    plant = plant_of(event)
+    return plant.origin or plant.name
 
-    def gate(self, word: str, event: sct.Event) -> Gate:
-        plant = plant_of(event)
-        explanation = self._reasons.explanation(event)
-        return Gate(
-            word,
-            self._names.c.enumerator(event),
-            plant.origin or plant.name,
-            self._reasons.requirements(event),
-            [
-                Reason(self._failing(requirement), string_literal(requirement.text or "a requirement"))
-                for requirement in self._requirements.get(event, ())
-            ],
-            [reason for plant, edges in self._edges.get(event, {}).items() for reason in self._missing(plant, edges)],
-            string_literal(explanation) if explanation else None,
-        )
 
-    def _failing(self, requirement: sct.Requirement) -> str:
-        holds = self._printer(requirement.condition)
-        return holds if requirement.kind == sct.RequirementKind.disables else f"!({holds})"
+class _Printer(CPrinter):
+    """Prints conditions on the state of the node's supervisor in C++."""
 
-    def _missing(self, plant: sct.Plant, edges: Sequence[sct.Edge]) -> list[Reason]:
-        """That a plant can take none of its edges for an event, with its location."""
-        places = departures(plant, edges)
-        if len(places) == len(plant.locations) and not any(edge.guard for edge in edges):
-            return []
-        possible = " || ".join(self._taken(location, edge) for location, edge in places)
-        origin = plant.origin or plant.name
-        if len(plant.locations) == 1:
-            text = string_literal(f"{origin}.{plant.locations[0].name}")
-        else:
-            location = f"{self._names.c.lookup(plant)}({self._names.state(plant)})"
-            text = f"std::string({string_literal(origin + '.')}) + {location}"
-        return [Reason(f"!({possible})", text)]
+    state = "supervisor_.state."
 
-    def _taken(self, location: sct.Location, edge: sct.Edge) -> str:
-        here = self._names.is_in(location)
-        return here if edge.guard is None else f"({here} && {self._printer.tight(edge.guard)})"
+    def __init__(self, names: CppNames) -> None:
+        super().__init__(names.c)
+        self._places = names
+
+    def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
+        """A conversion is a cast of C++."""
+        if isinstance(expression, engine.Conversion) and not (expression.widens and expression.bits == 16):
+            kind = integer_type(expression.bits, signed=expression.signed)
+            return Printed(f"static_cast<std::{kind}>({given[0].text})")
+        return super().write(expression, given)
+
+    def reason(self, reason: engine.Reason) -> Reason:
+        text = string_literal(reason.text)
+        if reason.location is not None:
+            plant = reason.location.plant
+            text = f"std::string({text}) + {self._places.c.lookup(plant)}({self._places.state(plant)})"
+        return Reason(self(reason.condition) if reason.condition else None, _ADDED_BY[reason.kind], text)

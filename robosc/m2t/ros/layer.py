@@ -4,34 +4,33 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.m2m.sct_to_engine import transform
-from robosc.m2t.ros.gates import gates
 from robosc.m2t.ros.names import CppNames
-from robosc.m2t.ros.node import Node
 from robosc.metamodel.engine import Role
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
-    from robosc.m2t.ros.node import EventHandler
-    from robosc.metamodel import rosgraph
+    from robosc.m2t.ros.gates import Gate
+    from robosc.m2t.ros.node import EventHandler, Node
+    from robosc.metamodel import engine, rosgraph
 
 
 class LayerNode:
-    """The layer of one graph: `node` is what it shares with the controller's node."""
+    """The layer of one graph: `node` is what it shares with the controller's, `gates` are those of its commands."""
 
-    def __init__(self, graph: rosgraph.RosGraph) -> None:
-        self.node = Node(graph)
+    def __init__(
+        self, graph: rosgraph.RosGraph, node: Node, gates: Iterable[Gate], executed: engine.EngineModel
+    ) -> None:
+        self.node = node
         messages = [message for publisher in self.node.publishers for message in publisher.messages]
         messages += [client.request for client in self.node.clients]
         #: What the controller sends, by the enumerator of its event.
-        self.gates = {gate.event: gate for gate in gates(graph, self.node).values()}
+        self.gates = {gate.event: gate for gate in gates}
         #: Events of the controller and internal ones that change the node's own data.
         self.changing = [*self.node.internal, *(message.reaction for message in messages if message.reaction)]
         #: Events that choose provided data, which is none of the layer's business.
-        events = transform(graph.model).events
         names = CppNames(graph)
-        self.ignored = [names.c.enumerator(event.event) for event in events if event.role == Role.data]
+        self.ignored = [names.c.enumerator(event.event) for event in executed.events if event.role == Role.data]
 
     @property
     def received(self) -> list[EventHandler]:

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 from robosc.configuration.parameters import model_parameters
 from robosc.m2t.c.expressions import type_name
 from robosc.m2t.ros import reports
-from robosc.m2t.ros.events import Reasons, message_named
 from robosc.m2t.ros.expressions import CppPrinter
 from robosc.m2t.ros.names import CppNames
+from robosc.metamodel import engine, rosgraph, sct
 from robosc.metamodel import expression as ex
-from robosc.metamodel import rosgraph, sct
 from robosc.semantics.definition import reported
 from robosc.semantics.messages import (
     first_value,
     holds_objects,
     is_structured,
+    message_named,
     parts_with_headers,
     paths_set,
     reads_elements,
@@ -25,7 +25,6 @@ from robosc.semantics.messages import (
 )
 from robosc.semantics.naming import Names
 from robosc.semantics.operators import PRECEDENCE
-from robosc.semantics.roles import Roles
 from robosc.semantics.typing import DOUBLE, ArrayType, infer
 from robosc.semantics.walks import parts
 
@@ -112,7 +111,7 @@ class Message:
 
     word: str
     event: str
-    requirements: list[str]
+    requirements: Sequence[str]
     alternatives: list[Alternative]
     may_fail: bool
     reads_elements: bool
@@ -148,7 +147,7 @@ class Client:
     error: EventHandler
     feedback: EventHandler | None
     cancel: str | None
-    cancel_requirements: list[str]
+    cancel_requirements: Sequence[str]
     reset: str
 
     @property
@@ -223,17 +222,21 @@ class Node:
     """
 
     def __init__(
-        self, graph: rosgraph.RosGraph, on_shutdown: Sequence[str] = (), on_withheld: Sequence[str] = ()
+        self,
+        graph: rosgraph.RosGraph,
+        executed: engine.EngineModel,
+        on_shutdown: Sequence[str] = (),
+        on_withheld: Sequence[str] = (),
     ) -> None:
         self._graph = graph
         self._names = CppNames(graph)
         self._printer = CppPrinter(self._names)
-        self._reasons = Reasons(graph.model)
+        self._events = {event.event: event for event in executed.events}
         self._sent = Names()
         self.robot = graph.name
         self.prefix = self._names.c.prefix
         #: How calls of the engine say what time it is; empty where the model has no times.
-        self.at = ", at()" if Roles(graph.model).timeouts else ""
+        self.at = ", at()" if executed.timers else ""
         self.enumerations = [self._enumeration(enumeration) for enumeration in graph.enumerations]
         self.conversions = [self._conversion(conversion) for conversion in graph.conversions]
         self._carriers: dict[rosgraph.Reception, tuple[str, rosgraph.Interface]] = {}
@@ -485,7 +488,7 @@ class Node:
             self._handler(client.error),
             self._reception(feedback) if feedback else None,
             self._names.c.enumerator(cancel) if cancel else None,
-            self._reasons.of(cancel) if cancel else [],
+            self._events[cancel].remarks if cancel else [],
             self._names.c.enumerator(client.reset),
         )
 
@@ -496,7 +499,9 @@ class Node:
         publisher, message = next(
             (topic, message) for topic in self.publishers for message in topic.messages if message.event == event
         )
-        return LastMessage(publisher, message, self._reasons.requirements(sending.event))
+        reasons = self._events[sending.event].reasons
+        overrides = [reason.text for reason in reasons if reason.kind == engine.Origin.requirement]
+        return LastMessage(publisher, message, overrides)
 
     def _message(self, sending: rosgraph.Sending) -> Message:
         plant: sct.Plant = sending.event.eContainer()
@@ -505,7 +510,7 @@ class Node:
         return Message(
             self._sent.fresh(self._names.c.member(plant).removeprefix(f"{plant.kind.name}_")),
             self._names.c.enumerator(sending.event),
-            self._reasons.of(sending.event),
+            self._events[sending.event].remarks,
             [self._alternative(provided) for provided in sending.alternatives],
             reads or any(_may_be_infinite(field) for given in sending.alternatives for field in given.fields),
             reads,

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic
     from robosc.m2t.models import Models, TraceTest
     from robosc.m2t.ros.statuses import Status
+    from robosc.metamodel.engine import EngineModel
 
     Values = Mapping[str, Any]
 
@@ -121,11 +122,11 @@ class RosTarget:
         graph = models.rosgraph
         assert graph is not None
         if self.kind == "layer":
-            layer = LayerNode(graph)
-            name = configuration.layer_name(graph)
-            return self._files(graph, name, configuration, layer.node, layer, None, into)
-        node = Node(graph, configuration.on_shutdown, configuration.on_withheld)
-        return self._files(graph, configuration.package_name(graph), configuration, node, None, tests, into)
+            node, name = Node(graph, models.engine), configuration.layer_name(graph)
+        else:
+            node = Node(graph, models.engine, configuration.on_shutdown, configuration.on_withheld)
+            name = configuration.package_name(graph)
+        return self._files(graph, models.engine, name, configuration, node, tests, into)
 
     def interfaces(self, models: Models, configuration: Configuration) -> dict[str, str]:
         """The package with the type of the robot's state, where the configuration asks for one: text by path.
@@ -156,15 +157,16 @@ class RosTarget:
     def _files(  # noqa: PLR0913, PLR0917
         self,
         graph: rosgraph.RosGraph,
+        executed: EngineModel,
         name: str,
         configuration: Configuration,
         node: Node,
-        layer: LayerNode | None,
         tests: TraceTest | None,
         into: str | None,
     ) -> dict[str, str]:
         kind, ros = self.kind, self.ros
-        commands = gates(graph, node) if configuration.diagnostics_ms else {}
+        commands = gates(graph, node, executed) if configuration.diagnostics_ms or kind == "layer" else {}
+        layer = LayerNode(graph, node, commands.values(), executed) if kind == "layer" else None
         told = statuses(graph, node, commands) if configuration.diagnostics_ms else []
         included = self._included(node, layer, told, tells_commands=any(status.commands for status in told))
         source, definition = f"src/{name}_node.cpp", f"include/{name}/definition.hpp"
@@ -220,7 +222,7 @@ class RosTarget:
             "typed_fields": typed,
             "typed": kind_of_state if configuration.typed_state else None,
             "remembers": bool(node.may_withhold and (told or node.instead)),
-            "gates": list(commands.values()) if told else list(layer.gates.values()) if layer else [],
+            "gates": list(commands.values()),
             "writes_log": configuration.write_events_to_log,
             "definition": definition_text(graph),
             "no_stop": _no_stop(node, configuration),
@@ -237,7 +239,7 @@ class RosTarget:
         texts = {path: templates.get_template(template).render(values) for path, template in files.items()}
         texts[source] = fold(texts[source])
         texts |= {f"include/{header}.hpp": text for header, text in shipped(included).items()}
-        supervisor = engine.generate(graph.model, configuration.control_loop)
+        supervisor = engine.generate(executed, configuration.control_loop)
         # The header of the engine is for others, too, where they can find it.
         places = {".h": f"include/{name}" if into else "src", ".c": "src"}
         texts |= {f"{places[file[-2:]]}/{file}": text for file, text in supervisor.items()}

@@ -11,12 +11,11 @@ from robosc.configuration import Configuration
 from robosc.configuration.parameters import controller_parameters, layer_parameters, model_parameters
 from robosc.diagnostics import START, Diagnostic, Severity
 from robosc.m2t.c.preconditions import preconditions as engine_preconditions
-from robosc.m2t.ros.events import Reasons, message_named
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.metamodel.places import place
 from robosc.metamodel.reflection import tree
-from robosc.semantics.messages import holds_objects, parts_of, path_of
+from robosc.semantics.messages import holds_objects, message_named, parts_of, path_of
 from robosc.semantics.typing import DOUBLE, ArrayType, declared_type, infer
 
 if TYPE_CHECKING:
@@ -161,7 +160,6 @@ def _outside(
     graph: rosgraph.RosGraph, configuration: Configuration, setting: str, names: Sequence[str]
 ) -> Iterator[Diagnostic]:
     """What can't be sent where a setting names it; and what is sent then, requirements or not."""
-    reasons = Reasons(graph.model)
     for place_of_name, name in enumerate(names):
         key = (setting, place_of_name)
         sending = message_named(graph, name)
@@ -170,8 +168,10 @@ def _outside(
             hint = f"messages to the robot: {', '.join(sent)}" if sent else None
             yield configuration.error(key, f'"{setting}": {name} is no message that the node sends', hint)
             continue
-        for requirement in reasons.requirements(sending.event):
-            yield configuration.warning(key, f'"{setting}": {name} is sent then in spite of "{requirement}"')
+        for requirement in graph.model.requirements:
+            if requirement.event is sending.event and requirement.text:
+                message = f'"{setting}": {name} is sent then in spite of "{requirement.text}"'
+                yield configuration.warning(key, message)
 
 
 def _nothing_safe(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterator[Diagnostic]:

@@ -29,6 +29,6 @@ def generate(models: Models, configuration: Configuration, into: str | None = No
     build = "CMakeLists.txt" if into is None else "fragment.cmake"
     template = environment("robosc.m2t.supervisor").get_template(f"{build}.j2")
     return {
-        **engine.generate(models.sct, configuration.control_loop),
+        **engine.generate(models.engine, configuration.control_loop),
         build: template.render(p=names.prefix, u=names.macro, version=configuration.package.version, into=into),
     }

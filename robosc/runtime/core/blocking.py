@@ -5,16 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.semantics.edges import edges_by_event, edges_from
+from robosc.metamodel.engine import Origin
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from robosc.engine import Engine
-    from robosc.metamodel import rosgraph, sct
-    from robosc.runtime.core.node_data import NodeData
+    from robosc.metamodel import engine as executed
+    from robosc.metamodel import sct
 
+#: What each kind of reason is called in `~/blocked`, in the order in which they are told.
+_KINDS = {Origin.requirement: "requirement", Origin.plants: "state", Origin.synthesis: "synthesis"}
 #: How a sentence on each kind of reason begins; the texts of the reasons follow.
 _SAID = {
     "requirement": ("forbidden", ": "),
@@ -38,26 +40,27 @@ class Reason:
 class Blocking:
     """Looks for reasons: requirements that fail; else plants without a transition; else what synthesis prevents."""
 
-    def __init__(self, graph: rosgraph.RosGraph, engine: Engine, data: NodeData) -> None:
+    def __init__(self, engine: Engine) -> None:
         self.engine = engine
-        self.data = data
-        assert graph.model.supervisor is not None
-        guards = graph.model.supervisor.guards
-        self._edges = edges_by_event(graph.model.plants)
-        self._explained = {guard.event: [guard.explanation] for guard in guards if guard.explanation}
+        self._events = {event.name: event for event in engine.executed.events}
+        self._conditions: dict[executed.Reason, Callable[[], bool]] = {}
 
     def reason(self, event: sct.Event) -> Reason:
         """Why an event is blocked that the supervisor does not let happen now."""
-        failing = self.engine.failing(event_name(event))
-        if failing:
-            return Reason("requirement", [requirement.text or "a requirement" for requirement in failing])
-        missing = [place for plant in self._edges.get(event, ()) for place in self._missing(plant, event)]
-        return Reason("state", missing) if missing else Reason("synthesis", self._explained.get(event, []))
+        reasons = self._events[event_name(event)].reasons
+        for origin, kind in _KINDS.items():
+            texts = [self._text(reason) for reason in reasons if reason.kind == origin and self._applies(reason)]
+            if texts:
+                return Reason(kind, texts)
+        return Reason(kind, ())
 
-    def _missing(self, plant: sct.Plant, event: sct.Event) -> list[str]:
-        """The location of a plant that takes part in the event, where it has no transition for it."""
-        here = next(location for location in plant.locations if self.data.is_in(location))
-        possible = any(
-            edge.event == event and (edge.guard is None or self.data.value(edge.guard)) for edge in edges_from(here)
-        )
-        return [] if possible else [f"{plant.origin or plant.name}.{here.name}"]
+    def _applies(self, reason: executed.Reason) -> bool:
+        if reason.condition is None:
+            return True
+        if reason not in self._conditions:
+            self._conditions[reason] = self.engine.condition(reason.condition)
+        return self._conditions[reason]()
+
+    def _text(self, reason: executed.Reason) -> str:
+        held = reason.location
+        return reason.text + (held.plant.locations[self.engine.cell(held)].name if held else "")

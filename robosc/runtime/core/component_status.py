@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from robosc.metamodel import rosgraph, sct
     from robosc.runtime.core.blocking import Blocking
     from robosc.runtime.core.json_text import Json
+    from robosc.runtime.core.node_data import NodeData
     from robosc.runtime.core.port import Port
 
 
@@ -34,9 +35,10 @@ class Own:
 class StatusReporter:
     """Publishes the states of all components once in a number of ticks, for whoever listens; none with 0."""
 
-    def __init__(self, graph: rosgraph.RosGraph, port: Port, blocking: Blocking, own: Own) -> None:
+    def __init__(self, graph: rosgraph.RosGraph, port: Port, data: NodeData, blocking: Blocking, own: Own) -> None:
         self._components = components(graph)
         self._port = port
+        self._data = data
         self._blocking = blocking
         self._own = own
         self._every = 0
@@ -63,7 +65,7 @@ class StatusReporter:
             state = plant.locations[self._blocking.engine.location(plant)].name
             values = [("state", state)]
             values += [(variable.name, _text(self._blocking.engine.value(variable))) for variable in plant.variables]
-        values += [(variable.name, _text(shown(self._blocking.data.variables[variable]))) for variable in parts.kept]
+        values += [(variable.name, _text(shown(self._data.variables[variable]))) for variable in parts.kept]
         values += [(request(sending), self._verdict(sending.event)) for sending in parts.commands]
         return ComponentStatus(parts.name, bool(faults), "; ".join([state, *faults]), values)
 

@@ -58,9 +58,9 @@ class EventHandler:
         self.set_parameters(settings.parameters)
         self._times = Times(self._control.timers, event_loop, self._expire)
         self._reports = StateReporter(graph, self._control.engine, self._data, port, settings.configuration)
-        self._blocking = Blocking(graph, self._control.engine, self._data)
+        self._blocking = Blocking(self._control.engine)
         own = Own(self._held_back, self._faults)
-        self._statuses = StatusReporter(graph, port, self._blocking, own)
+        self._statuses = StatusReporter(graph, port, self._data, self._blocking, own)
         if "diagnostics_ms" in settings.parameters:
             self._statuses.report_every(settings.number("diagnostics_ms"), settings.number("period_ms"))
         self._warn = Throttle(port.warn, event_loop.clock)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.semantics.edges import edges_from
+from robosc.semantics.edges import edges_from, edges_of
 from robosc.semantics.evaluation import evaluate, saturate
 
 #: The location of each plant, and the value of each variable: an integer, a boolean or a literal.
@@ -44,6 +44,23 @@ def blocked(model: sct.SupervisoryControlModel, event: sct.Event, state: State) 
     if guard is not None and not _holds(guard.requirement, state):
         return "requirement"
     return "synthesis" if guard is not None and not _holds(guard.synthesis, state) else None
+
+
+def failing(model: sct.SupervisoryControlModel, event: sct.Event, state: State) -> list[sct.Requirement]:
+    """The requirements on an event that forbid it."""
+    return [
+        requirement
+        for requirement in model.requirements
+        if requirement.event is event
+        and _holds(requirement.condition, state) == (requirement.kind == sct.RequirementKind.disables)
+    ]
+
+
+def without_edge(model: sct.SupervisoryControlModel, event: sct.Event, state: State) -> list[tuple[str, str]]:
+    """The plants that keep an event from happening, each with its location."""
+    plants = [plant for plant in model.plants if any(edge.event is event for edge in edges_of(plant))]
+    edges = zip(plants, _edges(model, event, state), strict=True)
+    return [(plant.name, state[plant].name) for plant, edge in edges if edge is None or not _holds(edge.guard, state)]
 
 
 def after(

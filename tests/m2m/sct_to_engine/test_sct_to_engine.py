@@ -16,7 +16,7 @@ from robosc.metamodel.reflection import tree
 from robosc.synthesis import synthesize
 from tests.m2m.sct_to_engine import oracle
 from tests.random_sct import sct_models
-from tests.sct_models import edge, model, plant
+from tests.sct_models import disables, edge, model, needs, plant
 from tests.searching import examples
 from tests.small_stack import on_small_stack
 
@@ -231,6 +231,46 @@ def test_what_guards_have_in_common_is_a_condition() -> None:
     assert all(not condition.readers for condition in made.conditions)
 
 
+def test_reasons_are_requirements_plants_and_what_synthesis_prevents() -> None:
+    p = plant(
+        "p",
+        {
+            "here": [edge("c_trigger", "there", when="n < 3"), edge("c_tau1")],
+            "there": [edge("c_tau1", "far")],
+            "far": [],
+        },
+        controllable=["c_trigger", "c_tau1"],
+        variables={"n": "0..9"},
+    )
+    q = plant("q", {"on": [edge("p.c_trigger", when="b")]}, variables={"b": "bool"})
+    requirements = [
+        needs("p.c_trigger", "p.n > 5", "requirement one"),
+        disables("p.c_trigger", "p.there and q.b"),
+        needs("p.c_trigger", "p.n < 10", "which always holds"),
+        needs("p.c_tau1", "p.n == 0", "requirement two"),
+    ]
+    made = model([p, q], requirements, guards={})
+    guard = next(guard for guard in made.supervisor.guards if guard.event.name == "c_trigger")
+    guard.explanation = "p stays far for ever"
+    found = {
+        event.name: [
+            (reason.kind.name, text(reason.condition), reason.text, reason.location and reason.location.name)
+            for reason in event.reasons
+        ]
+        for event in transform(made).events
+    }
+    assert found == {
+        "p.c_tau1": [("requirement", "p.n > 0", "requirement two", None)],
+        "p.c_trigger": [
+            ("requirement", "p.n <= 5", "requirement one", None),
+            ("requirement", "(p == there) and q.b", "a requirement", None),
+            ("plants", "(p != here) or (p.n >= 3)", "p.", "p"),
+            ("plants", "not q.b", "q.on", None),
+            ("synthesis", "true", "p stays far for ever", None),
+        ],
+    }
+
+
 def test_readers_are_those_of_what_an_event_writes() -> None:
     p = plant(
         "p",
@@ -285,6 +325,9 @@ def test_an_engine_model_means_what_its_sct_model_does(made: sct.SupervisoryCont
         for name, event in zip(executed.events, events, strict=True):
             reason = executed.blocked_by(name)
             assert (None if reason is None else reason.value) == oracle.blocked(made, event, state)
+            assert executed.failing(name) == oracle.failing(made, event, state)
+            if event.kind in (sct.EventKind.cancel, sct.EventKind.trigger):
+                assert _without_edge(executed, event) == oracle.without_edge(made, event, state)
         possible = [event for event in events if oracle.blocked(made, event, state) is None]
         if not possible:
             break
@@ -300,6 +343,18 @@ def test_an_engine_model_means_what_its_sct_model_does(made: sct.SupervisoryCont
                 expected = state[variable]
                 shown = expected.name if isinstance(expected, ex.EnumerationLiteral) else expected
                 assert executed.value(variable) == shown
+
+
+def _without_edge(executed: Engine, event: sct.Event) -> list[tuple[str, str]]:
+    """What the engine model says of the plants that keep an event from happening now: each with its location."""
+    (element,) = (element for element in executed.executed.events if element.event is event)
+    found = []
+    for reason in element.reasons:
+        if reason.kind == engine.Origin.plants and executed.condition(reason.condition)():
+            place = reason.location and reason.location.plant.locations[executed.cell(reason.location)].name
+            plant, _, location = f"{reason.text}{place or ''}".rpartition(".")
+            found.append((plant, location))
+    return found
 
 
 def _drawn(kind: ex.Type, random) -> tuple[object, object]:

@@ -12,8 +12,8 @@ from robosc.metamodel import rosgraph
 
 def test_what_a_trigger_changes_is_done_after_its_data_is_made() -> None:
     robot = robosc.load(Path(__file__).parent / "courier.rscd")
-    robosc.to_sct(robot)
     graph = robosc.to_rosgraph(robot)
+    graph.model.supervisor = robosc.synthesize(graph.model)
     variable = next(variable for variable in graph.variables if variable.name == "total")
     (sending,) = (sending for topic in graph.publishers for sending in topic.sendings if sending.name == "sum")
     plant = next(plant for plant in graph.model.plants if plant.name == "component_Scanner")
@@ -24,7 +24,8 @@ def test_what_a_trigger_changes_is_done_after_its_data_is_made() -> None:
             assignments=[rosgraph.NodeAssignment(variable=variable, value=ex.IntegerLiteral(value=7))],
         )
     )
-    message = next(message for topic in Node(graph).publishers for message in topic.messages if message.word == "sum")
+    publishers = Node(graph, robosc.to_engine(graph.model)).publishers
+    message = next(message for topic in publishers for message in topic.messages if message.word == "sum")
     assert message.reaction is not None
     (reaction,) = message.reaction.reactions
     assert reaction.condition == "supervisor_.state.component_Scanner == courier_component_Scanner_looking"

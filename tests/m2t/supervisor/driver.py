@@ -156,7 +156,7 @@ def write(
 ) -> Path:
     """Writes header and source; returns the source. With `small=0` the control loop is that of a large robot."""
     with patch.object(sct_to_engine, "POLLED", small):
-        files = engine.generate(model, settings or ControlLoop())
+        files = engine.generate(sct_to_engine.transform(model), settings or ControlLoop())
     for name, text in files.items():
         (folder / name).write_text(text)
     return folder / f"{CNames(model).prefix}_supervisor.c"

@@ -227,8 +227,8 @@ class Layer {
 
   // What the controller sends: whether it goes on, and if not, why.
 
-  // requirement speed needs Guard.clear
-  // requirement speed needs Guard.charge > 20
+  // requirement speed needs Guard.clear (usher.rscd)
+  // requirement speed needs Guard.charge > 20 (usher.rscd)
   bool pass_speed() {
     if (usher_perform(&supervisor_, usher_message_speed_c_trigger)) {
       usher_settle(&supervisor_);
@@ -247,7 +247,7 @@ class Layer {
     return false;
   }
 
-  // requirement light needs Guard.clear
+  // requirement light needs Guard.clear (usher.rscd)
   bool pass_light() {
     if (usher_perform(&supervisor_, usher_service_light_c_trigger)) {
       usher_settle(&supervisor_);
@@ -257,7 +257,7 @@ class Layer {
     return false;
   }
 
-  // requirement go_to needs Guard.clear
+  // requirement go_to needs Guard.clear (usher.rscd)
   bool pass_go_to() {
     if (usher_perform(&supervisor_, usher_action_go_to_c_trigger)) {
       usher_settle(&supervisor_);
@@ -370,10 +370,10 @@ class Layer {
   // Why the supervisor does not allow it.
   BlockReasons against_speed() const {
     BlockReasons reasons;
-    if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
+    if (supervisor_.state.component_Guard == usher_component_Guard_blocked) {
       reasons.add_requirement("requirement speed needs Guard.clear");
     }
-    if (!(Integer(supervisor_.state.component_Guard_charge) > 20)) {
+    if (supervisor_.state.component_Guard_charge <= 20U) {
       reasons.add_requirement("requirement speed needs Guard.charge > 20");
     }
     return reasons;
@@ -382,10 +382,10 @@ class Layer {
   // Why the supervisor does not allow it.
   BlockReasons against_light() const {
     BlockReasons reasons;
-    if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
+    if (supervisor_.state.component_Guard == usher_component_Guard_blocked) {
       reasons.add_requirement("requirement light needs Guard.clear");
     }
-    if (!(supervisor_.state.service_light == usher_service_light_idle)) {
+    if (supervisor_.state.service_light != usher_service_light_idle) {
       reasons.add_state(std::string("Lamp.light.") +
           usher_location_name_service_light(supervisor_.state.service_light));
     }
@@ -395,14 +395,14 @@ class Layer {
   // Why the supervisor does not allow it.
   BlockReasons against_go_to() const {
     BlockReasons reasons;
-    if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
+    if (supervisor_.state.component_Guard == usher_component_Guard_blocked) {
       reasons.add_requirement("requirement go_to needs Guard.clear");
     }
-    if (!(supervisor_.state.action_go_to == usher_action_go_to_idle)) {
+    if (supervisor_.state.action_go_to != usher_action_go_to_idle) {
       reasons.add_state(std::string("Navigation.go_to.") +
           usher_location_name_action_go_to(supervisor_.state.action_go_to));
     }
-    if (!(supervisor_.state.component_Navigation == usher_component_Navigation_resting)) {
+    if (supervisor_.state.component_Navigation == usher_component_Navigation_going) {
       reasons.add_state(std::string("Navigation.") +
           usher_location_name_component_Navigation(supervisor_.state.component_Navigation));
     }

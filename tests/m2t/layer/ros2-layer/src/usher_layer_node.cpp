@@ -236,8 +236,8 @@ class Layer : public rclcpp::Node {
 
   // What the controller sends: whether it goes on, and if not, why.
 
-  // requirement speed needs Guard.clear
-  // requirement speed needs Guard.charge > 20
+  // requirement speed needs Guard.clear (usher.rscd)
+  // requirement speed needs Guard.charge > 20 (usher.rscd)
   bool pass_speed() {
     if (usher_perform(&supervisor_, usher_message_speed_c_trigger)) {
       usher_settle(&supervisor_);
@@ -256,7 +256,7 @@ class Layer : public rclcpp::Node {
     return false;
   }
 
-  // requirement light needs Guard.clear
+  // requirement light needs Guard.clear (usher.rscd)
   bool pass_light() {
     if (usher_perform(&supervisor_, usher_service_light_c_trigger)) {
       usher_settle(&supervisor_);
@@ -266,7 +266,7 @@ class Layer : public rclcpp::Node {
     return false;
   }
 
-  // requirement go_to needs Guard.clear
+  // requirement go_to needs Guard.clear (usher.rscd)
   bool pass_go_to() {
     if (usher_perform(&supervisor_, usher_action_go_to_c_trigger)) {
       usher_settle(&supervisor_);
@@ -380,10 +380,10 @@ class Layer : public rclcpp::Node {
   // Why the supervisor does not allow it.
   BlockReasons against_speed() const {
     BlockReasons reasons;
-    if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
+    if (supervisor_.state.component_Guard == usher_component_Guard_blocked) {
       reasons.add_requirement("requirement speed needs Guard.clear");
     }
-    if (!(Integer(supervisor_.state.component_Guard_charge) > 20)) {
+    if (supervisor_.state.component_Guard_charge <= 20U) {
       reasons.add_requirement("requirement speed needs Guard.charge > 20");
     }
     return reasons;
@@ -392,10 +392,10 @@ class Layer : public rclcpp::Node {
   // Why the supervisor does not allow it.
   BlockReasons against_light() const {
     BlockReasons reasons;
-    if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
+    if (supervisor_.state.component_Guard == usher_component_Guard_blocked) {
       reasons.add_requirement("requirement light needs Guard.clear");
     }
-    if (!(supervisor_.state.service_light == usher_service_light_idle)) {
+    if (supervisor_.state.service_light != usher_service_light_idle) {
       reasons.add_state(std::string("Lamp.light.") +
           usher_location_name_service_light(supervisor_.state.service_light));
     }
@@ -405,14 +405,14 @@ class Layer : public rclcpp::Node {
   // Why the supervisor does not allow it.
   BlockReasons against_go_to() const {
     BlockReasons reasons;
-    if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
+    if (supervisor_.state.component_Guard == usher_component_Guard_blocked) {
       reasons.add_requirement("requirement go_to needs Guard.clear");
     }
-    if (!(supervisor_.state.action_go_to == usher_action_go_to_idle)) {
+    if (supervisor_.state.action_go_to != usher_action_go_to_idle) {
       reasons.add_state(std::string("Navigation.go_to.") +
           usher_location_name_action_go_to(supervisor_.state.action_go_to));
     }
-    if (!(supervisor_.state.component_Navigation == usher_component_Navigation_resting)) {
+    if (supervisor_.state.component_Navigation == usher_component_Navigation_going) {
       reasons.add_state(std::string("Navigation.") +
           usher_location_name_component_Navigation(supervisor_.state.component_Navigation));
     }

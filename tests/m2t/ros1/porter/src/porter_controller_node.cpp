@@ -321,19 +321,19 @@ class Controller {
   // Before an event; false withholds it.
   bool before(porter_event event) {
     switch (event) {
-      // requirement crawl needs Base.left = near and Base.parked
+      // requirement crawl needs Base.left = near and Base.parked (porter.rscd)
       case porter_message_crawl_c_trigger:
         return !held() && or_withheld(porter_message_crawl_c_trigger, prepare_crawl());
-      // requirement halt needs Base.left != near and Base.parked
+      // requirement halt needs Base.left != near and Base.parked (porter.rscd)
       case porter_message_halt_c_trigger:
         return !held() && prepare_halt();
-      // requirement grip needs Desk.ordered
+      // requirement grip needs Desk.ordered (porter.rscd)
       case porter_service_grip_c_trigger:
         return !held() && prepare_grip();
-      // requirement release needs Desk.open
+      // requirement release needs Desk.open (porter.rscd)
       case porter_service_release_c_trigger:
         return !held() && prepare_release();
-      // requirement travel needs Desk.ordered and Gripper.grips
+      // requirement travel needs Desk.ordered and Gripper.grips (porter.rscd)
       case porter_action_travel_c_trigger:
         return !held() && !travel_client_->busy() && or_withheld(porter_action_travel_c_trigger, prepare_travel());
       case porter_service_grip_c_reset:
@@ -374,7 +374,7 @@ class Controller {
         travel_client_->start(travel_goal_);
         direction = "out";
         break;
-      // travel is cancelled where a requirement on it no longer holds
+      // travel is cancelled where a requirement on it no longer holds (porter.rscd)
       case porter_action_travel_c_cancel:
         travel_client_->cancel();
         direction = "out";
@@ -471,8 +471,8 @@ class Controller {
   // Why the supervisor does not allow it.
   BlockReasons against_crawl() const {
     BlockReasons reasons;
-    if (!(supervisor_.state.component_Base_left == porter_Distance_near && supervisor_.state.component_Base ==
-        porter_component_Base_parked)) {
+    if (supervisor_.state.component_Base_left == porter_Distance_distant || supervisor_.state.component_Base ==
+        porter_component_Base_travelling) {
       reasons.add_requirement("requirement crawl needs Base.left = near and Base.parked");
     }
     return reasons;
@@ -481,8 +481,8 @@ class Controller {
   // Why the supervisor does not allow it.
   BlockReasons against_halt() const {
     BlockReasons reasons;
-    if (!(supervisor_.state.component_Base_left != porter_Distance_near && supervisor_.state.component_Base ==
-        porter_component_Base_parked)) {
+    if (supervisor_.state.component_Base_left == porter_Distance_near || supervisor_.state.component_Base ==
+        porter_component_Base_travelling) {
       reasons.add_requirement("requirement halt needs Base.left != near and Base.parked");
     }
     return reasons;
@@ -491,14 +491,14 @@ class Controller {
   // Why the supervisor does not allow it.
   BlockReasons against_grip() const {
     BlockReasons reasons;
-    if (!(supervisor_.state.component_Desk == porter_component_Desk_ordered)) {
+    if (supervisor_.state.component_Desk == porter_component_Desk_open) {
       reasons.add_requirement("requirement grip needs Desk.ordered");
     }
-    if (!(supervisor_.state.service_grip == porter_service_grip_idle)) {
+    if (supervisor_.state.service_grip != porter_service_grip_idle) {
       reasons.add_state(std::string("Gripper.grip.") +
           porter_location_name_service_grip(supervisor_.state.service_grip));
     }
-    if (!(supervisor_.state.component_Gripper == porter_component_Gripper_empty)) {
+    if (supervisor_.state.component_Gripper != porter_component_Gripper_empty) {
       reasons.add_state(std::string("Gripper.") +
           porter_location_name_component_Gripper(supervisor_.state.component_Gripper));
     }
@@ -508,14 +508,14 @@ class Controller {
   // Why the supervisor does not allow it.
   BlockReasons against_release() const {
     BlockReasons reasons;
-    if (!(supervisor_.state.component_Desk == porter_component_Desk_open)) {
+    if (supervisor_.state.component_Desk == porter_component_Desk_ordered) {
       reasons.add_requirement("requirement release needs Desk.open");
     }
-    if (!(supervisor_.state.service_release == porter_service_release_idle)) {
+    if (supervisor_.state.service_release != porter_service_release_idle) {
       reasons.add_state(std::string("Gripper.release.") +
           porter_location_name_service_release(supervisor_.state.service_release));
     }
-    if (!(supervisor_.state.component_Gripper == porter_component_Gripper_closed)) {
+    if (supervisor_.state.component_Gripper != porter_component_Gripper_closed) {
       reasons.add_state(std::string("Gripper.") +
           porter_location_name_component_Gripper(supervisor_.state.component_Gripper));
     }
@@ -525,15 +525,14 @@ class Controller {
   // Why the supervisor does not allow it.
   BlockReasons against_travel() const {
     BlockReasons reasons;
-    if (!(supervisor_.state.component_Desk == porter_component_Desk_ordered &&
-        supervisor_.state.component_Gripper_grips)) {
+    if (supervisor_.state.component_Desk == porter_component_Desk_open || !supervisor_.state.component_Gripper_grips) {
       reasons.add_requirement("requirement travel needs Desk.ordered and Gripper.grips");
     }
-    if (!(supervisor_.state.action_travel == porter_action_travel_idle)) {
+    if (supervisor_.state.action_travel != porter_action_travel_idle) {
       reasons.add_state(std::string("Base.travel.") +
           porter_location_name_action_travel(supervisor_.state.action_travel));
     }
-    if (!(supervisor_.state.component_Base == porter_component_Base_parked)) {
+    if (supervisor_.state.component_Base == porter_component_Base_travelling) {
       reasons.add_state(std::string("Base.") + porter_location_name_component_Base(supervisor_.state.component_Base));
     }
     return reasons;

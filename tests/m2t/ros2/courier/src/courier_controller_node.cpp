@@ -266,16 +266,16 @@ class Controller : public rclcpp::Node {
   // Before an event; false withholds it.
   bool before(courier_event event) {
     switch (event) {
-      // requirement target needs Scanner.seen != nothing
-      // requirement Counter.limited > 100 disables target
+      // requirement target needs Scanner.seen != nothing (courier.rscd)
+      // requirement Counter.limited > 100 disables target (courier.rscd)
       case courier_message_target_c_trigger:
         return !held() && or_withheld(courier_message_target_c_trigger, prepare_target());
       case courier_message_sum_c_trigger:
         return !held() && prepare_sum();
       case courier_message_ratio_c_trigger:
         return !held() && or_withheld(courier_message_ratio_c_trigger, prepare_ratio());
-      // requirement Counter.limited > 100 disables report
-      // requirement report needs Scanner.looking => Counter.limited < 50
+      // requirement Counter.limited > 100 disables report (courier.rscd)
+      // requirement report needs Scanner.looking => Counter.limited < 50 (courier.rscd)
       case courier_message_report_c_trigger:
         return !held() && prepare_report();
       case courier_message_busy_c_trigger:
@@ -410,10 +410,10 @@ class Controller : public rclcpp::Node {
   // Why the supervisor does not allow it.
   BlockReasons against_target() const {
     BlockReasons reasons;
-    if (!(supervisor_.state.component_Scanner_seen != courier_Side_nothing)) {
+    if (supervisor_.state.component_Scanner_seen == courier_Side_nothing) {
       reasons.add_requirement("requirement target needs Scanner.seen != nothing");
     }
-    if (Integer(supervisor_.state.component_Counter_limited) > 100) {
+    if (supervisor_.state.component_Counter_limited > 100) {
       reasons.add_requirement("requirement Counter.limited > 100 disables target");
     }
     return reasons;
@@ -422,11 +422,11 @@ class Controller : public rclcpp::Node {
   // Why the supervisor does not allow it.
   BlockReasons against_report() const {
     BlockReasons reasons;
-    if (Integer(supervisor_.state.component_Counter_limited) > 100) {
+    if (supervisor_.state.component_Counter_limited > 100) {
       reasons.add_requirement("requirement Counter.limited > 100 disables report");
     }
-    if (!((!(supervisor_.state.component_Scanner == courier_component_Scanner_looking)
-        || (Integer(supervisor_.state.component_Counter_limited) < 50)))) {
+    if (supervisor_.state.component_Scanner == courier_component_Scanner_looking &&
+        supervisor_.state.component_Counter_limited >= 50) {
       reasons.add_requirement("requirement report needs Scanner.looking => Counter.limited < 50");
     }
     return reasons;

@@ -1,0 +1,56 @@
+"""Pass: what can keep an event from happening, in the words of the robot's model."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.m2m.sct_to_engine.build_expressions import build_expression
+from robosc.metamodel import engine, sct
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from robosc.m2m.sct_to_engine.combine_guards import GuardTerms
+    from robosc.m2m.sct_to_engine.lower_expressions import Lowering
+    from robosc.m2m.sct_to_engine.terms import Term
+
+#: The events that a node tells about, wherever they are blocked: what the controller sends.
+_COMMANDS = (engine.Role.cancel, engine.Role.trigger)
+
+
+def name_reasons(
+    model: sct.SupervisoryControlModel,
+    events: Mapping[sct.Event, engine.Event],
+    guards: Mapping[sct.Event, GuardTerms],
+    lower: Lowering,
+) -> None:
+    """Sets `reasons` of the events: requirements of all, plants and what synthesis prevents of commands."""
+    assert model.supervisor is not None
+    for requirement in model.requirements:
+        forbidden = lower(requirement.condition, positive=requirement.kind == sct.RequirementKind.disables)
+        if forbidden.constant != 0:
+            reason = _reason(engine.Origin.requirement, forbidden, requirement.text or "a requirement")
+            reason.requirement = requirement
+            events[requirement.event].reasons.append(reason)
+    explained = {guard.event: guard.explanation for guard in model.supervisor.guards if guard.explanation}
+    for event, element in events.items():
+        if element.role in _COMMANDS:
+            element.reasons.extend(_of_plants(guards[event].by_plant, lower))
+            if event in explained:
+                element.reasons.append(engine.Reason(kind=engine.Origin.synthesis, text=explained[event]))
+
+
+def _of_plants(possible: Mapping[sct.Plant, Term], lower: Lowering) -> Iterator[engine.Reason]:
+    """That a plant has no edge for an event where it is, unless it has one everywhere."""
+    for plant, holds in possible.items():
+        if holds.constant != 1:
+            location = lower.variables.get(plant)
+            place = "" if location else plant.locations[0].name
+            text = f"{plant.origin or plant.name}.{place}"
+            reason = _reason(engine.Origin.plants, lower.terms.opposite(holds), text)
+            reason.location = location
+            yield reason
+
+
+def _reason(kind: engine.Origin, condition: Term, text: str) -> engine.Reason:
+    return engine.Reason(kind=kind, condition=build_expression(condition), text=text)
