@@ -46,13 +46,17 @@ class CppNames:
 
     def enumeration(self, enumeration: ex.Enumeration) -> str | None:
         """The type of an enumeration that only the node knows; None for one of the sct model."""
-        name = self._enumerations.get(enumeration)
-        return None if name is None else f"model::{name}"
+        return f"model::{self.within(enumeration)}" if enumeration in self._enumerations else None
 
     def literal(self, literal: ex.EnumerationLiteral) -> str:
         """A literal, wherever it is used."""
-        name = self._literals.get(literal)
-        return self.c.enumerator(literal) if name is None else f"{self.enumeration(literal.eContainer())}::{name}"
+        if literal not in self._literals:
+            return self.c.enumerator(literal)
+        return f"{self.enumeration(literal.eContainer())}::{self.within(literal)}"
+
+    def within(self, element: ex.Enumeration | ex.EnumerationLiteral) -> str:
+        """An enumeration that only the node knows, or a literal of one, where it is declared."""
+        return self._literals[element] if isinstance(element, ex.EnumerationLiteral) else self._enumerations[element]
 
     def literal_name(self, enumeration: ex.Enumeration) -> str:
         """The function that gives the model's name of a literal."""

@@ -341,9 +341,8 @@ class Node:
         return Variable(self._names.member(variable), self._type(variable.type), self._printer(variable.initial))
 
     def _enumeration(self, enumeration: ex.Enumeration) -> Enumeration:
-        names = {literal.name: self._names.literal(literal) for literal in enumeration.literals}
-        literals = [(text.rpartition("::")[2], name) for name, text in names.items()]
-        return Enumeration(str(self._names.enumeration(enumeration)).rpartition("::")[2], literals)
+        literals = [(self._names.within(literal), literal.name) for literal in enumeration.literals]
+        return Enumeration(self._names.within(enumeration), literals)
 
     def _conversion(self, conversion: rosgraph.Conversion) -> Conversion:
         printer = CppPrinter(self._names, data="value", node="kept")
@@ -440,18 +439,21 @@ class Node:
             key = reaction.locations[0].eContainer(), guard, needs, assignments
             places.setdefault(key, []).extend(reaction.locations)
         return [
-            Reaction(_both(self._are_in(where), guard), list(needs), list(assignments))
+            Reaction(self._condition(where, guard), list(needs), list(assignments))
             for (_, guard, needs, assignments), where in places.items()
         ]
 
-    def _are_in(self, locations: Sequence[sct.Location]) -> str | None:
-        """That a plant is in one of these locations of its own; None where one always is."""
+    def _condition(self, locations: Sequence[sct.Location], guard: str | None) -> str | None:
+        """That a plant is in one of these locations of its own, and a guard holds; None where it always is so."""
         plants: dict[sct.Plant, int] = {}
         for location in locations:
             plants[location.eContainer()] = plants.get(location.eContainer(), 0) + 1
         if any(number == len(plant.locations) for plant, number in plants.items()):
-            return None
-        return " || ".join(self._names.is_in(location) for location in locations)
+            return guard
+        place = " || ".join(self._names.is_in(location) for location in locations)
+        if guard is None:
+            return place
+        return f"({place}) && {guard}" if len(locations) > 1 else f"{place} && {guard}"
 
     def _assignment(self, assignment: rosgraph.NodeAssignment, copy: str) -> Assignment:
         kind = assignment.variable.type
@@ -544,10 +546,3 @@ class Node:
 def _may_be_infinite(field: rosgraph.FieldAssignment) -> bool:
     """Whether its value may hold a double, which may be no finite number."""
     return holds_objects(field.type) or infer(field.value) in {DOUBLE, ArrayType(DOUBLE)}
-
-
-def _both(place: str | None, guard: str | None) -> str | None:
-    """That a plant is in a place and a guard holds, each None where it always is so."""
-    if place is None or guard is None:
-        return place or guard
-    return f"({place}) && {guard}" if "||" in place else f"{place} && {guard}"
