@@ -77,8 +77,7 @@ class CppPrinter(Printer):
     def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
         """A state is a comparison in C++, a conversion a call."""
         if isinstance(expression, sct.LocationReference):
-            text = self._names.is_in(expression.location)
-            return Printed(text, PRECEDENCE[ex.Equation]) if " " in text else Printed(text)
+            return self._names.location(expression.location)
         texts = [text for text, _ in given]
         match expression:
             case rosgraph.WireAccess():

@@ -9,6 +9,8 @@ from robosc.m2t.c.names import KEYWORDS, CNames, identifier
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.semantics.naming import Names
+from robosc.semantics.operators import PRECEDENCE
+from robosc.semantics.printing import Printed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -86,10 +88,14 @@ class CppNames:
 
     def is_in(self, location: sct.Location) -> str:
         """Whether a plant is in a location; without parentheses."""
+        return self.location(location).text
+
+    def location(self, location: sct.Location) -> Printed:
+        """The same, with its precedence."""
         plant: sct.Plant = location.eContainer()
         if len(plant.locations) == 1:
-            return "true"
-        return f"{self.state(plant)} == {self.c.enumerator(location)}"
+            return Printed("true")
+        return Printed(f"{self.state(plant)} == {self.c.enumerator(location)}", PRECEDENCE[ex.Equation])
 
 
 def _fresh(elements: Sequence[_Element]) -> dict[_Element, str]:

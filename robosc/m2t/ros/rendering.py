@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 import textwrap
+from bisect import bisect_right
 from functools import cache
+from operator import itemgetter
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape, quoteattr
 
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 _WIDTH = 116
-_TOKEN = re.compile(r"""\"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|[][(){}]| (?!\()|(?<=\))(?=\.)""")
+_TOKEN = re.compile(r"""//.*|\"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|[][(){}]| (?!\()|(?<=\))(?=\.)""")
 _OPENING, _CLOSING = "([{", ")]}"
 
 
@@ -57,34 +59,47 @@ def raw_literal(json: str) -> str:
 def fold(code: str, width: int = 120) -> str:
     """C++ code with long lines broken, at blanks outside of literals and before the calls of a chain.
 
-    A line breaks where the least brackets are open, at the last of these places that fits; comments and directives
-    stay as they are.
+    A line breaks where the least brackets are open, at the last of these places that fits; directives, and comments
+    wherever they begin, stay as they are. What it goes by is tokens, as other formatters do: a long line is made of a
+    template's own words as much as of printed expressions, and only in the whole of it is its width known.
     """
     return "".join(_folded(line, width) for line in code.splitlines(keepends=True))
 
 
 def _folded(line: str, width: int) -> str:
+    indent, end = len(line) - len(line.lstrip()), len(line.rstrip())
+    if end <= width or line.startswith(("//", "#"), indent):
+        return line
+    places = _places(line, indent, end)
     made: list[str] = []
-    continued = line[: len(line) - len(line.lstrip())] + "    "
-    while (at := _break(line, width)) is not None:
-        made += [line[:at], "\n"]
-        line = continued + line[at:].lstrip()
-    return "".join([*made, line])
-
-
-def _break(line: str, width: int) -> int | None:
-    code = line.lstrip()
-    if len(line.rstrip()) <= width or code.startswith(("//", "#")):
-        return None
-    depth = 0
-    places: list[tuple[int, int]] = []
-    for token in _TOKEN.finditer(line, len(line) - len(code)):
-        if token.start() > width:
+    # Where the rest begins, and the column in which it will stand.
+    start = column = 0
+    while end - start + column > width:
+        first = bisect_right(places, start, key=_position)
+        last = bisect_right(places, start - column + width, key=_position)
+        if first == last:
             break
-        depth += (token[0] in _OPENING) - (token[0] in _CLOSING) if token[0] else 0
-        if not token[0].strip():
-            places.append((-depth, token.start()))
-    return max(places)[1] if places else None
+        at = max(places[first:last])[1]
+        made += [line[start:at].rstrip(), "\n", " " * (indent + 4)]
+        start, column = at, indent + 4
+        while line[start] == " ":
+            start += 1
+    return "".join([*made, line[start:]])
+
+
+def _places(line: str, start: int, end: int) -> list[tuple[int, int]]:
+    """Where a line may break, in order: how little is open there, and the position."""
+    depth = 0
+    found = []
+    for token in _TOKEN.finditer(line, start, end):
+        if token[0].strip():
+            depth += (token[0] in _OPENING) - (token[0] in _CLOSING)
+        else:
+            found.append((-depth, token.start()))
+    return found
+
+
+_position = itemgetter(1)
 
 
 def shift(text: str, indent: int) -> str:

@@ -79,6 +79,12 @@ def test_folding_keeps_to_the_width_where_it_can() -> None:
     assert fold(comment) == comment
 
 
+def test_folding_keeps_a_comment_behind_code_whole() -> None:
+    code = "  std::optional<geometry_msgs::msg::PoseWithCovarianceStamped> initial_pose_estimate_handed_;"
+    comment = "// As long as it could have been sent again."
+    assert fold(f"{code}  {comment}\n") == f"{code}\n      {comment}\n"
+
+
 @pytest.mark.parametrize("text", ["short();\n", "", "\n", "    x = 1;"])
 def test_folding_leaves_short_lines(text: str) -> None:
     assert fold(text) == text
