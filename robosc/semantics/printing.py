@@ -74,7 +74,11 @@ class Printer:
         chain, right_chain = row.associativity is Associativity.CHAIN, row.associativity is Associativity.RIGHT
         before = self.operand(row.precedence, left, bare=chain and type(expression.left) is type(expression))
         after = self.operand(row.precedence, right, bare=right_chain and type(expression.right) is type(expression))
-        return Printed(f"{before} {self.symbols[type(expression)]} {after}", row.precedence)
+        return Printed(self.between(type(expression), before, after), row.precedence)
+
+    def between(self, kind: type[ex.BinaryExpression], left: str, right: str) -> str:
+        """A binary operator between the texts of its operands."""
+        return f"{left} {self.symbols[kind]} {right}"
 
     def unary(self, expression: ex.UnaryExpression, operand: Printed) -> Printed:
         """An operator before its operand; two in a row are kept apart, so that `--x` is never printed."""

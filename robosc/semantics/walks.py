@@ -9,7 +9,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel.reflection import contents, features, is_attribute
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterator, MutableMapping, Sequence
+    from collections.abc import Callable, Generator, Iterator, Mapping, MutableMapping, Sequence
 
 _Node = TypeVar("_Node")
 _Result = TypeVar("_Result")
@@ -145,9 +145,13 @@ def walk(
     return result  # type: ignore[no-any-return]
 
 
-def copied(root: _Element) -> _Element:
-    """A copy of an expression or a type with all that it contains; what contains the original keeps it."""
+def copied(root: _Element, instead: Mapping[Any, Any] | None = None) -> _Element:
+    """A copy of an expression or a type with all that it contains; what contains the original keeps it.
+
+    `instead` holds the elements that the copy refers to where the original refers to others.
+    """
     known: dict[Any, Any] = {}
+    others = {} if instead is None else instead
 
     def copy(original: Any, children: list[Any]) -> Any:
         made, inside = type(original)(), iter(children)
@@ -156,9 +160,11 @@ def copied(root: _Element) -> _Element:
             value = getattr(original, name)
             if value is None:
                 continue
-            if is_attribute(feature) or not feature.containment:
+            if is_attribute(feature):
+                setattr(made, name, value)
+            elif not feature.containment:
                 # What names an element of an array names it in the copy, too: it stands before.
-                setattr(made, name, known.get(value, value) if isinstance(value, robosc.ArrayElement) else value)
+                setattr(made, name, known[value] if value in known else others.get(value, value))
             elif feature.many:
                 getattr(made, name).extend(next(inside) for _ in value)
             else:

@@ -7,7 +7,7 @@ import pytest
 from robosc.analysis.explain import explain, explored, possibility
 from robosc.analysis.supervise import diagnose
 from robosc.analysis.verify import Outcome, verify_system
-from robosc.m2t.cif.arithmetic import condition
+from robosc.m2m.sct_to_cif import transform
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from tests.sct_models import edge, model, needs, plant
@@ -51,7 +51,7 @@ def test_long_requirements_take_no_stack(kind: type[ex.BinaryExpression], left: 
         explanation = explored(made, lambda system: explain(system, up, {made.plants[0].variables[0]: 6}))
         possible = explored(made, lambda system: possibility(system, up)).possible
         outcomes = {verdict.outcome for verdict in verify_system(made)}
-        condition(made.requirements[0].condition)
+        transform(made)
         details = [note.details for note in explanation.requirements]
         return made.supervisor.controlledStates, details, possible, outcomes
 

@@ -12,8 +12,9 @@ from robosc import validity
 from robosc.configuration import Configuration
 from robosc.diagnostics import has_errors
 from robosc.engine import Settings
+from robosc.m2m.sct_to_cif import transform
 from robosc.m2t import cif, xmi
-from robosc.m2t.cif.names import CifNames, is_numbered
+from robosc.m2t.cif.names import CifNames
 from robosc.m2t.models import Models
 from robosc.metamodel import sct
 from robosc.synthesis import synthesize
@@ -92,7 +93,8 @@ def taken_through(path: Path, seed: int) -> tuple[Outcome, Robot | None]:
 def _cif_says_the_same(models: Models) -> None:
     model, name = models.sct, models.sct.name
     files = cif.generate(models, Configuration())
-    again, supervised = (_read(files[f"{name}.{ending}"], model) for ending in ("cif", "supervised.cif"))
+    lowered = transform(model).model
+    again, supervised = (_read(files[f"{name}.{ending}"], lowered) for ending in ("cif", "supervised.cif"))
     assert (found := differences(model, again)) == [], found[:3]
     assert (found := differences(model, supervised)) == [], found[:3]
     synthesis, read_back = synthesize(model), synthesize(again)
@@ -107,19 +109,17 @@ def _cif_says_the_same(models: Models) -> None:
 
 
 def _read(text: str, model: sct.SupervisoryControlModel) -> sct.SupervisoryControlModel:
-    """The model in a text of CIF, with the names of the given one where CIF has to call something else."""
+    """The model in a text of CIF, with the names of the lowered one where CIF has to call something else."""
     again, names = read(text), CifNames(model)
 
     def alike(ours: Iterable[Any], theirs: Iterable[Any]) -> list[tuple[Any, Any]]:
         found = {element.name: element for element in theirs}
-        called = ((mine, names.declared(mine).removeprefix("$")) for mine in ours)
+        called = ((mine, names.declared(mine).removeprefix("$")) for mine in ours if mine.name)
         return [(mine, found[name]) for mine, name in called if name in found]
 
     pairs = alike(model.enumerations, again.enumerations) + alike(model.plants, again.plants)
     for mine, theirs in list(pairs):
-        members = ["literals", "events", "inputs", "variables"]
-        members += ["locations"] if isinstance(mine, sct.Plant) and not is_numbered(mine) else []
-        for member in members:
+        for member in ("literals", "events", "inputs", "variables", "locations"):
             pairs += alike(getattr(mine, member, ()), getattr(theirs, member, ()))
     for mine, theirs in pairs:
         theirs.name = mine.name

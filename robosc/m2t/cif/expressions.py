@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.semantics.operators import PRECEDENCE, SYMBOLS
+from robosc.semantics.operators import COMPARISONS, PRECEDENCE, SYMBOLS
 from robosc.semantics.printing import Printed, Printer
 
 if TYPE_CHECKING:
@@ -14,9 +14,12 @@ if TYPE_CHECKING:
 
     from robosc.m2t.cif.names import AbsoluteNames, CifNames
 
+#: Stands in the text of a declaration for a space at which its line may end.
+BREAK = "\n"
+
 
 class CifPrinter(Printer):
-    """Prints what `robosc.m2t.cif.arithmetic` made of an expression, as it is read in a plant or outside of all."""
+    """Prints a lowered expression as it is read in a plant or outside of all, with a BREAK wherever a line may end."""
 
     symbols = {**SYMBOLS, ex.Negation: "not "}  # noqa: RUF012  # ClassVar in the parent
 
@@ -36,21 +39,25 @@ class CifPrinter(Printer):
         return [*found, rest]
 
     def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
-        """`if a: b elif c: d else e end`; the location of some plants is a number, which is compared."""
+        """`if a: b elif c: d else e end`."""
         if isinstance(expression, ex.Conditional):
             *cases, otherwise = [text for text, _ in given]
-            chosen = " elif ".join(f"{asked}: {value}" for asked, value in zip(cases[::2], cases[1::2], strict=True))
-            return Printed(f"if {chosen} else {otherwise} end")
-        if isinstance(expression, sct.LocationReference) and self._names.number(expression.location.eContainer()):
-            return Printed(self.atom(expression), PRECEDENCE[ex.Equation])
+            asked = (f"{condition}: {value}" for condition, value in zip(cases[::2], cases[1::2], strict=True))
+            return Printed(f"if {f'{BREAK}elif '.join(asked)}{BREAK}else {otherwise} end")
         return super().write(expression, given)
 
     def binary(self, expression: ex.BinaryExpression, left: Printed, right: Printed) -> Printed:
         """As everywhere, but that CIF has no chains of implications."""
         level = PRECEDENCE[ex.Implication]
         if isinstance(expression, ex.Implication):
-            return Printed(f"{self.operand(level, left)} => {self.operand(level, right)}", level)
+            return Printed(self.between(ex.Implication, self.operand(level, left), self.operand(level, right)), level)
         return super().binary(expression, left, right)
+
+    def between(self, kind: type[ex.BinaryExpression], left: str, right: str) -> str:
+        """The operator after a BREAK, but for comparisons."""
+        return (
+            super().between(kind, left, right) if kind in COMPARISONS else f"{left}{BREAK}{self.symbols[kind]} {right}"
+        )
 
     def atom(self, expression: ex.Expression) -> str:
         """Names with their plant before them, and literals."""
@@ -58,17 +65,9 @@ class CifPrinter(Printer):
             case ex.EnumerationLiteralReference():
                 return self._names.used(expression.literal, self._plant)
             case sct.LocationReference():
-                return self._location(expression.location)
+                return self._names.used(expression.location, self._plant)
             case sct.VariableReference():
                 return self._names.used(expression.variable, self._plant)
             case sct.InputReference():
                 return self._names.used(expression.input, self._plant)
         return super().atom(expression)
-
-    def _location(self, location: sct.Location) -> str:
-        plant: sct.Plant = location.eContainer()
-        number = self._names.number(plant)
-        if number is None:
-            return self._names.used(location, self._plant)
-        owner = "" if plant is self._plant else f"{self._names.declared(plant)}."
-        return f"{owner}{number} = {plant.locations.index(location)}"

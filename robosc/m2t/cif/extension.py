@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.m2t.cif.expressions import CifPrinter
 from robosc.m2t.cif.names import AbsoluteNames, escaped
-from robosc.m2t.cif.specification import document, edge_text, folded
+from robosc.m2t.cif.specification import document, edge_text, folded, listed
 from robosc.semantics.naming import Names
 from robosc.semantics.roles import event_name
 
@@ -41,7 +41,7 @@ def _lines(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor) -> It
     yield from document(["What synthesis added." if added else "Synthesis added nothing to the requirements."])
     yield f"supervisor automaton {Names(taken).fresh('sup')}:"
     events = [(guard, escaped(event_name(guard.event))) for guard in supervisor.guards]
-    yield f"  alphabet {', '.join(event for _, event in events)};" if events else "  alphabet;"
+    yield f"  alphabet {listed(event for _, event in events)};" if events else "  alphabet;"
     if supervisor.initial is not None:
         yield f"  initial {printer(supervisor.initial)};"
     yield ""

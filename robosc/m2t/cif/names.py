@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from robosc.metamodel import sct
 from robosc.semantics.naming import Names
 
 if TYPE_CHECKING:
     from robosc.metamodel import expression as ex
+    from robosc.metamodel import sct
 
 #: The words of CIF that are no names unless a `$` stands before them.
 _WORDS = """
@@ -34,23 +34,8 @@ def escaped(name: str) -> str:
     return f"${name}" if name in KEYWORDS else name
 
 
-def is_numbered(plant: sct.Plant) -> bool:
-    """Whether a variable holds the number of the plant's location, its only location having all edges.
-
-    So it is where data is chosen: every location has the same edges, and written for each of them they would be as many
-    as the square of the choices.
-    """
-    return (
-        plant.kind == sct.PlantKind.data
-        and len(plant.locations) > 1
-        and bool(plant.edges)
-        and not any(location.edges for location in plant.locations)
-        and len({location.marked for location in plant.locations}) == 1
-    )
-
-
 class CifNames:
-    """The names in one specification.
+    """The names in one specification, of a lowered model; a location without a name has none.
 
     A plant's members share one scope and so do plants, enumerations, literals and the supervisor. A member called like
     something of the outer scope would hide it from the plant's edges, so it gets another name.
@@ -58,7 +43,6 @@ class CifNames:
 
     def __init__(self, model: sct.SupervisoryControlModel) -> None:
         self._names: dict[Any, str] = {}
-        self._numbers: dict[sct.Plant, str] = {}
         outer = Names()
         for element in self._outer(model):
             self._names[element] = outer.fresh(element.name)
@@ -71,12 +55,9 @@ class CifNames:
         taken = {*self._names.values(), *self.invariants.values(), self.supervisor}
         for plant in model.plants:
             inner = Names(taken)
-            for member in (*plant.events, *plant.inputs, *plant.variables):
-                self._names[member] = inner.fresh(member.name)
-            if is_numbered(plant):
-                self._numbers[plant] = inner.fresh("choice")
-            else:
-                self._names.update({location: inner.fresh(location.name) for location in plant.locations})
+            for member in (*plant.events, *plant.inputs, *plant.variables, *plant.locations):
+                if member.name:
+                    self._names[member] = inner.fresh(member.name)
 
     @staticmethod
     def _outer(model: sct.SupervisoryControlModel) -> list[ex.NamedElement]:
@@ -86,10 +67,6 @@ class CifNames:
     def declared(self, element: ex.NamedElement) -> str:
         """The name where the element is declared, and within the same plant."""
         return escaped(self._names[element])
-
-    def number(self, plant: sct.Plant) -> str | None:
-        """The variable with the number of the plant's location, None where it has locations in CIF, too."""
-        return self._numbers.get(plant)
 
     def used(self, element: ex.NamedElement, plant: sct.Plant | None) -> str:
         """The name as it is read from inside a plant, or from outside of all."""
@@ -106,11 +83,3 @@ class AbsoluteNames:
         """A name with all around it."""
         around = element.eContainer().origin
         return f"{around}.{element.name}" if around else escaped(element.name)
-
-    def declared(self, plant: sct.Plant) -> str:
-        """The name of a plant."""
-        return escaped(plant.origin or "")
-
-    def number(self, _plant: sct.Plant) -> str | None:
-        """No location is a number."""
-        return None

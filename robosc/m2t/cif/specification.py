@@ -2,47 +2,36 @@
 
 from __future__ import annotations
 
-import re
 from itertools import groupby
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
-from robosc.m2t.cif.arithmetic import assigned, condition, held
-from robosc.m2t.cif.expressions import CifPrinter
-from robosc.m2t.cif.linear import bounds, shift
-from robosc.m2t.cif.names import CifNames, is_numbered
+from robosc.m2t.cif.expressions import BREAK, CifPrinter
+from robosc.m2t.cif.names import CifNames
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.metamodel.reflection import tree
 from robosc.semantics.durations import timer_text
-from robosc.semantics.edges import edges_from, edges_of
+from robosc.semantics.edges import edges_from
 from robosc.semantics.roles import input_values, provide_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator
+
+    from robosc.m2m.sct_to_cif import Lowered
 
 #: Characters in a line, unless one word has more.
 _WIDTH = 120
-#: What stands in one line: up to a comma or one of these words, outside of strings.
-_PART = re.compile(
-    r'(?:"(?:[^"\\]|\\.)*"|[^\s"]|(?<!,)[ ](?!(?:and|or|=>|elif|else|when|do|goto|needs|disables|[+-])[ ]))+'
-)
 
 
 class Writer:
-    """Writes CIF of one sct model. Raises Unsupported for an expression that can't be said in CIF."""
+    """Writes CIF of a lowered sct model."""
 
-    def __init__(self, model: sct.SupervisoryControlModel) -> None:
-        self._model = model
-        self._names = CifNames(model)
+    def __init__(self, lowered: Lowered) -> None:
+        self._model, self._originals = lowered
+        self._names = CifNames(self._model)
         self._outside = CifPrinter(self._names, None)
-        self._impossible = impossible(model)
-        self._meanings = {**_transitions(model), **_choices(model)}
-        #: Of all locations, the number in their plant.
-        self._numbers = {location: number for plant in model.plants for number, location in enumerate(plant.locations)}
-        self._referred = {
-            reference.location for _, reference in tree(model) if isinstance(reference, sct.LocationReference)
-        }
+        original = self._originals[self._model]
+        self._meanings = {**_transitions(original), **_choices(original)}
 
     def unsupervised(self) -> str:
         """The plants and the requirements."""
@@ -51,14 +40,13 @@ class Writer:
 
     def supervised(self, supervisor: sct.Supervisor) -> str:
         """The plants under their supervisor: the requirements as it keeps them, and an automaton of what it adds."""
-        guards = [guard for guard in supervisor.guards if guard.event not in self._impossible]
-        events = [self._names.used(guard.event, None) for guard in guards]
+        events = [self._names.used(guard.event, None) for guard in supervisor.guards]
         kept = [
-            f"supervisor invariant {event} needs {self._condition(guard.requirement)};"
-            for event, guard in zip(events, guards, strict=True)
+            f"supervisor invariant {event}{BREAK}needs {self._outside(guard.requirement)};"
+            for event, guard in zip(events, supervisor.guards, strict=True)
             if guard.requirement is not None
         ]
-        added = any(guard.synthesis for guard in guards)
+        added = any(guard.synthesis for guard in supervisor.guards)
         return folded(
             [
                 *document(self._counted(supervisor), sign="@@"),
@@ -68,13 +56,13 @@ class Writer:
                 "",
                 *document(["What synthesis added." if added else "Synthesis added nothing to the requirements."]),
                 f"supervisor automaton {self._names.supervisor}:",
-                f"  alphabet {', '.join(events)};" if events else "  alphabet;",
+                f"  alphabet {listed(events)};" if events else "  alphabet;",
                 "",
                 "  location:",
                 "    initial; marked;",
                 *(
-                    edge_text(event, self._condition(guard.synthesis))
-                    for event, guard in zip(events, guards, strict=True)
+                    edge_text(event, "" if guard.synthesis is None else self._outside(guard.synthesis))
+                    for event, guard in zip(events, supervisor.guards, strict=True)
                 ),
                 "end",
             ]
@@ -85,7 +73,7 @@ class Writer:
         if self._model.enumerations:
             yield ""
         for enumeration in self._model.enumerations:
-            literals = ", ".join(map(self._names.declared, enumeration.literals))
+            literals = listed(map(self._names.declared, enumeration.literals))
             yield f"enum {self._names.declared(enumeration)} = {literals};"
         for plant in self._model.plants:
             kind = "requirement automaton" if plant.kind == sct.PlantKind.requirement else "plant"
@@ -95,14 +83,15 @@ class Writer:
         """The requirements of the model; what several of them ask of an event alike stands there once."""
         texts: dict[str, list[str]] = {}
         for requirement in self._model.requirements:
-            event, asked = self._names.used(requirement.event, None), self._condition(requirement.condition)
+            event, asked = self._names.used(requirement.event, None), self._outside(requirement.condition)
             needs = requirement.kind == sct.RequirementKind.needs
-            said = f"requirement {event} needs {asked};" if needs else f"requirement {asked} disables {event};"
+            parts = (event, f"needs {asked}") if needs else (asked, f"disables {event}")
+            said = f"requirement {BREAK.join(parts)};"
             texts.setdefault(said, []).append(requirement.text or "")
         for invariant in self._model.invariants:
             name = self._names.invariants.get(invariant)
             named = "" if name is None else f" {name}:"
-            said = f"requirement invariant{named} {self._condition(invariant.condition)};"
+            said = f"requirement invariant{named} {self._outside(invariant.condition)};"
             texts.setdefault(said, []).append(invariant.text or "")
         if texts:
             yield ""
@@ -114,28 +103,23 @@ class Writer:
         printer = CifPrinter(self._names, plant)
         declared = [*self._events(plant), *self._variables(plant, printer)]
         yield from [*declared, *([""] if declared else [])]
-        numbered = is_numbered(plant)
-        for location in plant.locations[:1] if numbered else plant.locations:
-            alone = plant.kind == sct.PlantKind.message and len(plant.locations) == 1
-            nameless = numbered or (alone and location not in self._referred)
-            marks = ["initial;"] * (location.initial or numbered) + ["marked;"] * location.marked
+        for location in plant.locations:
+            name = f" {self._names.declared(location)}" if location.name else ""
+            marks = ["initial;"] * location.initial + ["marked;"] * location.marked
             inside = [f"    {' '.join(marks)}"] if marks else []
-            inside += [
-                self._edge(edge, location, plant, printer)
-                for edge in edges_from(location)
-                if edge.event not in self._impossible
-            ]
-            yield f"  location{'' if nameless else f' {self._names.declared(location)}'}{':' if inside else ';'}"
+            inside += [self._edge(edge, location, plant, printer) for edge in edges_from(location)]
+            yield f"  location{name}{':' if inside else ';'}"
             yield from inside
 
     def _events(self, plant: sct.Plant) -> Iterator[str]:
-        """The events of a plant that can happen, those together that are alike."""
-        possible = (event for event in plant.events if event not in self._impossible)
-        alike = groupby(possible, key=lambda event: (event.controllable, self._meanings.get(event)))
+        """The events of a plant, those together that are alike."""
+        alike = groupby(
+            plant.events, key=lambda event: (event.controllable, self._meanings.get(self._originals[event]))
+        )
         for (controllable, meaning), events in alike:
             yield from document([meaning] if meaning else [], "  ")
             kind = "controllable" if controllable else "uncontrollable"
-            yield f"  {kind} {', '.join(map(self._names.declared, events))};"
+            yield f"  {kind} {listed(map(self._names.declared, events))};"
 
     def _variables(self, plant: sct.Plant, printer: CifPrinter) -> Iterator[str]:
         """The inputs and variables of a plant, with a note on those that hold another number than in the model."""
@@ -145,31 +129,26 @@ class Writer:
             if isinstance(member.type, ex.EnumerationType):
                 kind = self._names.declared(member.type.enumeration)
             elif isinstance(member.type, ex.IntegerType):
-                (low, high), up = bounds(member), shift(member)
-                kind = f"int[{low + up}..{high + up}]"
-                yield from document([f"{name} + {up}, with {name} in {low}..{high}"] if up else [], "  ")
-            initial = printer(held(member)) if isinstance(member, sct.DiscreteVariable) else None
-            yield f"  input {kind} {name};" if initial is None else f"  disc {kind} {name} = {initial};"
-        number = self._names.number(plant)
-        if number is not None:
-            start = next(position for position, location in enumerate(plant.locations) if location.initial)
-            yield from document(["The number of the provide statement that is chosen, 0 for none."], "  ")
-            yield f"  disc int[0..{len(plant.locations) - 1}] {number} = {start};"
+                kind = f"int[{member.type.minimum}..{member.type.maximum}]"
+                yield from document(self._held(member, member.type), "  ")
+            initial = member.initial if isinstance(member, sct.DiscreteVariable) else None
+            yield f"  input {kind} {name};" if initial is None else f"  disc {kind} {name} = {printer(initial)};"
+
+    def _held(self, member: sct.Input | sct.DiscreteVariable, kind: ex.IntegerType) -> list[str]:
+        """What is to be said of the number that an integer holds."""
+        if member not in self._originals:
+            return ["The number of the provide statement that is chosen, 0 for none."]
+        name, original = self._names.declared(member), self._originals[member].type
+        added = kind.minimum - original.minimum
+        return [f"{name} + {added}, with {name} in {original.minimum}..{original.maximum}"] if added else []
 
     def _edge(self, edge: sct.Edge, location: sct.Location, plant: sct.Plant, printer: CifPrinter) -> str:
-        number = self._names.number(plant)
-        updates = [
-            f"{self._names.declared(update.variable)} := {printer(assigned(update.variable, update.value))}"
-            for update in edge.updates
-        ]
-        if number is not None:
-            updates.append(f"{number} := {self._numbers[edge.target]}")
-        stays = edge.target is location or number is not None
+        updates = (f"{self._names.declared(update.variable)} := {printer(update.value)}" for update in edge.updates)
         return edge_text(
             self._names.used(edge.event, plant),
-            "" if edge.guard is None else printer(condition(edge.guard)),
-            ", ".join(updates),
-            "" if stays else self._names.declared(edge.target),
+            "" if edge.guard is None else printer(edge.guard),
+            listed(updates),
+            "" if edge.target is location else self._names.declared(edge.target),
         )
 
     def _counted(self, supervisor: sct.Supervisor) -> list[str]:
@@ -184,9 +163,6 @@ class Writer:
         )
         return [f"{told}, which leaves them {left} of {all_of} states.", *([counts] if inputs > 1 else [])]
 
-    def _condition(self, expression: ex.Expression | None) -> str:
-        return "" if expression is None else self._outside(condition(expression))
-
 
 def document(texts: Iterable[str], indent: str = "", sign: str = "@") -> list[str]:
     """Annotations with these texts."""
@@ -195,23 +171,13 @@ def document(texts: Iterable[str], indent: str = "", sign: str = "@") -> list[st
 
 def edge_text(event: str, guard: str, updates: str = "", target: str = "") -> str:
     """An edge; what is empty is left out."""
-    parts = zip((" when ", " do ", " goto "), (guard, updates, target), strict=True)
-    return f"    edge {event}{''.join(word + text for word, text in parts if text)};"
+    parts = zip(("when", "do", "goto"), (guard, updates, target), strict=True)
+    return f"    edge {event}{''.join(f'{BREAK}{word} {text}' for word, text in parts if text)};"
 
 
-def impossible(model: sct.SupervisoryControlModel) -> set[sct.Event]:
-    """The events of which all edges have the guard `false` and which nothing else speaks of: they need not be said.
-
-    So it is with `c_none` where a provide statement has no condition. CIF warns of an event that can never happen.
-    """
-    found = {event for plant in model.plants for event in plant.events}
-    found -= {requirement.event for requirement in model.requirements}
-    for plant in model.plants:
-        for edge in edges_of(plant):
-            never = isinstance(edge.guard, ex.BooleanLiteral) and not edge.guard.value
-            if not never or edge.event.eContainer() is not plant:
-                found.discard(edge.event)
-    return found
+def listed(texts: Iterable[str]) -> str:
+    """Texts with commas between them."""
+    return f",{BREAK}".join(texts)
 
 
 def quoted(text: str) -> str:
@@ -219,27 +185,27 @@ def quoted(text: str) -> str:
     shown = " ".join(text.split()).encode("ascii", "backslashreplace").decode()
     shown = "".join(character if character.isprintable() else f"\\x{ord(character):02x}" for character in shown)
     parts = wrap(shown, _WIDTH - 10, drop_whitespace=False, break_on_hyphens=False)
-    return " + ".join('"' + part.replace("\\", "\\\\").replace('"', '\\"') + '"' for part in parts)
+    return f"{BREAK}+ ".join('"' + part.replace("\\", "\\\\").replace('"', '\\"') + '"' for part in parts)
 
 
-def folded(lines: Sequence[str]) -> str:
-    """Lines of a specification in such of a length that can be read; a break takes the place of a space."""
-    return "".join(_folded(line) for line in lines)
+def folded(lines: Iterable[str]) -> str:
+    """Declarations in lines of a length that can be read."""
+    return "".join(map(_folded, lines))
 
 
 def _folded(line: str) -> str:
     if len(line) <= _WIDTH:
-        return f"{line}\n"
-    indent = " " * (len(line) - len(line.lstrip()))
-    made, length = [indent], len(indent)
-    for number, part in enumerate(_PART.findall(line.strip())):
-        if number and length + 1 + len(part) > _WIDTH:
-            made.append(f"\n{indent}  {part}")
+        return f"{line.replace(BREAK, ' ')}\n"
+    indent = " " * (len(line) - len(line.lstrip(" ")))
+    made, length = "", 0
+    for part in line.split(BREAK):
+        if made and length + 1 + len(part) > _WIDTH:
+            made += f"\n{indent}  {part}"
             length = len(indent) + 2 + len(part)
         else:
-            made.append(f" {part}" if number else part)
-            length += len(part) + 1
-    return "".join(made) + "\n"
+            made += f" {part}" if made else part
+            length += 1 + len(part)
+    return f"{made}\n"
 
 
 def _transitions(model: sct.SupervisoryControlModel) -> dict[sct.Event, str]:

@@ -31,7 +31,7 @@ class Unsupported(Exception):  # noqa: N818 - it says what the expression is
 
 
 def bounds(cell: Cell) -> tuple[int, int]:
-    """The least and the greatest value of an integer variable or input, as the model has it."""
+    """The least and the greatest value of an integer variable or input."""
     kind = cell.type
     assert isinstance(kind, ex.IntegerType)
     assert kind.minimum is not None
@@ -40,21 +40,16 @@ def bounds(cell: Cell) -> tuple[int, int]:
 
 
 def shift(cell: Cell) -> int:
-    """What is to be added to a value of the model for the value that CIF holds."""
+    """What is to be added to the value of a variable or input of the given model for the value that CIF holds."""
     return max(0, -bounds(cell)[0])
 
 
 @dataclass(frozen=True)
 class Linear:
-    """Constant factors times what CIF holds in cells, plus a constant."""
+    """Constant factors times what cells of the lowered model hold, plus a constant."""
 
     constant: int
     factors: Mapping[Cell, int] = field(default_factory=dict)
-
-    @classmethod
-    def of(cls, cell: Cell) -> Linear:
-        """The model's value of a cell."""
-        return cls(-shift(cell), {cell: 1})
 
     def __add__(self, other: Linear) -> Linear:
         factors = dict(self.factors)
@@ -70,9 +65,7 @@ class Linear:
 
     def range(self) -> tuple[int, int]:
         """The least and the greatest value."""
-        ends = [
-            sorted(factor * (bound + shift(cell)) for bound in bounds(cell)) for cell, factor in self.factors.items()
-        ]
+        ends = [sorted(factor * bound for bound in bounds(cell)) for cell, factor in self.factors.items()]
         return self.constant + sum(low for low, _ in ends), self.constant + sum(high for _, high in ends)
 
     def sides(self) -> tuple[Linear, Linear]:
@@ -82,7 +75,7 @@ class Linear:
         return Linear(max(self.constant, 0), positive), Linear(max(-self.constant, 0), negative)
 
     def tree(self) -> ex.Expression:
-        """The sum as an expression over what CIF holds. Nothing in it is negative."""
+        """The sum as an expression. Nothing in it is negative."""
         terms = [_term(cell, factor) for cell, factor in self.factors.items()]
         if self.constant or not terms:
             terms.append(ex.IntegerLiteral(value=self.constant))
@@ -98,7 +91,7 @@ def reference(cell: Cell) -> ex.Expression:
 
 def _term(cell: Cell, factor: int) -> ex.Expression:
     """A cell times a positive constant: added up, or looked up where that is shorter."""
-    low, high = (bound + shift(cell) for bound in bounds(cell))
+    low, high = bounds(cell)
     if factor <= max(_REPEATED, high - low):
         terms = [reference(cell) for _ in range(factor)]
         return reduce(lambda left, right: ex.Addition(left=left, right=right), terms)

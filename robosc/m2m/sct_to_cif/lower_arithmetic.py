@@ -1,0 +1,276 @@
+"""Pass: expressions as what CIF's data-based synthesis accepts: no negative number, no `*`, one `-` at most.
+
+A comparison becomes one of two sums, what is subtracted having moved to the other side; a product of variables is split
+by the values of one of them; a value to be assigned saturates, and what is subtracted in it is subtracted at the end,
+the only place where synthesis takes a `-`. An expression that needs none of this stays as it is.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robosc.m2m.sct_to_cif.linear import LARGEST, Linear, Unsupported, bounds, shift
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.semantics.operators import BY_CLASS, COMPARISONS
+from robosc.semantics.walks import copied, operands, walk, with_operands
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Iterable, Mapping
+
+    from robosc.m2m.sct_to_cif.linear import Cell
+
+#: Cases that one expression may be split into.
+MOST_CASES = 1024
+
+_ATOMS = (
+    ex.BooleanLiteral,
+    ex.EnumerationLiteralReference,
+    sct.LocationReference,
+    sct.VariableReference,
+    sct.InputReference,
+)
+_NUMERIC = (ex.IntegerLiteral, ex.Addition, ex.Subtraction, ex.Multiplication, ex.UnaryMinus, ex.FunctionCall)
+_Comparison = type[ex.BinaryExpression]
+#: Alternatives, of which the first counts whose condition holds; the last has none.
+_Pieces = list[tuple[ex.Expression | None, Linear]]
+#: An expression, and whether it is asked for as a number.
+_Part = tuple[ex.Expression, bool]
+
+
+class Lowering:
+    """Lowers expressions. Raises Unsupported for one that can't be said in CIF.
+
+    `made` holds the element of the lowered model for each that expressions refer to, but for locations that a variable
+    numbers: `numbered` holds the variable and the number.
+    """
+
+    def __init__(
+        self, made: Mapping[Any, Any], numbered: Mapping[sct.Location, tuple[sct.DiscreteVariable, int]]
+    ) -> None:
+        self._made = made
+        self._numbered = numbered
+
+    def condition(self, expression: ex.Expression) -> ex.Expression:
+        """A boolean or enumeration-valued expression, in a tree of its own. Raises Unsupported."""
+        made: ex.Expression = walk(self._lowered, (expression, False))
+        return made
+
+    def _lowered(self, part: _Part) -> Generator[_Part, Any, Any]:
+        """Of an expression the same for CIF; of one that is asked for as a number its pieces."""
+        expression, number = part
+        return (yield from self._number_lowered(expression) if number else self._condition_lowered(expression))
+
+    def _condition_lowered(self, expression: ex.Expression) -> Generator[_Part, Any, ex.Expression]:
+        if isinstance(expression, COMPARISONS) and _is_number(expression.left):
+            if _is_plain(expression.left) and _is_plain(expression.right):
+                return copied(expression, self._made)
+            left, right = (yield expression.left, True), (yield expression.right, True)
+            pieces = _sum(expression, left, _scaled(right, -1))
+            return _first((guard, _against_zero(type(expression), piece, expression)) for guard, piece in pieces)
+        if isinstance(expression, sct.LocationReference) and expression.location in self._numbered:
+            variable, number = self._numbered[expression.location]
+            return ex.Equation(left=sct.VariableReference(variable=variable), right=ex.IntegerLiteral(value=number))
+        if isinstance(expression, _ATOMS):
+            return copied(expression, self._made)
+        if not isinstance(expression, (ex.Conditional, ex.Negation, ex.BinaryExpression)):
+            raise Unsupported(expression, f"CIF has no {type(expression).__name__}")
+        made = []
+        for operand in operands(expression):
+            made.append((yield operand, False))  # noqa: PERF401 - no comprehension yields
+        if isinstance(expression, ex.Conditional):
+            return ex.Conditional(condition=made[0], then=made[1], otherwise=made[2])
+        return with_operands(expression, made)
+
+    def assigned(self, variable: sct.DiscreteVariable, value: ex.Expression) -> ex.Expression:
+        """What CIF assigns to a variable that gets a value, inside its range. Raises Unsupported."""
+        if not isinstance(variable.type, ex.IntegerType):
+            return self.condition(value)
+        low, high = bounds(self._made[variable])
+        pieces = self._linear(value)
+        if _is_plain(value) and len(pieces) == 1 and shift(variable) == 0:
+            least, greatest = pieces[0][1].range()
+            if low <= least and greatest <= high:
+                return copied(value, self._made)
+        guards = [guard for guard, _ in pieces]
+        parts = [_saturated(piece + Linear(shift(variable)), low, high, value) for _, piece in pieces]
+        minuend = _first(zip(guards, (kept for kept, _ in parts), strict=True))
+        subtrahends = [subtracted for _, subtracted in parts]
+        if not any(subtrahend.factors or subtrahend.constant for subtrahend in subtrahends):
+            return minuend
+        if all(subtrahend == subtrahends[0] for subtrahend in subtrahends):
+            return ex.Subtraction(left=minuend, right=_written(subtrahends[0], value))
+        return ex.Subtraction(
+            left=minuend,
+            right=_first(
+                (guard, _written(subtrahend, value)) for guard, subtrahend in zip(guards, subtrahends, strict=True)
+            ),
+        )
+
+    def _linear(self, expression: ex.Expression) -> _Pieces:
+        pieces: _Pieces = walk(self._lowered, (expression, True))
+        return pieces
+
+    def _number_lowered(self, expression: ex.Expression) -> Generator[_Part, Any, _Pieces]:
+        match expression:
+            case ex.IntegerLiteral():
+                return [(None, Linear(expression.value))]
+            case sct.VariableReference():
+                return [(None, self._held(expression.variable))]
+            case sct.InputReference():
+                return [(None, self._held(expression.input))]
+            case ex.UnaryMinus():
+                return _scaled((yield expression.operand, True), -1)
+            case ex.Addition() | ex.Subtraction():
+                left, right = (yield expression.left, True), (yield expression.right, True)
+                return _sum(expression, left, right if isinstance(expression, ex.Addition) else _scaled(right, -1))
+            case ex.Multiplication():
+                left, right = (yield expression.left, True), (yield expression.right, True)
+                return self._product(expression, left, right)
+            case ex.FunctionCall(function="mod"):
+                value, divisor = (yield expression.arguments[0], True), (yield expression.arguments[1], True)
+                return _modulo(expression, value, divisor[0][1].constant)
+            case ex.Conditional():
+                chosen = yield expression.condition, False
+                then = yield expression.then, True
+                otherwise = yield expression.otherwise, True
+                pieces = [*((_both(chosen, guard), piece) for guard, piece in then), *otherwise]
+                _limit(expression, len(pieces))
+                return pieces
+        raise Unsupported(expression, f"CIF has no {type(expression).__name__}")
+
+    def _held(self, cell: Cell) -> Linear:
+        """The value of a variable or input, of what the lowered one holds."""
+        return Linear(-shift(cell), {self._made[cell]: 1})
+
+    def _product(self, expression: ex.Multiplication, left: _Pieces, right: _Pieces) -> _Pieces:
+        """Split by the values of the factor that has fewer."""
+        factors = [(expression.left, left), (expression.right, right)]
+        factors.sort(key=lambda factor: _values(factor[1]))
+        (split, pieces), (_, others) = factors
+        _limit(expression, _values(pieces) * len(others))
+        made: _Pieces = []
+        low = min(piece.range()[0] for _, piece in pieces)
+        high = max(piece.range()[1] for _, piece in pieces)
+        for value in range(low, high + 1):
+            guard = None
+            if value < high:
+                equal = ex.Equation(left=copied(split), right=_number(value))
+                guard = self.condition(equal)
+            made += [(_both(guard, other), piece.times(value)) for other, piece in others]
+        return made
+
+
+def _is_number(expression: ex.Expression) -> bool:
+    while isinstance(expression, ex.Conditional):
+        expression = expression.then
+    match expression:
+        case sct.VariableReference():
+            return isinstance(expression.variable.type, ex.IntegerType)
+        case sct.InputReference():
+            return isinstance(expression.input.type, ex.IntegerType)
+    return isinstance(expression, _NUMERIC)
+
+
+def _is_plain(expression: ex.Expression) -> bool:
+    """Whether CIF takes a number as it is: a sum of numbers that are never negative."""
+    pending = [expression]
+    while pending:
+        match part := pending.pop():
+            case ex.IntegerLiteral() if 0 <= part.value <= LARGEST:
+                continue
+            case sct.VariableReference() if shift(part.variable) == 0:
+                continue
+            case sct.InputReference() if shift(part.input) == 0:
+                continue
+            case ex.Addition():
+                pending += [part.left, part.right]
+            case _:
+                return False
+    return True
+
+
+def _against_zero(operator: _Comparison, value: Linear, origin: ex.Expression) -> ex.Expression:
+    if not value.factors:
+        return ex.BooleanLiteral(value=BY_CLASS[operator].compute(value.constant, 0))
+    left, right = (_written(side, origin) for side in value.sides())
+    return operator(left=left, right=right)
+
+
+def _written(value: Linear, origin: ex.Expression) -> ex.Expression:
+    if value.range()[1] > LARGEST:
+        raise Unsupported(origin, "its numbers do not fit 32 bits")
+    return value.tree()
+
+
+def _saturated(value: Linear, low: int, high: int, origin: ex.Expression) -> tuple[ex.Expression, Linear]:
+    """Two terms, neither of them ever negative, whose difference is the value or the nearest bound."""
+    least, greatest = value.range()
+    if least >= high or greatest <= low:
+        return ex.IntegerLiteral(value=high if least >= high else low), Linear(0)
+    kept, subtracted = value.sides()
+    result = _written(kept, origin)
+    # What is kept is at least, and at most, what a bound and all that is subtracted from it come to.
+    for outside, operator, bound in ((least < low, ex.LessThan, low), (greatest > high, ex.GreaterThan, high)):
+        if outside:
+            result = ex.Conditional(
+                condition=_against_zero(operator, value + Linear(-bound), origin),
+                then=_written(subtracted + Linear(bound), origin),
+                otherwise=result,
+            )
+    return result, subtracted
+
+
+def _first(alternatives: Iterable[tuple[ex.Expression | None, ex.Expression]]) -> ex.Expression:
+    """The expression of the first alternative whose condition holds."""
+    result: ex.Expression | None = None
+    for guard, made in reversed(list(alternatives)):
+        if guard is None or result is None:
+            result = made
+        else:
+            result = ex.Conditional(condition=copied(guard), then=made, otherwise=result)
+    assert result is not None
+    return result
+
+
+def _scaled(pieces: _Pieces, factor: int) -> _Pieces:
+    return [(guard, piece.times(factor)) for guard, piece in pieces]
+
+
+def _sum(origin: ex.Expression, left: _Pieces, right: _Pieces) -> _Pieces:
+    _limit(origin, len(left) * len(right))
+    return [(_both(condition, other), first + second) for condition, first in left for other, second in right]
+
+
+def _modulo(expression: ex.FunctionCall, values: _Pieces, divisor: int) -> _Pieces:
+    """Split by how often the divisor goes into the value."""
+    made: _Pieces = []
+    for guard, value in values:
+        low, high = (bound // divisor for bound in value.range())
+        _limit(expression, len(made) + high - low + 1)
+        for times in range(low, high + 1):
+            rest = value + Linear(-times * divisor)
+            below = _against_zero(ex.LessThan, rest + Linear(-divisor), expression) if times < high else None
+            made.append((_both(guard, below), rest))
+    return made
+
+
+def _number(value: int) -> ex.Expression:
+    literal = ex.IntegerLiteral(value=abs(value))
+    return literal if value >= 0 else ex.UnaryMinus(operand=literal)
+
+
+def _values(pieces: _Pieces) -> int:
+    ranges = [piece.range() for _, piece in pieces]
+    return max(high for _, high in ranges) - min(low for low, _ in ranges) + 1
+
+
+def _both(left: ex.Expression | None, right: ex.Expression | None) -> ex.Expression | None:
+    """The conjunction of two conditions, either of which may be missing, in a tree of its own."""
+    parts = [copied(part) for part in (left, right) if part is not None]
+    return ex.Conjunction(left=parts[0], right=parts[1]) if len(parts) == 2 else next(iter(parts), None)
+
+
+def _limit(origin: ex.Expression, cases: int) -> None:
+    if cases > MOST_CASES:
+        raise Unsupported(origin, f"it would have to be split into {cases} cases; {MOST_CASES} are the most")
