@@ -67,7 +67,7 @@ class Lowering:
                 return copied(expression, self._made)
             left, right = (yield expression.left, True), (yield expression.right, True)
             pieces = _sum(expression, left, _scaled(right, -1))
-            return _first((guard, _against_zero(type(expression), piece, expression)) for guard, piece in pieces)
+            return _compared(type(expression), pieces, Linear(0), expression)
         if isinstance(expression, sct.LocationReference) and expression.location in self._numbered:
             variable, number = self._numbered[expression.location]
             return ex.Equation(left=sct.VariableReference(variable=variable), right=ex.IntegerLiteral(value=number))
@@ -126,7 +126,7 @@ class Lowering:
                 return _sum(expression, left, right if isinstance(expression, ex.Addition) else _scaled(right, -1))
             case ex.Multiplication():
                 left, right = (yield expression.left, True), (yield expression.right, True)
-                return self._product(expression, left, right)
+                return _product(expression, left, right)
             case ex.FunctionCall(function="mod"):
                 value, divisor = (yield expression.arguments[0], True), (yield expression.arguments[1], True)
                 return _modulo(expression, value, divisor[0][1].constant)
@@ -142,23 +142,6 @@ class Lowering:
     def _held(self, cell: Cell) -> Linear:
         """The value of a variable or input, of what the lowered one holds."""
         return Linear(-shift(cell), {self._made[cell]: 1})
-
-    def _product(self, expression: ex.Multiplication, left: _Pieces, right: _Pieces) -> _Pieces:
-        """Split by the values of the factor that has fewer."""
-        factors = [(expression.left, left), (expression.right, right)]
-        factors.sort(key=lambda factor: _values(factor[1]))
-        (split, pieces), (_, others) = factors
-        _limit(expression, _values(pieces) * len(others))
-        made: _Pieces = []
-        low = min(piece.range()[0] for _, piece in pieces)
-        high = max(piece.range()[1] for _, piece in pieces)
-        for value in range(low, high + 1):
-            guard = None
-            if value < high:
-                equal = ex.Equation(left=copied(split), right=_number(value))
-                guard = self.condition(equal)
-            made += [(_both(guard, other), piece.times(value)) for other, piece in others]
-        return made
 
 
 def _is_number(expression: ex.Expression) -> bool:
@@ -195,6 +178,11 @@ def _against_zero(operator: _Comparison, value: Linear, origin: ex.Expression) -
         return ex.BooleanLiteral(value=BY_CLASS[operator].compute(value.constant, 0))
     left, right = (_written(side, origin) for side in value.sides())
     return operator(left=left, right=right)
+
+
+def _compared(operator: _Comparison, pieces: _Pieces, added: Linear, origin: ex.Expression) -> ex.Expression:
+    """Compares alternatives, to each of which something is added, with zero."""
+    return _first((guard, _against_zero(operator, piece + added, origin)) for guard, piece in pieces)
 
 
 def _written(value: Linear, origin: ex.Expression) -> ex.Expression:
@@ -242,6 +230,19 @@ def _sum(origin: ex.Expression, left: _Pieces, right: _Pieces) -> _Pieces:
     return [(_both(condition, other), first + second) for condition, first in left for other, second in right]
 
 
+def _product(expression: ex.Multiplication, left: _Pieces, right: _Pieces) -> _Pieces:
+    """Split by the values of the factor that has fewer."""
+    split, others = sorted((left, right), key=_values)
+    _limit(expression, _values(split) * len(others))
+    low = min(piece.range()[0] for _, piece in split)
+    high = max(piece.range()[1] for _, piece in split)
+    made: _Pieces = []
+    for value in range(low, high + 1):
+        guard = _compared(ex.Equation, split, Linear(-value), expression) if value < high else None
+        made += [(_both(guard, other), piece.times(value)) for other, piece in others]
+    return made
+
+
 def _modulo(expression: ex.FunctionCall, values: _Pieces, divisor: int) -> _Pieces:
     """Split by how often the divisor goes into the value."""
     made: _Pieces = []
@@ -253,11 +254,6 @@ def _modulo(expression: ex.FunctionCall, values: _Pieces, divisor: int) -> _Piec
             below = _against_zero(ex.LessThan, rest + Linear(-divisor), expression) if times < high else None
             made.append((_both(guard, below), rest))
     return made
-
-
-def _number(value: int) -> ex.Expression:
-    literal = ex.IntegerLiteral(value=abs(value))
-    return literal if value >= 0 else ex.UnaryMinus(operand=literal)
 
 
 def _values(pieces: _Pieces) -> int:
