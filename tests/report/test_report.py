@@ -144,6 +144,23 @@ def test_the_lines_speak_of_the_requirement(name: str, written: Callable[[str], 
     assert robot.name == told(name)["robot"]
 
 
+def test_lines_of_a_node_are_those_where_it_sends_and_where_it_tells(
+    written: Callable[[str], Path], told: Told
+) -> None:
+    commands = [
+        place
+        for requirement in told(QUICK)["requirements"]
+        if any(event["event"].endswith("c_trigger") for event in requirement["events"])
+        for place in requirement["generated"]
+        if place["path"].endswith(".cpp")
+    ]
+    assert len(commands) >= 2
+    for place in commands:
+        lines = (written(QUICK) / place["path"]).read_text().splitlines()
+        found = {lines[number - 1].split()[0].partition("(")[0] for number in place["lines"]}
+        assert found == {"//", "reasons.add_requirement"}, place
+
+
 @pytest.mark.parametrize("name", EACH)
 def test_the_digests_are_those_of_what_is_written(name: str, written: Callable[[str], Path], told: Told) -> None:
     for file in told(name)["digests"]["outputs"]:
