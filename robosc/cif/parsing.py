@@ -32,17 +32,23 @@ _RULES = {
     "StringToken": "a string",
     "AnnotationName": "an annotation",
 }
-#: How deep brackets and groups may be nested, one in the other: the parser follows them by calls inside each other,
-#: which Python bounds.
+#: How deep brackets, groups and statements of functions may be nested, one in the other: the parser follows them by
+#: calls inside each other, which Python bounds.
 DEEPEST = 50
 #: Names are matched whole, so that a part of one is no keyword.
 _NESTING = re.compile(
-    r'"(?:[^\\"\n]|\\.)*"|//[^\n]*|/\*.*?\*/|@@?[\w:]+|\.\.|[.^]?\$?\w+(?:\.\$?\w+)*|[][(){}]', re.DOTALL
+    r'"(?:[^\\"\n]|\\.)*"|//[^\n]*|/\*.*?\*/|@@?[\w:]+|\.\.|[.^]?\$?\w+(?:\.\$?\w+)*|[][(){};]|:(?!=)', re.DOTALL
 )
 _CLOSINGS = {")": "(", "]": "[", "}": "{"}
 _BRACKETS = frozenset(_CLOSINGS.values())
 _BLOCKS = frozenset(["group", "location"])
-#: These end with `end` as groups do, but do not count: of expressions the parser reads them flat.
+#: How to mend what is nested too deep, by what is.
+_MENDS = {
+    **dict.fromkeys(_BRACKETS, "give parts of it to algebraic variables"),
+    "group": "move it out of groups",
+    "func": "take statements of its functions apart",
+}
+#: These end with `end` as groups do, but count in functions only: of expressions the parser reads them flat.
 _FLAT = frozenset(["if", "switch", "while"])
 #: What starts a statement, and stands in no expression and in no list of parameters.
 _STARTERS = frozenset(["group", "plant", "requirement", "supervisor", "automaton", "invariant", "edge"]) | frozenset(
@@ -76,9 +82,7 @@ def parse(text: Text) -> tuple[Any, list[Diagnostic]]:
         except textx.TextXSyntaxError as fault:
             failed = fault.__cause__
         except RecursionError:
-            return None, [
-                text.error("syntax", 0, 0, "this is nested too deeply", "take statements of its functions apart")
-            ]
+            return None, [text.error("syntax", 0, 0, "this is nested too deeply", _MENDS["func"])]
         else:
             return None, findings
         assert isinstance(failed, arpeggio.NoMatch)
@@ -95,34 +99,49 @@ def parse(text: Text) -> tuple[Any, list[Diagnostic]]:
 
 
 def _too_deep(text: Text) -> Diagnostic | None:
-    """What is wrong at the first bracket or group that is nested too deep in a text; None where nothing is.
+    """What is wrong at the first bracket, group or statement that is nested too deep in a text; None where nothing is.
 
     A bracket that is not closed makes nothing deep that comes after its statement.
     """
     around: list[tuple[str, int]] = []  # what is open, and how deep it is
+    head = False  # whether a function may have begun, whose statements come after a colon
     for token in _NESTING.finditer(text.content):
         word = token[0]
+        _close(around, word)
         top, depth = around[-1] if around else ("", 0)
-        if word in _STARTERS:
-            while around and around[-1][0] not in _BLOCKS:
-                around.pop()
-            top, depth = around[-1] if around else ("", 0)
-        elif word == "end":
-            while around and around.pop()[0] in _BRACKETS:
-                pass
-        elif top and _CLOSINGS.get(word) == top:
-            around.pop()
-        # An automaton is open from its first location on; a location in brackets is a parameter.
-        opens_automaton = word == "location" and top != word and top not in _BRACKETS
-        if word in _FLAT or opens_automaton:
-            around.append((word, depth))
-        elif word in _BRACKETS or word == "group":
-            if depth == DEEPEST:
-                mend = "move it out of groups" if word == "group" else "give parts of it to algebraic variables"
-                message = f"this is nested more than {DEEPEST} levels deep"
-                return text.error("syntax", token.start(), token.end(), message, mend)
-            around.append((word, depth + 1))
+        if word in _STARTERS or (word in {"func", ";"} and top not in _BRACKETS):
+            head = word == "func"  # Where a semicolon comes first, it was a type.
+        opened = _opened(word, top, head=head)
+        counts = opened in _MENDS and word != ":"
+        if counts and depth == DEEPEST:
+            message = f"this is nested more than {DEEPEST} levels deep"
+            return text.error("syntax", token.start(), token.end(), message, _MENDS[opened])
+        if opened:
+            around.append((opened, depth + counts))
     return None
+
+
+def _close(around: list[tuple[str, int]], word: str) -> None:
+    """Takes off what a word ends."""
+    if word in _STARTERS:
+        while around and around[-1][0] not in _BLOCKS:
+            around.pop()
+    elif word == "end":
+        while around and around.pop()[0] in _BRACKETS:
+            pass
+    elif around and _CLOSINGS.get(word) == around[-1][0]:
+        around.pop()
+
+
+def _opened(word: str, top: str, *, head: bool) -> str:
+    """What a word opens, `func` where it is the statements of a function or of one of these; empty: nothing."""
+    if word == ":":
+        return "func" if head and top in {"", "group"} else ""
+    if word in _FLAT:
+        return "func" if top == "func" else word
+    # An automaton is open from its first location on; a location in brackets is a parameter.
+    is_automaton = word == "location" and top != word and top not in _BRACKETS
+    return word if is_automaton or word in _BRACKETS or word == "group" else ""
 
 
 def _made(text: Text) -> Any:

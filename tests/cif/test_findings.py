@@ -84,8 +84,8 @@ WRONG = {
     ),
     "a file that is not there": ('import "no.cif"; controllable c;\n' + _P, [("1:1", None)]),
     "a number": ("controllable c;\n" + _P + "requirement 99999999999 > 1;", [("3:13", None)]),
-    "too deep statements of a function": (
-        "controllable c;\n" + _P + f"func int f(): {'while true: ' * 500}return 1; {'end ' * 500}end",
+    "too deep statements of a function whose head is not closed": (
+        "controllable c;\n" + _P + f"func int f([): {'while true: ' * 500}return 1; {'end ' * 500}end",
         [("1:1", "take statements of its functions apart")],
     ),
     "too long": (
@@ -181,6 +181,27 @@ def test_what_is_nested_too_deep_is_found_at_its_place(name: str) -> None:
     [(_, message, hint)] = deep[0]
     assert message == f"this is nested more than {DEEPEST} levels deep"
     assert hint
+
+
+@pytest.mark.parametrize("statement", ["while true:", "if true: x := 1; elif false: x := 2; else"])
+def test_statements_of_functions_that_are_nested_too_deep_are_found_at_their_place(statement: str) -> None:
+    """Groups around count, what functions and types of functions there are before does not."""
+    before = "".join(
+        f"type t{number} = func int(int a); "
+        f"func int g{number}(int a): while true: x := if a = 1: 1 else 2 end; end end\n"
+        for number in range(60)
+    )
+    texts = [
+        f"controllable c;\n{_P}group a: func bool f(): return true; end group b: {before}\nfunc int f(int x):\n"
+        + f"{statement}\n" * depth
+        + "return 1; "
+        + "end " * (depth + 3)
+        for depth in (DEEPEST - 2, DEEPEST - 1, 5000)
+    ]
+    fine, *deep = on_small_stack(lambda: [findings(text) for text in texts])
+    assert all("functions" in message for _, message, _ in fine)
+    message, hint = f"this is nested more than {DEEPEST} levels deep", "take statements of its functions apart"
+    assert deep == [[(f"{3 + 60 + 2 + DEEPEST - 2}:1", message, hint)]] * 2
 
 
 def test_what_is_not_closed_makes_nothing_deep() -> None:
