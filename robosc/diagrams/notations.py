@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import re
-from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
 from robosc.diagrams.graph_drawing import draw
+from robosc.files.templates import environment
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -56,21 +53,9 @@ def _is_states(graph: Graph) -> bool:
 
 def render(template: str, **values: object) -> str:
     """What a template of this folder makes of values, which are escaped in SVG."""
-    return _environment(is_xml=".svg." in template).get_template(template).render(**values)
-
-
-@cache
-def _environment(*, is_xml: bool) -> Environment:
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).with_name("templates")),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        autoescape=is_xml,  # noqa: S701 - the other notations are no XML
-    )
-    environment.filters |= {"dot": _dot, "dot_labels": _dot_labels, "dot_node": _dot_node, "mermaid": _mermaid}
-    return environment
+    templates = environment("robosc.diagrams", escapes=".svg." in template)
+    templates.filters |= {"dot": _dot, "dot_labels": _dot_labels, "dot_node": _dot_node, "mermaid": _mermaid}
+    return templates.get_template(template).render(**values)
 
 
 def _mermaid(text: str | Label) -> str:

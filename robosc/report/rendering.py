@@ -8,10 +8,9 @@ from base64 import b64encode
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
 from robosc.diagnostics.visible import visible
 from robosc.files.resources import locate
+from robosc.files.templates import environment
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -31,19 +30,11 @@ def as_html(found: Mapping[str, Any]) -> str:
     What comes from a model is escaped, and its content security policy lets nothing run or load: the hash of its one
     style sheet is all that it allows.
     """
-    folder = locate("report/templates")
-    environment = Environment(
-        loader=FileSystemLoader(folder),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        autoescape=True,
-    )
-    environment.filters["visible"] = visible
-    style = (folder / "report.css").read_text(encoding="utf-8")
+    templates = environment("robosc.report", escapes=True)
+    templates.filters["visible"] = visible
+    style = locate("report/templates/report.css").read_text(encoding="utf-8")
     allowed = b64encode(sha256(style.encode()).digest()).decode("ascii")
-    page = environment.get_template("report.html.j2")
+    page = templates.get_template("report.html.j2")
     return page.render(**found, style=style, style_hash=allowed, outcomes=_outcomes(found))
 
 

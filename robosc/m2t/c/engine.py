@@ -6,10 +6,10 @@ import textwrap
 from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
+from robosc.files.templates import environment
 from robosc.m2t.c.comments import comment, comment_text, string_literal
 from robosc.m2t.c.expressions import CPrinter, clamp, type_name, unsigned_type
 from robosc.m2t.c.names import CNames
-from robosc.m2t.templates import environment
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
 from robosc.metamodel.reflection import tree
@@ -55,7 +55,7 @@ def generate(executed: engine.EngineModel, settings: ControlLoop, templates: Pat
         "stepwise": is_from_cif(model),
         **_Preparation(executed, names).all(),
     }
-    loaded = environment("robosc.m2t.c", templates)
+    loaded = environment("robosc.m2t.c", overrides=templates)
     return {
         f"{names.prefix}_supervisor.{kind}": loaded.get_template(f"supervisor.{kind}.j2").render(prepared)
         for kind in ("h", "c")

@@ -10,10 +10,8 @@ from operator import itemgetter
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape, quoteattr
 
-from jinja2 import ChoiceLoader
-
+from robosc.files.templates import environment
 from robosc.m2t.c.comments import comment_text, string_literal
-from robosc.m2t.templates import environment
 from robosc.semantics.communication import QUEUE_DEPTH
 from robosc.semantics.definition import TRANSITIONS_KEPT
 
@@ -28,9 +26,7 @@ _OPENING, _CLOSING = "([{", ")]}"
 @cache
 def node_environment(middleware: str) -> Environment:
     """The templates of one ROS (`robosc.m2t.ros.ros1`), on top of those of this package."""
-    templates = environment(middleware)
-    shared = environment("robosc.m2t.ros")
-    templates.loader = ChoiceLoader([loader for loader in (templates.loader, shared.loader) if loader is not None])
+    templates = environment(middleware, "robosc.m2t.ros")
     templates.filters.update(
         literal=string_literal,
         raw_literal=raw_literal,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.files.templates import environment
 from robosc.m2t.c import engine
 from robosc.m2t.c import preconditions as c_preconditions
 from robosc.m2t.c.names import CNames
-from robosc.m2t.templates import environment
 
 if TYPE_CHECKING:
     from robosc.configuration import Configuration

@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 from jinja2 import UndefinedError
 
-from robosc.m2t import templates
+from robosc.files import templates
 
 
 @pytest.fixture
@@ -35,6 +35,6 @@ def test_a_template_of_the_user_takes_the_place_of_ours(shipped: Path, tmp_path:
     mine = tmp_path / "mine"
     mine.mkdir()
     (mine / "b.j2").write_text("mine\n")
-    loaded = templates.environment("robosc.m2t.target", mine)
+    loaded = templates.environment("robosc.m2t.target", overrides=mine)
     assert loaded.get_template("b.j2").render() == "mine\n"
     assert loaded.get_template("a.j2").render(names=["x"]) == "<x>\n"

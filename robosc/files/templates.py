@@ -1,4 +1,4 @@
-"""Loads the templates of a target, or what a user put in their place."""
+"""Loads the templates of a package, or what a user put in their place."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jinja2 import BaseLoader, ChoiceLoader, Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
+from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
 from robosc.files.resources import locate
 
@@ -27,22 +27,20 @@ class _Compiled(FileSystemBytecodeCache):
 
 
 @cache
-def environment(package: str, overrides: Path | None = None) -> Environment:
-    """Where the templates of a target live: in the folder `templates` of its package, such as `robosc.m2t.cif`.
+def environment(*packages: str, overrides: Path | None = None, escapes: bool = False) -> Environment:
+    """What is in the folders `templates` of packages, such as `robosc.m2t.cif`: of templates of one name the first.
 
     A template of the same name in the folder `overrides` takes the place of ours. A name that a template reads and
-    nobody prepared is an error. Nothing is escaped: what comes from a model is made safe for its target beforehand.
+    nobody prepared is an error. What comes from a model is made safe beforehand for where it stands, unless `escapes`
+    says that the templates are HTML or XML.
     """
-    folder = locate("/".join([*package.split(".")[1:], "templates"]))
-    loaders: list[BaseLoader] = [FileSystemLoader(folder)]
-    if overrides is not None:
-        loaders.insert(0, FileSystemLoader(overrides))
+    folders = [locate("/".join([*package.split(".")[1:], "templates"])) for package in packages]
     return Environment(
-        loader=ChoiceLoader(loaders),
-        bytecode_cache=_Compiled(str(folder / "__pycache__")),
+        loader=FileSystemLoader([*([overrides] if overrides else []), *folders]),
+        bytecode_cache=_Compiled(str(folders[0] / "__pycache__")),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
-        autoescape=False,  # noqa: S701  # C, CMake and Python are no HTML.
+        autoescape=escapes,  # noqa: S701  # C, CMake and Python are no HTML.
     )
