@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from difflib import unified_diff
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ import robosc
 from robosc import configuration as config
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
 HERE = Path(__file__).parent / "cpp"
 SHIPPED = Path(robosc.__file__).parent / "m2t" / "ros" / "include"
@@ -44,6 +45,15 @@ def settings() -> config.Configuration:
 @pytest.fixture(scope="session")
 def porter_settings() -> config.Configuration:
     return config.read(HERE / "porter-config.json")
+
+
+def differences(before: Mapping[str, str], after: Mapping[str, str]) -> str:
+    """The lines that files lose and get, below the path of each, without where they stand."""
+    lines = []
+    for path, text in after.items():
+        found = unified_diff(before[path].splitlines(), text.splitlines(), "", path, n=0, lineterm="")
+        lines += [f"{line}\n" for line in found if not line.startswith(("---", "@@"))]
+    return "".join(lines)
 
 
 @pytest.fixture

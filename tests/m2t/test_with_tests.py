@@ -13,6 +13,7 @@ import pytest
 from catkin_pkg.package import parse_package_string
 
 import robosc
+from tests.m2t.conftest import differences
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -46,7 +47,9 @@ def test_what_is_added(
     folder = HERE / "with_tests" / target
     new = {path: text for path, text in files.items() if plain.get(path) != text}
     assert set(plain) < set(files)
-    assert {path for path in plain if path in new} == {"CMakeLists.txt", "package.xml"}
+    changed = {path: new.pop(path) for path in plain if path in new}
+    assert set(changed) == {"CMakeLists.txt", "package.xml"}
+    golden(folder.parent / f"{target}.diff", differences(plain, changed))
     player = new.pop("test/trace_player.py")
     assert player == (Path(robosc.__file__).parent / "node_tests" / "trace_player.py").read_text(encoding="utf-8")
     # Neither pytest nor the linters of this house shall take the scripts for their own.

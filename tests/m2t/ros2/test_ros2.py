@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
-from difflib import unified_diff
 from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
@@ -16,6 +15,7 @@ from ruamel.yaml import YAML
 
 import robosc
 from robosc.configuration import Configuration, Package
+from tests.m2t.conftest import differences
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -63,12 +63,8 @@ def test_what_is_special_in_a_managed_node(
         "package.xml",
         "src/managed_porter_node.cpp",
     ]
-    changed: list[str] = []
-    for path in special:
-        texts = (porter_files[renamed(path)], renamed(managed_files[path]))
-        lines = unified_diff(*(text.splitlines() for text in texts), "", path, n=0, lineterm="")
-        changed += (line for line in lines if not line.startswith(("---", "@@")))
-    golden(HERE / "managed.diff", "\n".join([*changed, ""]))
+    managed = {renamed(path): renamed(managed_files[path]) for path in special}
+    golden(HERE / "managed.diff", differences(porter_files, managed))
 
 
 def test_package_lists_what_is_used(files: dict[str, str]) -> None:
