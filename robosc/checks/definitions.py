@@ -8,7 +8,7 @@ from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import carried, event_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from robosc.metamodel import expression as ex
 
@@ -22,6 +22,7 @@ class Text(Protocol):
 
 
 _Element = TypeVar("_Element", bound="ex.Located")
+_Use = TypeVar("_Use")
 
 
 def of_kind(kind: type[_Element] | tuple[type[_Element], ...], elements: Iterable[Any]) -> list[_Element]:
@@ -89,6 +90,29 @@ def states(automaton: rsc.Automaton) -> list[rsc.State]:
 def common_transitions(automaton: rsc.Automaton) -> list[rsc.Transition]:
     """The transitions that every state of an automaton has."""
     return of_kind(rsc.Transition, automaton.definitions)
+
+
+def circles(
+    elements: Iterable[_Element], uses: Callable[[_Element], Iterable[tuple[_Use, _Element]]]
+) -> Iterator[tuple[_Use, list[_Element]]]:
+    """Each use that closes a circle, and the elements of this, first the one that it leads back to.
+
+    `uses` are those of an element, each with what it uses. Nothing recurses: a circle may be thousands of uses long.
+    """
+    done: set[_Element] = set()
+    for start in elements:
+        opened: dict[_Element, Iterator[tuple[_Use, _Element]]] = {} if start in done else {start: iter(uses(start))}
+        while opened:
+            last = next(reversed(opened))
+            use = next(opened[last], None)
+            if use is None:
+                del opened[last]
+                done.add(last)
+            elif use[1] in opened:
+                path = list(opened)
+                yield use[0], path[path.index(use[1]) :]
+            elif use[1] not in done:
+                opened[use[1]] = iter(uses(use[1]))
 
 
 def sends_message(transition: rsc.Transition) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.checks.definitions import communications, of_kind
+from robosc.checks.definitions import circles, communications, of_kind
 from robosc.checks.mending import Choice, Removal, Replacement
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
@@ -92,31 +92,19 @@ def _base_of(enum: rsc.EnumDataType) -> Iterator[Finding]:
 
 def _endless(base: rsc.Base) -> Iterator[Finding]:
     """Each property that leads back to an object that it is a part of; of several in one circle the last one."""
-    open_types: set[rsc.ComplexDataType] = set()
-    done: set[rsc.ComplexDataType] = set()
-    for start in base.definitions:
-        if not isinstance(start, rsc.ObjectDataType) or start in done:
-            continue
-        open_types.add(start)
-        path = [(start, iter(list(start.properties)))]
-        while path:
-            current, remaining = path[-1]
-            part = next(remaining, None)
-            if part is None:
-                path.pop()
-                open_types.discard(current)
-                done.add(current)
-                continue
+
+    def parts(whole: rsc.ObjectDataType) -> Iterator[tuple[rsc.ObjectProperty, rsc.ObjectDataType]]:
+        for part in whole.properties:
             inner = _object_of(part.type)
-            if inner is not None and inner in open_types:
-                yield Finding(
-                    part,
-                    f"property `{part.name}` makes object `{inner.name}` contain itself, expected data of finite size",
-                    Removal("leave the property out, or give it a type that does not contain the object", part),
-                )
-            elif inner is not None and inner not in done and inner.eContainer() is base:
-                open_types.add(inner)
-                path.append((inner, iter(list(inner.properties))))
+            if inner is not None and inner.eContainer() is base:
+                yield part, inner
+
+    for part, circle in circles(of_kind(rsc.ObjectDataType, base.definitions), parts):
+        yield Finding(
+            part,
+            f"property `{part.name}` makes object `{circle[0].name}` contain itself, expected data of finite size",
+            Removal("leave the property out, or give it a type that does not contain the object", part),
+        )
 
 
 def _object_of(declared: rsc.DataType | None) -> rsc.ObjectDataType | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from robosc.checks.definitions import of_kind, statements
+from robosc.checks.definitions import circles, of_kind, statements
 from robosc.checks.expression_types import CONSTANT, ExpressionCheck, Place
 from robosc.checks.libraries import Meaning, instances, meanings
 from robosc.checks.mending import Choice, Cut, Insertion, Removal, Replacement
@@ -39,28 +39,14 @@ def cyclic_definition(base: rsc.Base) -> Iterator[Finding]:
     """No constant, condition or function is defined by itself, and none becomes too large when it is written out."""
     named = list(statements(rsc.NamedExpression, base))
     uses = {definition: _used(definition) for definition in named}
-    done: set[Any] = set()
-    for start in named:
-        path: list[tuple[Any, Iterator[Any]]] = [] if start in done else [(start, iter(uses[start]))]
-        opened = {start}
-        while path:
-            definition, others = path[-1]
-            other = next(others, None)
-            if other is None:
-                path.pop()
-                done.add(definition)
-                opened.discard(definition)
-            elif other in opened:
-                around = [step for step, _ in path]
-                names = [step.name for step in around[around.index(other) :]]
-                yield Finding(
-                    definition,
-                    f"`{other.name}` is defined by itself: {' -> '.join([*names, other.name])}",
-                    "leave one of these uses out, or write a value in its place",
-                )
-            elif other in uses and other not in done:
-                opened.add(other)
-                path.append((other, iter(uses[other])))
+    known = {definition: [(definition, used) for used in found if used in uses] for definition, found in uses.items()}
+    for definition, circle in circles(named, known.__getitem__):
+        names = [step.name for step in (*circle, circle[0])]
+        yield Finding(
+            definition,
+            f"`{names[0]}` is defined by itself: {' -> '.join(names)}",
+            "leave one of these uses out, or write a value in its place",
+        )
     yield from _too_large(base)
 
 
