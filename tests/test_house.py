@@ -55,8 +55,8 @@ ALLOWED = {
     "report": {"m2t", "analysis", "engine", "node_tests", "simulation"},
     "cli": ROOMS - {"__main__"},
 }
-#: The transformations of a model with its supervisor, and what begins with them.
-AFTER_SYNTHESIS = {"sct_to_engine": {"engine", "m2t"}, "sct_to_cif": {"m2t"}}
+#: What of `m2m` comes after synthesis, and what begins with it.
+AFTER_SYNTHESIS = {"sct_to_engine": {"engine", "m2t"}, "sct_to_cif": {"m2t"}, "remembering": {"engine", "m2t"}}
 #: Pieces that generators share, each with what it may use of the others.
 SHARED = {
     "models": set(),

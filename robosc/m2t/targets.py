@@ -216,6 +216,6 @@ def targets() -> dict[str, Target]:
 
 def together() -> AbstractContextManager[None]:
     """While it lasts, what several targets have in common is made once; nobody changes the models meanwhile."""
-    from robosc.m2m.sct_to_engine import remembered
+    from robosc.m2m.remembering import remembered
 
     return remembered()

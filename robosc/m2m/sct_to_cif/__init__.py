@@ -8,9 +8,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.diagnostics import Diagnostic, ModelError, Severity
+from robosc.m2m.remembering import once
 from robosc.m2m.sct_to_cif.linear import LARGEST, Unsupported, bounds, shift
 from robosc.m2m.sct_to_cif.lower_arithmetic import Lowering
-from robosc.m2m.sct_to_engine import once
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.places import place

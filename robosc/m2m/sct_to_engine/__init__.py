@@ -5,10 +5,9 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
-from contextvars import ContextVar
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING
 
+from robosc.m2m.remembering import once
 from robosc.m2m.sct_to_engine.build_expressions import as_denial, build_expression, build_value
 from robosc.m2m.sct_to_engine.collect_events import collect_edges, collect_events, collect_groups, collect_sources
 from robosc.m2m.sct_to_engine.combine_guards import combine_guards
@@ -24,7 +23,7 @@ from robosc.metamodel import engine, sct
 from robosc.semantics.roles import Roles, event_name, plant_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from robosc.m2m.sct_to_engine.collect_events import EdgeTable
     from robosc.m2m.sct_to_engine.combine_guards import GuardTerms
@@ -33,35 +32,6 @@ if TYPE_CHECKING:
 #: A robot of up to so many events is asked for all of them whenever something happened: to keep an eye on who is
 #: concerned costs more. Measured, see docs/engine.md.
 POLLED = 64
-
-_Made = TypeVar("_Made")
-
-#: While `remembered` lasts, what was made, by its key.
-_made: ContextVar[dict[object, Any] | None] = ContextVar("made", default=None)
-
-
-@contextmanager
-def remembered() -> Iterator[None]:
-    """A context in which `once` keeps its results, so that each model is transformed once.
-
-    Models must not change meanwhile. A nested context starts empty.
-    """
-    before = _made.set({})
-    try:
-        yield
-    finally:
-        _made.reset(before)
-
-
-def once(key: object, make: Callable[[], _Made]) -> _Made:
-    """The result of `make()`; within `remembered`, that of the first call with an equal `key`."""
-    known = _made.get()
-    if known is None:
-        return make()
-    if key not in known:
-        known[key] = make()
-    found: _Made = known[key]
-    return found
 
 
 def transform(model: sct.SupervisoryControlModel, polled: int | None = None) -> engine.EngineModel:

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 from hypothesis import given, settings
 
+from robosc.m2m.remembering import remembered
 from robosc.m2m.sct_to_cif import transform
-from robosc.m2m.sct_to_engine import remembered
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct, xmi
 from robosc.metamodel.reflection import tree

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 import robosc
 from robosc.engine import Engine
-from robosc.m2m.sct_to_engine import remembered, transform
+from robosc.m2m.remembering import remembered
+from robosc.m2m.sct_to_engine import transform
 from robosc.metamodel import engine, sct, xmi
 from robosc.metamodel import expression as ex
 from robosc.metamodel.reflection import tree
