@@ -236,7 +236,7 @@ class Node:
         self.robot = graph.name
         self.prefix = self._names.c.prefix
         #: How calls of the engine say what time it is; empty where the model has no times.
-        self.at = ", at()" if executed.timers else ""
+        self.at = ", alarm_->at()" if executed.timers else ""
         self.enumerations = [self._enumeration(enumeration) for enumeration in graph.enumerations]
         self.conversions = [self._conversion(conversion) for conversion in graph.conversions]
         self._carriers: dict[rosgraph.Reception, tuple[str, rosgraph.Interface]] = {}

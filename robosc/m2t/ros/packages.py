@@ -49,13 +49,13 @@ _HEADERS = {
     "robosc/fields": {"controller"},
     "robosc/hangup": {"ros2"},
     "robosc/json": set(),
+    "robosc/message_headers": {"controller", "defaults"},
     "robosc/watchdog": {"controller", "subscriptions"},
     "robosc_ros{ros}/alarm": {"timed"},
     "robosc_ros{ros}/action_client": {"controller", "actions"},
     "robosc_ros{ros}/action_proxy": {"layer", "actions"},
     "robosc_ros{ros}/arrivals": {"controller", "ros2", "subscriptions", "timed"},
     "robosc_ros{ros}/countdown": {"controller", "waits"},
-    "robosc_ros{ros}/defaults": {"controller", "defaults"},
     "robosc_ros{ros}/finite": {"controller", "hands_on"},
     "robosc_ros{ros}/graph_monitor": {"controller"},
     "robosc_ros{ros}/interruption": {"controller", "ros1"},
@@ -64,6 +64,7 @@ _HEADERS = {
     "robosc_ros{ros}/service_client": {"controller", "services"},
     "robosc_ros{ros}/service_proxy": {"layer", "services"},
     "robosc_ros{ros}/shutdown_hook": {"controller", "ros2"},
+    "robosc_ros{ros}/unit_quaternions": {"controller", "defaults", "ros1"},
 }
 
 _MESSAGE = rosgraph.InterfaceKind.message

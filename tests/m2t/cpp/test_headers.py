@@ -141,11 +141,12 @@ def test_numbers_arrays_fields_and_json(
         assert json.loads(told) == text
 
 
-def test_goals_of_actions(tmp_path: Path) -> None:
+@pytest.mark.parametrize("source", ["calls.cpp", "goals.cpp", "timeouts.cpp"])
+def test_without_middleware(source: str, tmp_path: Path) -> None:
     if shutil.which("g++") is None:
         pytest.skip("no g++")
     files = {f"include/{header}": (INCLUDE / header).read_text(encoding="utf-8") for header in HEADERS}
-    assert run("g++", "goals.cpp", "address,undefined", files, tmp_path) == (0, "", "")
+    assert run("g++", source, "address,undefined", files, tmp_path) == (0, "", "")
 
 
 @pytest.mark.parametrize("sanitizers", ["address,undefined", "thread"])

@@ -2,9 +2,8 @@
 #ifndef ROBOSC_ROS1_ALARM_HPP_
 #define ROBOSC_ROS1_ALARM_HPP_
 
+#include <chrono>
 #include <cstdint>
-#include <functional>
-#include <limits>
 #include <utility>
 
 #include <ros/node_handle.h>
@@ -12,44 +11,36 @@
 #include <ros/time.h>
 #include <ros/timer.h>
 
+#include "robosc/timeouts.hpp"
 #include "robosc/version.hpp"
 
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// A clock and one timer on it, which calls a function: the steady clock or, with use_sim_time, ROS time. The calls
-/// come through the node's callback queue, behind the messages that came before.
-class Alarm {
+/// Times on the steady clock or, with use_sim_time, in ROS time. They are up behind the messages that came before, in
+/// the node's callback queue.
+class Alarm final : public Timeouts {
  public:
-  Alarm(ros::NodeHandle& node, std::function<void()> ring) : ring_(std::move(ring)) {
+  Alarm(ros::NodeHandle& node, Engine engine)
+      : Timeouts(std::move(engine), ros::Time::isSimTime() && ros::Time::now().isZero()) {
     if (ros::Time::isSimTime()) {
-      late_ = nanoseconds() == 0;
-      simulated_ = node.createTimer(ros::Duration(1.0), [this](const ros::TimerEvent&) { call(); }, true, false);
+      simulated_ = node.createTimer(ros::Duration(1.0), [this](const ros::TimerEvent&) { ring(); }, true, false);
     } else {
       steady_ =
-          node.createSteadyTimer(ros::WallDuration(1.0), [this](const ros::SteadyTimerEvent&) { call(); }, true, false);
+          node.createSteadyTimer(ros::WallDuration(1.0), [this](const ros::SteadyTimerEvent&) { ring(); }, true, false);
     }
   }
 
-  Alarm(const Alarm&) = delete;
-  Alarm& operator=(const Alarm&) = delete;
-
-  /// The time in whole milliseconds, rounded down; it wraps.
-  std::uint32_t now() const { return static_cast<std::uint32_t>(nanoseconds() / kMillisecond); }
-
-  /// Whether the clock, which had not begun, has begun: true once.
-  bool began() {
-    const bool was_late = std::exchange(late_, late_ && nanoseconds() == 0);
-    return was_late && !late_;
+ private:
+  std::int64_t nanoseconds() const override {
+    return static_cast<std::int64_t>(ros::Time::isSimTime() ? ros::Time::now().toNSec()
+                                                            : ros::SteadyTime::now().toNSec());
   }
 
-  /// Calls in so many milliseconds, unless it does before; the largest number means never.
-  void set(std::uint32_t left) {
-    const std::int64_t up = nanoseconds() + left * kMillisecond;
-    if (left == std::numeric_limits<std::uint32_t>::max() || (set_ && up_ <= up)) return;
-    set_ = true;
-    up_ = up;
-    const double seconds = left / 1000.0;
+  bool has_begun() const override { return nanoseconds() != 0; }
+
+  void set(std::chrono::milliseconds left) override {
+    const double seconds = std::chrono::duration<double>(left).count();
     simulated_.stop();
     simulated_.setPeriod(ros::Duration(seconds));
     simulated_.start();
@@ -58,23 +49,6 @@ class Alarm {
     steady_.start();
   }
 
- private:
-  static constexpr std::int64_t kMillisecond = 1000000;
-
-  static std::int64_t nanoseconds() {
-    return static_cast<std::int64_t>(ros::Time::isSimTime() ? ros::Time::now().toNSec()
-                                                            : ros::SteadyTime::now().toNSec());
-  }
-
-  void call() {
-    set_ = false;
-    ring_();
-  }
-
-  std::function<void()> ring_;
-  bool late_ = false;
-  bool set_ = false;
-  std::int64_t up_ = 0;
   ros::Timer simulated_;
   ros::SteadyTimer steady_;
 };

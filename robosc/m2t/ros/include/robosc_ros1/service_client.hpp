@@ -6,7 +6,6 @@
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -21,6 +20,7 @@
 #include <ros/service_server_link.h>
 #include <ros/service_traits.h>
 
+#include "robosc/call_client.hpp"
 #include "robosc/version.hpp"
 #include "robosc_ros1/countdown.hpp"
 #include "robosc_ros1/event_queue.hpp"
@@ -31,27 +31,21 @@ inline namespace ROBOSC_VERSION {
 /// A client of one service. ROS 1 calls block: a thread of its own makes them, and the answer comes through the node's
 /// callback queue. All functions belong to the thread that serves this queue.
 template <typename Type>
-class ServiceClient {
+class ServiceClient final : public CallClient<Countdown, typename Type::Response> {
  public:
   using Request = typename Type::Request;
   using Response = typename Type::Response;
+  using Base = CallClient<Countdown, Response>;
 
-  /// Exactly one of them follows a call, never from inside it.
-  struct Handlers {
-    std::function<void(const Response&)> response;
-    std::function<void(const std::string& why)> error;  // no server, a failed call, no answer in time
-  };
-
-  ServiceClient(ros::NodeHandle& node, const std::string& name, std::chrono::milliseconds timeout, Handlers handlers)
-      : name_(node.resolveName(name)),
-        within_(" within " + std::to_string(timeout.count()) + " ms"),
-        handlers_(std::move(handlers)),
+  ServiceClient(ros::NodeHandle& node, const std::string& name, std::chrono::milliseconds timeout,
+                typename Base::Handlers handlers)
+      : Base(timeout, std::move(handlers), node),
+        name_(node.resolveName(name)),
         events_(node),
-        deadline_(node, timeout, [this] { expire(); }),
         worker_([this] { work(); }) {}
 
-  ~ServiceClient() {
-    stop();
+  ~ServiceClient() override {
+    this->stop();
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       ending_ = true;
@@ -65,22 +59,18 @@ class ServiceClient {
 
   /// Calls the service; a call that is still under way is given up.
   void call(const Request& request) {
-    stop();
-    waiting_ = true;
+    const std::uint64_t number = this->begin();
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       request_ = request;
-      current_ = ++number_;
+      current_ = number;
       found_ = false;
     }
     changed_.notify_one();
-    deadline_.start();
   }
 
-  /// Gives up the call that is under way: nothing follows it.
-  void stop() {
-    waiting_ = false;
-    deadline_.stop();
+ private:
+  void forget() override {
     ros::ServiceServerLinkPtr link;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -92,7 +82,11 @@ class ServiceClient {
     if (link) link->getConnection()->drop(ros::Connection::Destructing);  // what the worker waits for
   }
 
- private:
+  std::string missing() override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return found_ ? "no answer" : "no server";
+  }
+
   // On the worker's thread: one call after the other.
   void work() {
     std::unique_lock<std::mutex> lock(mutex_);
@@ -119,9 +113,9 @@ class ServiceClient {
     }
     const auto response = std::make_shared<Response>();
     if (answered && read(answer, *response)) {
-      events_.push([this, number, response] { succeed(number, *response); });
+      events_.push([this, number, response] { this->succeed(number, *response); });
     } else {
-      events_.push([this, number] { fail(number, "the call failed"); });
+      events_.push([this, number] { this->fail(number, "the call failed"); });
     }
   }
 
@@ -135,7 +129,7 @@ class ServiceClient {
       lock.lock();
       if (link && current_ == number) {
         found_ = true;
-        link_ = link;  // lets `stop` end the call
+        link_ = link;  // lets `forget` end the call
         return link;
       }
       if (link) link->getConnection()->drop(ros::Connection::Destructing);
@@ -153,32 +147,7 @@ class ServiceClient {
     }
   }
 
-  // On the node's thread. What comes late belongs to no call any more.
-  void succeed(std::uint64_t number, const Response& response) {
-    if (!waiting_ || number != number_) return;
-    stop();
-    handlers_.response(response);
-  }
-
-  void fail(std::uint64_t number, const std::string& why) {
-    if (!waiting_ || number != number_) return;
-    stop();
-    handlers_.error(why);
-  }
-
-  void expire() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    const std::string what = found_ ? "no answer" : "no server";
-    lock.unlock();
-    fail(number_, what + within_);
-  }
-
   const std::string name_;
-  const std::string within_;
-  const Handlers handlers_;
-  bool waiting_ = false;
-  std::uint64_t number_ = 0;
-
   std::mutex mutex_;  // of what both threads use, up to `ending_`
   std::condition_variable changed_;
   std::optional<Request> request_;
@@ -188,7 +157,6 @@ class ServiceClient {
   bool ending_ = false;
 
   EventQueue events_;
-  Countdown deadline_;
   std::thread worker_;
 };
 

@@ -3,7 +3,6 @@
 #define ROBOSC_ROS1_SERVICE_PROXY_HPP_
 
 #include <chrono>
-#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
@@ -12,6 +11,7 @@
 
 #include <ros/ros.h>
 
+#include "robosc/call_proxy.hpp"
 #include "robosc/version.hpp"
 #include "robosc_ros1/event_queue.hpp"
 #include "robosc_ros1/service_client.hpp"
@@ -25,85 +25,46 @@ inline namespace ROBOSC_VERSION {
 /// ROS answers synchronously: each caller waits in a thread of `callers`. What is decided, is decided in the node's
 /// queue.
 template <typename Type>
-class ServiceProxy {
+class ServiceProxy final : public CallProxy<std::shared_ptr<std::promise<std::optional<typename Type::Response>>>,
+                                            typename Type::Request, typename Type::Response> {
  public:
   using Request = typename Type::Request;
   using Response = typename Type::Response;
-
-  /// What the supervisor has to say and to hear. Nothing is called from inside of anything else here.
-  struct Handlers {
-    std::function<bool(const Request&)> call;       ///< Whether a call goes on.
-    std::function<void()> busy;                     ///< A call is turned away because another one waits.
-    std::function<void(const Response&)> response;  ///< The robot has answered.
-    std::function<void(const std::string&)> error;  ///< It has not, and why.
-  };
+  using Answer = std::optional<Response>;
+  using Caller = std::shared_ptr<std::promise<Answer>>;
+  using Base = CallProxy<Caller, Request, Response>;
 
   ServiceProxy(ros::NodeHandle& node, ros::NodeHandle& callers, const std::string& controller_side,
-               const std::string& robot_side, std::chrono::milliseconds timeout, Handlers handlers)
-      : handlers_(std::move(handlers)),
+               const std::string& robot_side, std::chrono::milliseconds timeout, typename Base::Handlers handlers)
+      : Base(std::move(handlers)),
         events_(node),
-        robot_(node, robot_side, timeout,
-               {
-                   [this](const Response& response) {
-                     handlers_.response(response);
-                     finish(response);
-                   },
-                   [this](const std::string& why) {
-                     handlers_.error(why);
-                     finish(std::nullopt);
-                   },
-               }) {
+        robot_(node, robot_side, timeout, this->template answers<typename ServiceClient<Type>::Base::Handlers>()) {
     server_ = callers.advertiseService<Request, Response>(
         controller_side, boost::function<bool(Request&, Response&)>(
                              [this](Request& request, Response& response) { return serve(request, response); }));
   }
 
-  ~ServiceProxy() { server_.shutdown(); }
   ServiceProxy(const ServiceProxy&) = delete;
   ServiceProxy& operator=(const ServiceProxy&) = delete;
+  ~ServiceProxy() override { server_.shutdown(); }
 
  private:
-  using Answer = std::optional<Response>;
-
-  struct Call {
-    explicit Call(const Request& asked) : request(asked) {}
-
-    Request request;
-    std::promise<Answer> answer;
-  };
-
   bool serve(const Request& request, Response& response) {
-    const auto call = std::make_shared<Call>(request);
-    std::future<Answer> answer = call->answer.get_future();
-    events_.push([this, call] { called(call); });
-    while (answer.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready) {
+    const auto caller = std::make_shared<std::promise<Answer>>();
+    std::future<Answer> future = caller->get_future();
+    events_.push([this, caller, request] { this->called(caller, request); });
+    while (future.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready) {
       if (!ros::ok()) return false;
     }
-    const Answer given = answer.get();
+    const Answer given = future.get();
     if (given) response = *given;
     return given.has_value();
   }
 
-  void called(const std::shared_ptr<Call>& call) {
-    if (waiting_) {
-      handlers_.busy();
-      call->answer.set_value(std::nullopt);
-    } else if (!handlers_.call(call->request)) {
-      call->answer.set_value(std::nullopt);
-    } else {
-      waiting_ = call;
-      robot_.call(call->request);
-    }
-  }
+  void forward(const Request& request) override { robot_.call(request); }
+  void answer(const Caller& caller, const Answer& response) override { caller->set_value(response); }
 
-  void finish(const Answer& answer) {
-    waiting_->answer.set_value(answer);
-    waiting_.reset();
-  }
-
-  const Handlers handlers_;
   ros::ServiceServer server_;
-  std::shared_ptr<Call> waiting_;
   EventQueue events_;
   ServiceClient<Type> robot_;
 };

@@ -19,7 +19,8 @@ inline namespace ROBOSC_VERSION {
 inline constexpr std::chrono::milliseconds kLook(20);
 
 /// The steady clock; the time of ROS where `use_sim_time` is set.
-inline rclcpp::Clock::SharedPtr waiting_clock(rclcpp::Node& node) {
+template <typename Node>
+rclcpp::Clock::SharedPtr waiting_clock(Node& node) {
   if (node.get_parameter("use_sim_time").as_bool()) return node.get_clock();
   return std::make_shared<rclcpp::Clock>(RCL_STEADY_TIME);
 }

@@ -34,12 +34,13 @@
 #include "robosc/event_log.hpp"
 #include "robosc/fields.hpp"
 #include "robosc/json.hpp"
+#include "robosc/message_headers.hpp"
 #include "robosc/watchdog.hpp"
 #include "robosc_ros1/countdown.hpp"
-#include "robosc_ros1/defaults.hpp"
 #include "robosc_ros1/graph_monitor.hpp"
 #include "robosc_ros1/interruption.hpp"
 #include "robosc_ros1/parameters.hpp"
+#include "robosc_ros1/unit_quaternions.hpp"
 #include "courier_supervisor.h"
 
 namespace courier_controller {
@@ -243,8 +244,8 @@ class Controller {
 
   bool prepare_target() {
     target_message_ = geometry_msgs::PoseStamped();
-    set_defaults(target_message_, ros::Time::now(), "map", target_message_, target_message_.pose,
-        target_message_.pose.position);
+    set_unit_quaternions(target_message_);
+    set_headers(ros::Time::now(), "map", target_message_, target_message_.pose, target_message_.pose.position);
     FieldWriter write(log_.active());
     if (supervisor_.state.data_target == courier_data_target_d1) {
       write.set("pose.position.x", target_message_.pose.position.x, data_.Scanner.first);

@@ -34,14 +34,15 @@
 #include "robosc/event_log.hpp"
 #include "robosc/fields.hpp"
 #include "robosc/json.hpp"
+#include "robosc/message_headers.hpp"
 #include "robosc/watchdog.hpp"
 #include "robosc_ros1/action_client.hpp"
 #include "robosc_ros1/countdown.hpp"
-#include "robosc_ros1/defaults.hpp"
 #include "robosc_ros1/graph_monitor.hpp"
 #include "robosc_ros1/interruption.hpp"
 #include "robosc_ros1/parameters.hpp"
 #include "robosc_ros1/service_client.hpp"
+#include "robosc_ros1/unit_quaternions.hpp"
 #include "porter_supervisor.h"
 
 namespace porter_controller {
@@ -279,7 +280,8 @@ class Controller {
 
   bool prepare_travel() {
     travel_goal_ = nav2_msgs::NavigateToPoseGoal();
-    set_defaults(travel_goal_, ros::Time::now(), "", travel_goal_, travel_goal_.pose, travel_goal_.pose.pose,
+    set_unit_quaternions(travel_goal_);
+    set_headers(ros::Time::now(), "", travel_goal_, travel_goal_.pose, travel_goal_.pose.pose,
         travel_goal_.pose.pose.position);
     FieldWriter write(log_.active());
     if (supervisor_.state.data_travel == porter_data_travel_d1) {

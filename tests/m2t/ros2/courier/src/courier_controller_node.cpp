@@ -36,9 +36,9 @@
 #include "robosc/fields.hpp"
 #include "robosc/hangup.hpp"
 #include "robosc/json.hpp"
+#include "robosc/message_headers.hpp"
 #include "robosc/watchdog.hpp"
 #include "robosc_ros2/countdown.hpp"
-#include "robosc_ros2/defaults.hpp"
 #include "robosc_ros2/graph_monitor.hpp"
 #include "robosc_ros2/parameters.hpp"
 #include "robosc_ros2/shutdown_hook.hpp"
@@ -181,7 +181,7 @@ class Controller : public rclcpp::Node {
 
   bool prepare_target() {
     target_message_ = geometry_msgs::msg::PoseStamped();
-    set_defaults(target_message_, now(), "map", target_message_, target_message_.pose, target_message_.pose.position);
+    set_headers(now(), "map", target_message_, target_message_.pose, target_message_.pose.position);
     FieldWriter write(log_.active());
     if (supervisor_.state.data_target == courier_data_target_d1) {
       write.set("pose.position.x", target_message_.pose.position.x, data_.Scanner.first);

@@ -36,10 +36,10 @@
 #include "robosc/fields.hpp"
 #include "robosc/hangup.hpp"
 #include "robosc/json.hpp"
+#include "robosc/message_headers.hpp"
 #include "robosc/watchdog.hpp"
 #include "robosc_ros2/action_client.hpp"
 #include "robosc_ros2/countdown.hpp"
-#include "robosc_ros2/defaults.hpp"
 #include "robosc_ros2/graph_monitor.hpp"
 #include "robosc_ros2/parameters.hpp"
 #include "robosc_ros2/service_client.hpp"
@@ -209,8 +209,7 @@ class Controller : public rclcpp::Node {
 
   bool prepare_travel() {
     travel_goal_ = nav2_msgs::action::NavigateToPose::Goal();
-    set_defaults(travel_goal_, now(), "", travel_goal_, travel_goal_.pose, travel_goal_.pose.pose,
-        travel_goal_.pose.pose.position);
+    set_headers(now(), "", travel_goal_, travel_goal_.pose, travel_goal_.pose.pose, travel_goal_.pose.pose.position);
     FieldWriter write(log_.active());
     if (supervisor_.state.data_travel == porter_data_travel_d1) {
       write.set("pose.pose.position.x", travel_goal_.pose.pose.position.x, data_.Desk.place);
