@@ -203,7 +203,7 @@ def generate(
     """
     from robosc.configuration import Configuration
     from robosc.diagnostics import ModelError, has_errors
-    from robosc.m2t.targets import targets
+    from robosc.m2t.targets import targets, together
 
     known = targets()
     if target not in known:
@@ -215,13 +215,14 @@ def generate(
     if into is not None and not known[target].can_be_included:
         raise ValueError(f"{target} is no code that could become part of {into}")
     configuration = configuration or Configuration()
-    findings = known[target].findings(models, configuration)
-    if has_errors(findings):
-        raise ModelError(findings)
     made = known[target]
-    tests = None
-    if with_tests:
-        from robosc.node_tests.trace_test import trace_test_of
+    with together():
+        findings = made.findings(models, configuration)
+        if has_errors(findings):
+            raise ModelError(findings)
+        tests = None
+        if with_tests:
+            from robosc.node_tests.trace_test import trace_test_of
 
-        tests = trace_test_of(made, models, configuration)
-    return made.files(models, configuration, tests, into=into)
+            tests = trace_test_of(made, models, configuration)
+        return made.files(models, configuration, tests, into=into)

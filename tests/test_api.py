@@ -10,6 +10,7 @@ from click.testing import CliRunner
 import robosc
 from robosc.cli import main
 from robosc.m2t.targets import TARGETS
+from robosc.metamodel import expression as ex
 from tests.cli.conftest import COURIER, DOOR, LAMPS
 
 
@@ -122,3 +123,11 @@ def test_an_action_that_cancels_itself(tmp_path: Path) -> None:
         robosc.synthesize(model)
     assert [diagnostic.rule for diagnostic in raised.value.diagnostics] == ["self-cancelling", "shared-topic-conflict"]
     assert model.supervisor is None
+
+
+def test_what_is_generated_is_of_the_model_as_it_is_now(door: Path) -> None:
+    models = models_of(robosc.load(door))
+    before = robosc.generate("supervisor", models)
+    for guard in models.sct.supervisor.guards:
+        guard.requirement = ex.BooleanLiteral(value=False)
+    assert robosc.generate("supervisor", models) != before

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 from robosc.m2m import sct_to_engine
@@ -22,9 +21,9 @@ class Models:
     rosgraph: rosgraph.RosGraph | None = None
     robosc: robosc.Base | None = None
 
-    @cached_property
+    @property
     def engine(self) -> engine.EngineModel:
-        """What a controller executes, made once: the models must not change after.
+        """What a controller executes: made anew each time, but within `robosc.m2t.targets.together` once.
 
         Raises ValueError where the model has no supervisor, or one without a guard for a controllable event.
         """

@@ -122,12 +122,13 @@ class RosTarget:
         """
         graph = models.rosgraph
         assert graph is not None
+        executed = models.engine
         if self.kind == "layer":
-            node, name = Node(graph, models.engine), configuration.layer_name(graph)
+            node, name = Node(graph, executed), configuration.layer_name(graph)
         else:
-            node = Node(graph, models.engine, configuration.on_shutdown, configuration.on_withheld)
+            node = Node(graph, executed, configuration.on_shutdown, configuration.on_withheld)
             name = configuration.package_name(graph)
-        return self._files(graph, models.engine, name, configuration, node, tests, into)
+        return self._files(graph, executed, name, configuration, node, tests, into)
 
     def interfaces(self, models: Models, configuration: Configuration) -> dict[str, str]:
         """The package with the type of the robot's state, where the configuration asks for one: text by path.
