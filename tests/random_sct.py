@@ -223,13 +223,17 @@ def _number(draw: st.DrawFn, scope: _Scope, depth: int) -> str:
     def again() -> str:
         return _number(draw, scope, depth - 1)
 
-    match draw(st.integers(0, 5)) if depth else 0:
+    match draw(st.integers(0, 7)) if depth else 0:
         case 1 | 2 | 3:
             return f"({again()} {draw(st.sampled_from(('+', '-', '*')))} {again()})"
         case 4:
             return f"(-{again()})"
         case 5:
             return f"({again()} if {_boolean(draw, scope, depth - 1)} else {again()})"
+        case 6:
+            return f"abs({again()})"
+        case 7:
+            return f"{draw(st.sampled_from(('min', 'max')))}({again()}, {again()})"
     return draw(st.one_of(st.sampled_from([*scope.of(".."), "2"]), st.integers(-5, 5).map(str)))
 
 

@@ -11,10 +11,11 @@
         enumerations={"Colour": ["red", "green"]},
     )
 
-Expressions are Python's: `and or not == != < <= > >= + - *`, `a if c else b`, `implies(a, b)`, `/` and `double(x)` for
-what an SCT model must not hold. A name is a variable, input or location of the own plant, else an enumeration literal,
-else a variable of any plant; `p.x` is x of plant p, `Colour.red` a literal. A type is `bool`, `0..5` or an
-enumeration; ` = value` gives a variable's initial value, by default false, the value nearest to 0, the first literal.
+Expressions are Python's: `and or not == != < <= > >= + - *`, `a if c else b`, `implies(a, b)`, `abs(a)`, `min(a, b)`,
+`max(a, b)`, and `/` and `double(x)` for what an SCT model must not hold. A name is a variable, input or location of the
+own plant, else an enumeration literal, else a variable of any plant; `p.x` is x of plant p, `Colour.red` a literal. A
+type is `bool`, `0..5` or an enumeration; ` = value` gives a variable's initial value, by default false, the value
+nearest to 0, the first literal.
 """
 
 import ast
@@ -314,6 +315,8 @@ class _Scope:
                 return ex.Conditional(condition=of(condition), then=of(then), otherwise=of(otherwise))
             case ast.Call(ast.Name("implies"), [left, right]):
                 return ex.Implication(left=of(left), right=of(right))
+            case ast.Call(ast.Name("abs" | "min" | "max" as function), arguments):
+                return ex.FunctionCall(function=function, arguments=map(of, arguments))
             case ast.Call(ast.Name("double"), [operand]):
                 return ex.DoubleConversion(operand=of(operand))
             case ast.Constant(value):

@@ -21,7 +21,7 @@ from robosc.semantics.cone_of_influence import (
     cone_of_influence,
 )
 from robosc.semantics.inputs import Computed, Data
-from robosc.semantics.operators import COMPARISONS, FUNCTIONS
+from robosc.semantics.operators import COMPARISONS, FUNCTIONS, Rule
 from robosc.semantics.typing import (
     BOOLEAN,
     DOUBLE,
@@ -55,7 +55,7 @@ class Fault:
     hint: Hint
 
 
-#: `abs`, `min` and `max` are written out by cases, up to so many parts.
+#: `abs`, `min` and `max` are written out by cases in C and CIF, up to so many parts.
 _LARGEST_CHOICE = 1 << 12
 #: Finds the faults of one kind among what is needed of some instances.
 Search: TypeAlias = "Callable[[Instances, ConeOfInfluence], Iterator[Fault]]"
@@ -185,7 +185,7 @@ def function_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[F
         fold(_cases, expression, memo=cases)
         for part in _supervised_parts(expression, where):
             read = next(accesses(part), None) if isinstance(part, ex.FunctionCall) else None
-            if read is None or not isinstance(part, ex.FunctionCall) or FUNCTIONS[part.function].is_supervised:
+            if read is None or not isinstance(part, ex.FunctionCall) or FUNCTIONS[part.function].rule is Rule.INTEGER:
                 continue
             reason = Reason(read, where.within, where.variable)
             kinds = {types(access) for access in accesses(part)}

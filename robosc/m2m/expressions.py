@@ -14,7 +14,7 @@ from robosc.semantics.evaluation import Value, evaluate, literal
 from robosc.semantics.naming import Names
 from robosc.semantics.operators import COMPARISONS, FUNCTIONS, Rule, operator_of
 from robosc.semantics.typing import DOUBLE, STRING, ArrayType, ObjectType, Types, declared_type
-from robosc.semantics.walks import copied, fold, operands, with_operands
+from robosc.semantics.walks import fold, operands, with_operands
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -112,9 +112,8 @@ class SctExpressions(_Expressions):
             row = operator_of(original)
             if row is None:
                 return type(original)(value=original.value)  # type: ignore[attr-defined,call-arg]
-            if isinstance(original, ex.FunctionCall) and not row.is_supervised:
-                constant = next(accesses(original), None) is None
-                return literal(evaluate(original, _no_name)) if constant else _by_cases(original.function, operands)
+            if isinstance(original, ex.FunctionCall) and next(accesses(original), None) is None:
+                return literal(evaluate(original, _no_name))
             made = with_operands(original, operands)
             is_table = isinstance(made, COMPARISONS) and self._some(operands, DOUBLE, STRING)
             return _table(made, original) if is_table else made
@@ -222,17 +221,6 @@ class NodeExpressions(_Expressions):
 
 def _no_name(reference: ex.Expression) -> Value:
     raise TypeError(f"{type(reference).__name__} in a constant")
-
-
-def _by_cases(function: str, operands: Sequence[ex.Expression]) -> ex.Expression:
-    """`abs`, `min` or `max` of integers, as a choice between its operands."""
-    first, second = operands[0], operands[-1]
-    if function == "abs":
-        below: ex.Expression = ex.LessThan(left=copied(first), right=ex.IntegerLiteral(value=0))
-        return ex.Conditional(condition=below, then=ex.UnaryMinus(operand=copied(first)), otherwise=first)
-    compared = ex.LessThan if function == "min" else ex.GreaterThan
-    below = compared(left=copied(second), right=copied(first))
-    return ex.Conditional(condition=below, then=second, otherwise=first)
 
 
 def _start(read: ex.Expression) -> rosgraph.WireAccess:

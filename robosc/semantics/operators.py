@@ -73,8 +73,8 @@ class Operator:
 
     `precedence` grows from the loosest to the tightest. `compute` gives the value for those of the operands, which
     are of the right types: by IEEE 754 for doubles, integers however large. `interval` does the same for all values
-    between bounds (None: no sct model has it). `decided` is the left operand's value at which the right one is not
-    looked at, if there is such: the value is then `compute(decided, anything)`.
+    between bounds (None: of a function, or no sct model has it). `decided` is the left operand's value at which the
+    right one is not looked at, if there is such: the value is then `compute(decided, anything)`.
     `compute` raises UnreadableError where there is none, which `is_partial` says is possible.
     A function has a number of `parameters`, and those of them that are `divisors` (from 0) must be positive constants.
     """
@@ -98,7 +98,7 @@ class Operator:
     @property
     def is_supervised(self) -> bool:
         """Whether sct models have it, so that the supervisor computes it."""
-        return self.interval is not None
+        return self.rule not in {Rule.DOUBLE, Rule.ROUNDING, Rule.SIZE, Rule.ELEMENTS}
 
 
 def as_double(number: Value) -> float:
@@ -122,10 +122,6 @@ def divide(left: float, right: float) -> float:
 def modulo(value: int, divisor: int) -> int:
     """The remainder, 0 to `divisor - 1` whatever the value's sign; 0 where the rule `argument` reports the divisor."""
     return value % divisor if divisor > 0 else 0
-
-
-def _modulo_in(value: Interval, divisor: Interval) -> Interval:
-    return value if Interval(0, divisor.low - 1).holds(value) else Interval(0, max(divisor.high - 1, 0))
 
 
 def _rounded(nearest: Callable[[float], int]) -> Callable[[float], int]:
@@ -290,7 +286,7 @@ _LEAST, _MOST = -(2**31), 2**31 - 1
 
 #: The functions, by their names.
 FUNCTIONS = {
-    "mod": Operator(ex.FunctionCall, "mod", 9, Rule.INTEGER, modulo, _modulo_in, parameters=2, divisors=frozenset({1}))
+    "mod": Operator(ex.FunctionCall, "mod", 9, Rule.INTEGER, modulo, None, parameters=2, divisors=frozenset({1}))
 } | {
     row.symbol: row
     for row in (

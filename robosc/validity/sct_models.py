@@ -9,6 +9,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.durations import LONGEST, SHORTEST, UNITS
 from robosc.semantics.edges import edges_of
+from robosc.semantics.operators import FUNCTIONS
 from robosc.semantics.roles import is_from_cif
 from robosc.semantics.typing import BOOLEAN, declared_type
 from robosc.validity.model_checks import around, demand, fitting_operands, repeated, typed, unique
@@ -161,6 +162,10 @@ _TIMED = demand(
     "'{0.name}' is a timeout, uncontrollable with a timer, or it is none and has no timer",
 )
 _FOREIGN = demand(lambda _: False, "{0.eClass.name} has no place in an sct model")
+_SUPERVISED = demand(
+    lambda call: FUNCTIONS[call.function].is_supervised and len(call.arguments) == FUNCTIONS[call.function].parameters,
+    "this call of '{0.function}' has no place in an sct model",
+)
 _PLAIN = demand(
     lambda declared: isinstance(declared.type, (ex.BooleanType, ex.IntegerType, ex.EnumerationType)),
     "{0.type.eClass.name} has no place in an sct model",
@@ -199,6 +204,7 @@ CHECKS: Checks = {
     ex.StringLiteral: [_FOREIGN],
     ex.DoubleConversion: [_FOREIGN],
     ex.Division: [_FOREIGN],
+    ex.FunctionCall: [_SUPERVISED],
     sct.Event: [_carried, _TIMED],
     sct.Timer: [_timer],
     sct.Duration: [_SETTABLE],

@@ -1,4 +1,4 @@
-"""`abs min max` of what the supervisor computes: written out by cases, so that every target knows them."""
+"""`abs min max` of what the supervisor computes: calls in the sct model, written out by cases in C and CIF."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_supervisor_and_engine_agree() -> None:
     assert robosc.check(robot) == []
     model = robosc.to_sct(robot)
     robosc.synthesize(model)
-    assert not [part for _, part in tree(model) if isinstance(part, ex.FunctionCall)]
+    assert {part.function for _, part in tree(model) if isinstance(part, ex.FunctionCall)} == {"abs", "min", "max"}
     engine = Engine(model)
     assert engine.state["Counter.count"] == 7
     for value in range(-20, 21):
@@ -53,6 +53,18 @@ def test_supervisor_and_engine_agree() -> None:
     models = robosc.Models(model, None, robot)
     for target in ("supervisor", "cif"):
         assert str(robosc.generate(target, models))
+
+
+def test_each_stays_one_element() -> None:
+    """However deep they are nested: their arguments are not copied."""
+
+    def size(depth: int) -> int:
+        nested = "Counter.near"
+        for _ in range(depth):
+            nested = f"min({nested}, Counter.count)"
+        return len(list(tree(robosc.to_sct(robosc.load(text=MODEL.replace("Counter.near,", f"{nested},"))))))
+
+    assert size(12) - size(0) == 12 * 2
 
 
 def test_they_are_not_written_out_without_end() -> None:

@@ -60,6 +60,8 @@ class Oracle:
                 return not of(expression.operand)
             case ex.UnaryMinus():
                 return -of(expression.operand)
+            case ex.FunctionCall():
+                return {"abs": abs, "min": min, "max": max}[expression.function](*map(of, expression.arguments))
             case ex.Conditional():
                 return of(expression.then) if of(expression.condition) else of(expression.otherwise)
             case ex.BinaryExpression():

@@ -193,6 +193,11 @@ def _access(given: Any) -> None:
     _plants(given)[0].locations[0].edges[0].guard = robosc.Access(value=True)
 
 
+def _function_of_arrays(given: Any) -> None:
+    call = ex.FunctionCall(function="max", arguments=[ex.IntegerLiteral(value=1)])
+    _plants(given)[0].locations[0].edges[0].updates[0].value = call
+
+
 def _restricted_response(given: Any) -> None:
     given.requirements[0].event = _plants(given)[0].events[1]
 
@@ -265,6 +270,7 @@ BROKEN: list[tuple[Callable[[Any], None], list[str]]] = [
     ),
     (_negative_literal, ["a literal has no sign; the sign is a UnaryMinus around it"]),
     (_access, ["Access belongs in a robosc model only"]),
+    (_function_of_arrays, ["this call of 'max' has no place in an sct model"]),
     (_restricted_response, ["the event 'u' is uncontrollable: nothing can restrict it"]),
     (_no_guard, ["the event 'p.c' has no guard"]),
     (_foreign_requirement, ["a requirement of this guard is not one on 'c'"]),

@@ -1,8 +1,9 @@
 """Pass: expressions as what CIF's data-based synthesis accepts: no negative number, no `*`, one `-` at most.
 
 A comparison becomes one of two sums, what is subtracted having moved to the other side; a product of variables is split
-by the values of one of them; a value to be assigned saturates, and what is subtracted in it is subtracted at the end,
-the only place where synthesis takes a `-`. An expression that needs none of this stays as it is.
+by the values of one of them, and a function becomes a choice between sums; a value to be assigned saturates, and what
+is subtracted in it is subtracted at the end, the only place where synthesis takes a `-`. An expression that needs none
+of this stays as it is.
 """
 
 from __future__ import annotations
@@ -127,16 +128,14 @@ class Lowering:
             case ex.Multiplication():
                 left, right = (yield expression.left, True), (yield expression.right, True)
                 return _product(expression, left, right)
-            case ex.FunctionCall(function="mod"):
-                value, divisor = (yield expression.arguments[0], True), (yield expression.arguments[1], True)
-                return _modulo(expression, value, divisor[0][1].constant)
+            case ex.FunctionCall():
+                first, last = (yield expression.arguments[0], True), (yield expression.arguments[-1], True)
+                return _called(expression, first, last)
             case ex.Conditional():
                 chosen = yield expression.condition, False
                 then = yield expression.then, True
                 otherwise = yield expression.otherwise, True
-                pieces = [*((_both(chosen, guard), piece) for guard, piece in then), *otherwise]
-                _limit(expression, len(pieces))
-                return pieces
+                return _choice(expression, chosen, then, otherwise)
         raise Unsupported(expression, f"CIF has no {type(expression).__name__}")
 
     def _held(self, cell: Cell) -> Linear:
@@ -241,6 +240,24 @@ def _product(expression: ex.Multiplication, left: _Pieces, right: _Pieces) -> _P
         guard = _compared(ex.Equation, split, Linear(-value), expression) if value < high else None
         made += [(_both(guard, other), piece.times(value)) for other, piece in others]
     return made
+
+
+def _called(call: ex.FunctionCall, first: _Pieces, last: _Pieces) -> _Pieces:
+    """A function of its first and its last argument: all but `mod` choose between values."""
+    if call.function == "mod":
+        return _modulo(call, first, last[0][1].constant)
+    if call.function == "abs":
+        other, difference = _scaled(first, -1), first
+    else:  # Of the two the shorter one comes first: its alternatives repeat the condition.
+        first, other = sorted((first, last), key=len, reverse=True)
+        difference = _sum(call, other, _scaled(first, -1))
+    chosen = _compared(ex.GreaterThan if call.function == "max" else ex.LessThan, difference, Linear(0), call)
+    return _choice(call, chosen, other, first)
+
+
+def _choice(origin: ex.Expression, condition: ex.Expression, then: _Pieces, otherwise: _Pieces) -> _Pieces:
+    _limit(origin, len(then) + len(otherwise))
+    return [*((_both(condition, guard), piece) for guard, piece in then), *otherwise]
 
 
 def _modulo(expression: ex.FunctionCall, values: _Pieces, divisor: int) -> _Pieces:

@@ -142,7 +142,7 @@ class Terms:
         return self._make(kind, operands, None, int, _interval(kind, *operands))
 
     def called(self, function: str, value: Term, *others: Term) -> Term:
-        """A function of integers: those of a model from CIF are written out by cases, as `m2m` does it of robots."""
+        """A function of integers: `mod` as a remainder, the others by cases."""
         match function, others:
             case "mod", (divisor,):
                 return self.modulo(value, divisor)

@@ -223,6 +223,9 @@ def said(given: sct.SupervisoryControlModel) -> str:
         ("c == (a < b)", "c = (a < b)"),
         ("not (c == d)", "not (c = d)"),
         ("(c if d else c or d) != c", "if d: c else c or d end != c"),
+        ("abs(s) < 2", "if s < 3: 1 < s else s < 5 end"),
+        ("min(a, b) < 1", "if b < a: b < 1 else a < 1 end"),
+        ("max(a, min(b, 2)) == 1", "if if 2 < b: a > 2 else a > b end: a = 1 elif 2 < b: false else b = 1 end"),
     ],
 )
 def test_conditions(text: str, wanted: str) -> None:
@@ -254,6 +257,8 @@ def test_conditions(text: str, wanted: str) -> None:
         ("-3..3", "s + 0", "s"),
         ("0..6", "s", "if s < 3: 3 else s end - 3"),
         ("0..9", "a * b", "if a = 0: 0 elif a = 1: b elif b + b > 9: 9 else b + b end"),
+        ("0..9", "max(a, 1)", "if 1 > a: 1 else a end"),
+        ("-3..3", "abs(s)", "if s < 3: 6 else s end - if s < 3: s else 0 end"),
         ("bool", "a > b", "a > b"),
     ],
 )
