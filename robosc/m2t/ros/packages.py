@@ -43,11 +43,9 @@ _INCLUDED = re.compile(r'^#include "(robosc[^"]*)"$', re.MULTILINE)
 _HEADERS = {
     "robosc/block_reasons": {"gates"},
     "robosc/component_status": {"statuses"},
-    "robosc/callback_guard": {"ros2"},
     "robosc/data": set(),
     "robosc/event_log": set(),
     "robosc/fields": {"controller"},
-    "robosc/hangup": {"ros2"},
     "robosc/json": set(),
     "robosc/message_headers": {"controller", "defaults"},
     "robosc/watchdog": {"controller", "subscriptions"},
@@ -57,13 +55,15 @@ _HEADERS = {
     "robosc_ros{ros}/arrivals": {"controller", "ros2", "subscriptions", "timed"},
     "robosc_ros{ros}/countdown": {"controller", "waits"},
     "robosc_ros{ros}/finite": {"controller", "hands_on"},
-    "robosc_ros{ros}/graph_monitor": {"controller"},
-    "robosc_ros{ros}/interruption": {"controller", "ros1"},
+    "robosc_ros{ros}/controller_node": {"controller"},
+    "robosc_ros{ros}/guarded_node": {"layer", "ros2"},
+    "robosc_ros{ros}/managed_node": {"controller", "managed", "ros2"},
     "robosc_ros{ros}/message_relay": {"layer", "topics"},
     "robosc_ros{ros}/parameters": set(),
+    "robosc_ros{ros}/run_controller": {"controller", "ros1"},
+    "robosc_ros{ros}/run_layer": {"layer", "ros1"},
     "robosc_ros{ros}/service_client": {"controller", "services"},
     "robosc_ros{ros}/service_proxy": {"layer", "services"},
-    "robosc_ros{ros}/shutdown_hook": {"controller", "ros2"},
     "robosc_ros{ros}/unit_quaternions": {"controller", "defaults", "ros1"},
 }
 
@@ -170,7 +170,7 @@ class RosTarget:
         commands = gates(graph, node, executed) if configuration.diagnostics_ms or kind == "layer" else {}
         layer = LayerNode(graph, node, commands.values(), executed) if kind == "layer" else None
         told = statuses(graph, node, commands) if configuration.diagnostics_ms else []
-        included = self._included(node, layer, told, tells_commands=any(status.commands for status in told))
+        included = self._included(node, layer, told, configuration)
         source, definition = f"src/{name}_node.cpp", f"include/{name}/definition.hpp"
         # Of a layer everything but the model's own parameters is rarely set.
         has_file = kind == "controller" or bool(node.parameters)
@@ -248,7 +248,7 @@ class RosTarget:
         return texts | ({f"test/{path}": text for path, text in tests.files.items()} if tests else {})
 
     def _included(
-        self, node: Node, layer: LayerNode | None, told: Sequence[Status], *, tells_commands: bool
+        self, node: Node, layer: LayerNode | None, told: Sequence[Status], configuration: Configuration
     ) -> list[str]:
         """The headers of `include` that the node includes, without their ending."""
         sent = [publisher.interface for publisher in node.publishers] + [client.interface for client in node.clients]
@@ -257,8 +257,9 @@ class RosTarget:
             f"ros{self.ros.version}": True,
             "actions": node.actions,
             "defaults": any(has_defaults(interface) for interface in sent),
-            "gates": (layer and layer.gates) or tells_commands,
+            "gates": (layer and layer.gates) or any(status.commands for status in told),
             "hands_on": node.hands_on,
+            "managed": configuration.lifecycle,
             "services": node.services,
             "statuses": told,
             "subscriptions": node.subscriptions,

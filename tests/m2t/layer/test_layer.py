@@ -211,8 +211,8 @@ def test_leaves_out_what_is_not_asked_for(usher: robosc.Models, tmp_path: Path) 
         ros = f"robosc_{target.removesuffix('-layer')}"
         names = {"robosc/data", "robosc/event_log", "robosc/json", "robosc/version"}
         names |= {f"{ros}/message_relay", f"{ros}/parameters"}
-        own = {"robosc/callback_guard", "robosc/hangup", f"{ros}/arrivals"}
-        names |= own if target == "ros2-layer" else {"robosc/queue_depth"}
+        own = {"robosc/callback_guard", "robosc/hangup", f"{ros}/arrivals", f"{ros}/guarded_node"}
+        names |= own if target == "ros2-layer" else {"robosc/queue_depth", f"{ros}/run_layer"}
         assert headers == {f"include/{name}.hpp" for name in (*names, "ear_layer/definition")}
 
 

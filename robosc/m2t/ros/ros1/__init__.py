@@ -41,7 +41,7 @@ class Ros1:
         """What only the templates of a controller read; see `Middleware`."""
         libraries = {"rosconsole", "roscpp", "xmlrpcpp", *(["actionlib"] if node.actions else [])}
         return {
-            "headers": self._headers(node, {"ros/callback_queue.h"}, used.reports),
+            "headers": self._headers(node, used.reports),
             **_build({*libraries, *used.types}, set(), ["rosgraph_msgs", "rospy", "rostest"] if tests else []),
             "threads": True,
             "names": list(_names(node)),
@@ -52,9 +52,7 @@ class Ros1:
         dependencies = {"rosconsole", "roscpp", *used.types, *(["actionlib_msgs"] if layer.node.actions else [])}
         run = configuration.supervisor.controller.run
         return {
-            "headers": self._headers(
-                layer.node, {"ros/callback_queue.h"} if layer.node.services else set(), used.reports
-            ),
+            "headers": self._headers(layer.node, used.reports),
             **_build(dependencies, controller_package(configuration) - dependencies),
             "threads": bool(layer.node.services),
             "names": [(name, below_layer(name)) for name in layer.remapped(_ACTION)],
@@ -64,8 +62,8 @@ class Ros1:
             "controller_side": lambda name: f"/{below_layer(name)}",
         }
 
-    def _headers(self, node: Node, own: set[str], reports: Sequence[rosgraph.Interface]) -> list[str]:
-        return sorted({self.header(interface) for interface in [*node.interfaces, *reports]} | own | {"ros/ros.h"})
+    def _headers(self, node: Node, reports: Sequence[rosgraph.Interface]) -> list[str]:
+        return sorted({self.header(interface) for interface in [*node.interfaces, *reports]} | {"ros/ros.h"})
 
 
 def _build(dependencies: set[str], started: set[str], tested: Sequence[str] = ()) -> dict[str, Any]:

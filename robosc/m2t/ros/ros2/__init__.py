@@ -45,7 +45,6 @@ class Ros2:
 
     def controller(self, node: Node, configuration: Configuration, used: Used, *, tests: bool) -> dict[str, Any]:
         """What only the templates of a controller read; see `Middleware`."""
-        headers: set[str] = set()
         types = set(used.types)
         libraries, started = ["rclcpp"], ["launch", "launch_ros"]
         if node.actions:
@@ -56,9 +55,8 @@ class Ros2:
         if configuration.lifecycle:
             libraries.append("rclcpp_lifecycle")
             started.append("lifecycle_msgs")
-            headers = {"rclcpp_lifecycle/lifecycle_node.hpp", "rclcpp_lifecycle/lifecycle_publisher.hpp"}
         return {
-            "headers": self._headers(node, headers, used.reports),
+            "headers": self._headers(node, used.reports),
             **_build(libraries, types, started, _TESTED if tests else []),
             "subscription_qos": lambda topic: _quality(_usual(topic), topic.topic, configuration),
             "publisher_qos": lambda topic: _quality(_sent(topic), topic.topic, configuration),
@@ -69,7 +67,7 @@ class Ros2:
         """What only the templates of a layer read; see `Middleware`."""
         types = {*used.types, *(["action_msgs"] if layer.node.actions else [])}
         return {
-            "headers": self._headers(layer.node, set(), used.reports),
+            "headers": self._headers(layer.node, used.reports),
             **_build(["rclcpp"], types, {"launch", "launch_ros", *controller_package(configuration)}),
             "names": layer.remapped(_ACTION),
             "launch_path": launch_path(configuration),
@@ -80,9 +78,9 @@ class Ros2:
             "client_qos": lambda call: _quality(_client(call), call.name, configuration),
         }
 
-    def _headers(self, node: Node, own: set[str], reports: Sequence[rosgraph.Interface]) -> list[str]:
+    def _headers(self, node: Node, reports: Sequence[rosgraph.Interface]) -> list[str]:
         always = {"rclcpp/rclcpp.hpp", "rclcpp_components/register_node_macro.hpp"}
-        return sorted({self.header(interface) for interface in [*node.interfaces, *reports]} | own | always)
+        return sorted({self.header(interface) for interface in [*node.interfaces, *reports]} | always)
 
 
 def _build(

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 
 #include "robosc/call_proxy.hpp"
@@ -22,8 +23,8 @@ inline namespace ROBOSC_VERSION {
 /// A service for the controller behind which stands the robot's one. Who calls it waits for the robot's answer; to whom
 /// is blocked, or gets no answer, the call fails.
 ///
-/// ROS answers synchronously: each caller waits in a thread of `callers`. What is decided, is decided in the node's
-/// queue.
+/// ROS answers synchronously: a caller waits in one thread, and another one rejects who calls meanwhile. What is
+/// decided, is decided in the node's queue.
 template <typename Type>
 class ServiceProxy final : public CallProxy<std::shared_ptr<std::promise<std::optional<typename Type::Response>>>,
                                             typename Type::Request, typename Type::Response> {
@@ -34,14 +35,16 @@ class ServiceProxy final : public CallProxy<std::shared_ptr<std::promise<std::op
   using Caller = std::shared_ptr<std::promise<Answer>>;
   using Base = CallProxy<Caller, Request, Response>;
 
-  ServiceProxy(ros::NodeHandle& node, ros::NodeHandle& callers, const std::string& controller_side,
-               const std::string& robot_side, std::chrono::milliseconds timeout, typename Base::Handlers handlers)
+  ServiceProxy(ros::NodeHandle& node, const std::string& controller_side, const std::string& robot_side,
+               std::chrono::milliseconds timeout, typename Base::Handlers handlers)
       : Base(std::move(handlers)),
         events_(node),
         robot_(node, robot_side, timeout, this->template answers<typename ServiceClient<Type>::Base::Handlers>()) {
-    server_ = callers.advertiseService<Request, Response>(
+    callers_.setCallbackQueue(&calls_);
+    server_ = callers_.advertiseService<Request, Response>(
         controller_side, boost::function<bool(Request&, Response&)>(
                              [this](Request& request, Response& response) { return serve(request, response); }));
+    threads_.start();
   }
 
   ServiceProxy(const ServiceProxy&) = delete;
@@ -64,9 +67,12 @@ class ServiceProxy final : public CallProxy<std::shared_ptr<std::promise<std::op
   void forward(const Request& request) override { robot_.call(request); }
   void answer(const Caller& caller, const Answer& response) override { caller->set_value(response); }
 
-  ros::ServiceServer server_;
   EventQueue events_;
   ServiceClient<Type> robot_;
+  ros::CallbackQueue calls_;
+  ros::NodeHandle callers_;
+  ros::ServiceServer server_;
+  ros::AsyncSpinner threads_{2, &calls_};
 };
 
 }  // namespace ROBOSC_VERSION

@@ -10,14 +10,12 @@
 #include <chrono>
 #include <cstddef>
 #include <deque>
-#include <exception>
 #include <memory>
 #include <set>
 #include <string>
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <nav2_msgs/NavigateToPoseAction.h>
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/LaserScan.h>
 #include <std_msgs/Empty.h>
@@ -34,6 +32,7 @@
 #include "robosc_ros1/action_proxy.hpp"
 #include "robosc_ros1/message_relay.hpp"
 #include "robosc_ros1/parameters.hpp"
+#include "robosc_ros1/run_layer.hpp"
 #include "robosc_ros1/service_proxy.hpp"
 #include "usher_layer/definition.hpp"
 #include "usher_supervisor.h"
@@ -72,7 +71,6 @@ class Layer {
   Layer() :
       log_(parameter<std::string>(private_, "event_log", "",
       "A file that gets a line of JSON for each event; empty: none.")) {
-    set_log_level(private_);
     const auto service_timeout =
         std::chrono::milliseconds(parameter(private_, "service_timeout_ms", 2000, 1, 86400000,
         "After this time without an answer a call has failed."));
@@ -130,7 +128,7 @@ class Layer {
     light_handlers.response = [this](const auto& message) { on_light_response(message); };
     light_handlers.error = [this](const std::string& why) { on_light_error(why); };
     light_proxy_ = std::make_unique<ServiceProxy<std_srvs::SetBool>>(
-        node_, callers_, self + "/controller/lamp/light", "/lamp/light", service_timeout, light_handlers);
+        node_, self + "/controller/lamp/light", "/lamp/light", service_timeout, light_handlers);
     ActionProxy<nav2_msgs::NavigateToPoseAction>::Handlers go_to_handlers;
     go_to_handlers.goal = [this](const auto&) { return pass_go_to(); };
     go_to_handlers.busy = [this] { block(usher_action_go_to_c_trigger, "Navigation.go_to", BlockReasons::busy()); };
@@ -145,7 +143,6 @@ class Layer {
     timer_ =
         node_.createSteadyTimer(ros::WallDuration(std::chrono::duration<double>(period).count()),
         [this](const ros::SteadyTimerEvent&) { report(); });
-    spinner_.start();
   }
 
  private:
@@ -482,13 +479,6 @@ class Layer {
 
   ros::NodeHandle node_;
   ros::NodeHandle private_{"~"};
-  // Who calls a service waits in a thread: one for each service, and one to reject who calls meanwhile.
-  ros::CallbackQueue calls_;
-  ros::NodeHandle callers_ = [this] {
-    ros::NodeHandle handle;
-    handle.setCallbackQueue(&calls_);
-    return handle;
-  }();
   usher_supervisor supervisor_;
 
   // Data of the model that the supervisor does not need.
@@ -524,19 +514,10 @@ class Layer {
   std::unique_ptr<ServiceProxy<std_srvs::SetBool>> light_proxy_;
   std::unique_ptr<ActionProxy<nav2_msgs::NavigateToPoseAction>> go_to_proxy_;
   ros::SteadyTimer timer_;
-  ros::AsyncSpinner spinner_{2, &calls_};
 };
 
 }  // namespace usher_layer
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "usher_layer");
-  try {
-    usher_layer::Layer layer;
-    ros::spin();
-  } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
-    return 1;
-  }
-  return 0;
+  return robosc::run_layer<usher_layer::Layer>(argc, argv, "usher_layer");
 }

@@ -27,13 +27,12 @@
 #include <std_srvs/srv/set_bool.hpp>
 
 #include "robosc/block_reasons.hpp"
-#include "robosc/callback_guard.hpp"
 #include "robosc/component_status.hpp"
 #include "robosc/data.hpp"
 #include "robosc/event_log.hpp"
-#include "robosc/hangup.hpp"
 #include "robosc/json.hpp"
 #include "robosc_ros2/action_proxy.hpp"
+#include "robosc_ros2/guarded_node.hpp"
 #include "robosc_ros2/message_relay.hpp"
 #include "robosc_ros2/parameters.hpp"
 #include "robosc_ros2/service_proxy.hpp"
@@ -69,10 +68,10 @@ model::Distance to_Distance([[maybe_unused]] const Data& value) {
   return model::Distance::far;
 }
 
-class Layer : public rclcpp::Node {
+class Layer : public GuardedNode<rclcpp::Node> {
  public:
   explicit Layer(const rclcpp::NodeOptions& options = rclcpp::NodeOptions())
-      : rclcpp::Node("usher_layer", options),
+      : GuardedNode("usher_layer", options),
         log_(parameter<std::string>(*this, "event_log", "",
             "A file that gets a line of JSON for each event; empty: none.")) {
     const auto service_timeout =
@@ -148,14 +147,7 @@ class Layer : public rclcpp::Node {
     timer_ = create_wall_timer(period, guard_([this] { report(); }));
   }
 
-  Layer(const Layer&) = delete;
-  Layer& operator=(const Layer&) = delete;
-
-  // Executors may call back until the end of this.
-  ~Layer() override {
-    guard_.close();
-    withdraw(*get_node_base_interface()->get_default_callback_group());
-  }
+  ~Layer() override { close(); }
 
  private:
   // What the robot tells. The supervisor hears it first; then internal transitions and cancels that became possible run.
@@ -488,7 +480,6 @@ class Layer : public rclcpp::Node {
     return status.made();
   }
 
-  double seconds() const { return now().seconds(); }
 
   usher_supervisor supervisor_;
 
@@ -525,8 +516,6 @@ class Layer : public rclcpp::Node {
   std::unique_ptr<ServiceProxy<std_srvs::srv::SetBool>> light_proxy_;
   std::unique_ptr<ActionProxy<nav2_msgs::action::NavigateToPose>> go_to_proxy_;
   rclcpp::TimerBase::SharedPtr timer_;
-  Hangup hangup_;
-  CallbackGuard guard_;
 };
 
 }  // namespace usher_layer

@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <exception>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -18,7 +17,6 @@
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/PoseStamped.h>
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/LaserScan.h>
 #include <std_msgs/Bool.h>
@@ -36,10 +34,10 @@
 #include "robosc/json.hpp"
 #include "robosc/message_headers.hpp"
 #include "robosc/watchdog.hpp"
+#include "robosc_ros1/controller_node.hpp"
 #include "robosc_ros1/countdown.hpp"
-#include "robosc_ros1/graph_monitor.hpp"
-#include "robosc_ros1/interruption.hpp"
 #include "robosc_ros1/parameters.hpp"
+#include "robosc_ros1/run_controller.hpp"
 #include "robosc_ros1/unit_quaternions.hpp"
 #include "courier_supervisor.h"
 
@@ -95,11 +93,10 @@ model::Size to_Size([[maybe_unused]] const Data& value) {
   return model::Size::small;
 }
 
-class Controller {
+class Controller : public ControllerNode {
  public:
-  // All that happens comes through the queue of `node`, which one thread serves.
   explicit Controller(const ros::NodeHandle& node)
-      : node_(node),
+      : ControllerNode(node),
           log_(parameter<std::string>(private_, "event_log",
           default_log(ros::this_node::getName(), "courier_controller"),
           "A file that gets a line of JSON for each event; empty: none.")) {
@@ -117,16 +114,11 @@ class Controller {
         std::chrono::milliseconds(parameter(private_, "period_ms", 100, 1, 86400000,
         "Time from one tick to the next."));
 
-    target_publisher_ = node_.advertise<geometry_msgs::PoseStamped>("target", 10);
-    monitor_.commands<geometry_msgs::PoseStamped>("target");
-    sum_publisher_ = node_.advertise<std_msgs::UInt8>("sum", 10);
-    monitor_.commands<std_msgs::UInt8>("sum");
-    ratio_publisher_ = node_.advertise<std_msgs::Float32>("ratio", 10);
-    monitor_.commands<std_msgs::Float32>("ratio");
-    report_publisher_ = node_.advertise<std_msgs::String>("report", 10);
-    monitor_.commands<std_msgs::String>("report");
-    busy_publisher_ = node_.advertise<std_msgs::Bool>("busy", 10);
-    monitor_.commands<std_msgs::Bool>("busy");
+    target_publisher_ = advertise<geometry_msgs::PoseStamped>("target");
+    sum_publisher_ = advertise<std_msgs::UInt8>("sum");
+    ratio_publisher_ = advertise<std_msgs::Float32>("ratio");
+    report_publisher_ = advertise<std_msgs::String>("report");
+    busy_publisher_ = advertise<std_msgs::Bool>("busy");
     state_report_ = private_.advertise<std_msgs::String>("state", 10);
     definition_report_ = private_.advertise<std_msgs::String>("definition", 1, true);
     std_msgs::String definition;
@@ -152,34 +144,26 @@ class Controller {
     watchdog_stops_ =
         parameter<bool>(private_, "watchdog_stops", false,
         "Whether a silent topic holds commands back and cancels actions. It sends nothing: what the robot was told last stands.");
-    const auto hints = ros::TransportHints().tcpNoDelay();
     scan_watchdog_.emplace(parameter(private_, "watchdog_ms/scan", 0, 0, 86400000, "Longest silence of /scan; 0: any."),
         [this](const auto& watchdog) { on_silence("/scan", watchdog); }, node_);
-    scan_subscription_ = node_.subscribe("/scan", 10, &Controller::on_scan, this, hints);
+    scan_subscription_ = subscribe<sensor_msgs::LaserScan>("/scan", [this](const auto& message) { on_scan(message); });
     scan_watchdog_->start();
-    monitor_.listens_to<sensor_msgs::LaserScan>("/scan");
     count_watchdog_.emplace(parameter(private_, "watchdog_ms/count", 0, 0, 86400000,
         "Longest silence of count; 0: any."),
         [this](const auto& watchdog) { on_silence("count", watchdog); }, node_);
-    count_subscription_ = node_.subscribe("count", 10, &Controller::on_count, this, hints);
+    count_subscription_ = subscribe<std_msgs::Int16>("count", [this](const auto& message) { on_count(message); });
     count_watchdog_->start();
-    monitor_.listens_to<std_msgs::Int16>("count");
     word_watchdog_.emplace(parameter(private_, "watchdog_ms/word", 0, 0, 86400000, "Longest silence of word; 0: any."),
         [this](const auto& watchdog) { on_silence("word", watchdog); }, node_);
-    word_subscription_ = node_.subscribe("word", 10, &Controller::on_word, this, hints);
+    word_subscription_ = subscribe<std_msgs::String>("word", [this](const auto& message) { on_word(message); });
     word_watchdog_->start();
-    monitor_.listens_to<std_msgs::String>("word");
-    timer_.emplace(node_, period, [this] { tick(); });
-    timer_->start();
-    monitor_.start();
+    start(period);
     warn_of_no_stop();
   }
 
-  // When nothing is delivered any more, but ROS still runs.
-  ~Controller() { stop(); }
-
   Controller(const Controller&) = delete;
   Controller& operator=(const Controller&) = delete;
+  ~Controller() override { stop(); }
 
  private:
   // What the robot tells. A message is one batch: its events in the order of the model, with nothing in between.
@@ -399,7 +383,7 @@ class Controller {
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
   }
 
-  void tick() {
+  void tick() override {
     courier_tick(&supervisor_);
     publish_state();
     publish_diagnostics();
@@ -411,7 +395,7 @@ class Controller {
   }
 
   // Stops the robot while all triggers are held: running actions are cancelled.
-  void halt() {
+  void halt() override {
   }
 
   // At the start: nothing would stop the robot.
@@ -421,13 +405,6 @@ class Controller {
         "watchdog_stops holds commands back and does not stop the robot: onShutdown names no message, it goes on as it was told last");
     if (!watchdog_stops_)
         ROS_WARN("%s", "onShutdown names no message: when this node ends, the robot goes on as it was told last");
-  }
-
-  // Before the node ends, and while it can still send.
-  void stop() {
-    if (std::exchange(stopping_, true)) return;
-    halt();
-    ros::WallDuration(0.2).sleep();  // nothing tells when a message has left the node
   }
 
   // On every change, at most once in a period, and to everyone who begins to listen.
@@ -553,10 +530,7 @@ class Controller {
     return status.made();
   }
 
-  double seconds() const { return ros::Time::now().toSec(); }
 
-  ros::NodeHandle node_;
-  ros::NodeHandle private_{"~"};
   courier_supervisor supervisor_;
 
   // Data of the model that the supervisor does not need.
@@ -581,7 +555,6 @@ class Controller {
   std_msgs::Bool busy_message_;
 
   std::set<courier_event> withheld_;  // Commands whose data can't be sent.
-  bool stopping_ = false;
   bool watchdog_stops_ = false;
   EventLog log_;
   static constexpr std::size_t kTransitionsKept = 5000;
@@ -603,34 +576,10 @@ class Controller {
   ros::Subscriber count_subscription_;
   std::optional<Watchdog<Countdown>> word_watchdog_;
   ros::Subscriber word_subscription_;
-  std::optional<Timer> timer_;
-  GraphMonitor monitor_{node_};
 };
 
 }  // namespace courier_controller
 
 int main(int argc, char** argv) {
-  robosc::Interruption interruption;
-  ros::init(argc, argv, "courier_controller", ros::init_options::NoSigintHandler);
-  robosc::Interruption::take_requests();
-  const std::string master = "a master at " + ros::master::getURI();
-  if (!interruption.wait_until([] { return ros::master::check(); }, master)) return 0;
-  ros::CallbackQueue queue;
-  ros::NodeHandle node;
-  node.setCallbackQueue(&queue);
-  if (!interruption.wait_until([] { return ros::Time::isValid(); }, "/clock")) return 0;
-  try {
-    robosc::set_log_level(ros::NodeHandle("~"));
-    std::optional<courier_controller::Controller> controller(std::in_place, node);
-    ros::AsyncSpinner spinner(1, &queue);
-    spinner.start();
-    interruption.wait();
-    spinner.stop();
-    controller.reset();
-    interruption.let_go();
-  } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
-    return 1;
-  }
-  return 0;
+  return robosc::run_controller<courier_controller::Controller>(argc, argv, "courier_controller");
 }

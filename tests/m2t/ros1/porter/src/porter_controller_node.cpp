@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <exception>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -19,7 +18,6 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/Twist.h>
 #include <nav2_msgs/NavigateToPoseAction.h>
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <std_msgs/Empty.h>
 #include <std_msgs/Float32.h>
@@ -37,10 +35,10 @@
 #include "robosc/message_headers.hpp"
 #include "robosc/watchdog.hpp"
 #include "robosc_ros1/action_client.hpp"
+#include "robosc_ros1/controller_node.hpp"
 #include "robosc_ros1/countdown.hpp"
-#include "robosc_ros1/graph_monitor.hpp"
-#include "robosc_ros1/interruption.hpp"
 #include "robosc_ros1/parameters.hpp"
+#include "robosc_ros1/run_controller.hpp"
 #include "robosc_ros1/service_client.hpp"
 #include "robosc_ros1/unit_quaternions.hpp"
 #include "porter_supervisor.h"
@@ -58,11 +56,10 @@ std::uint8_t to_Distance([[maybe_unused]] const Data& value) {
   return porter_Distance_distant;
 }
 
-class Controller {
+class Controller : public ControllerNode {
  public:
-  // All that happens comes through the queue of `node`, which one thread serves.
   explicit Controller(const ros::NodeHandle& node)
-      : node_(node),
+      : ControllerNode(node),
           log_(parameter<std::string>(private_, "event_log", "",
           "A file that gets a line of JSON for each event; empty: none.")) {
     porter_settings settings = porter_default_settings;
@@ -88,8 +85,7 @@ class Controller {
         std::chrono::milliseconds(parameter(private_, "retry_ms", 500, 1, 86400000,
         "From the failure of a service or action to its reset."));
 
-    cmd_vel_publisher_ = node_.advertise<geometry_msgs::Twist>("cmd_vel", 10);
-    monitor_.commands<geometry_msgs::Twist>("cmd_vel");
+    cmd_vel_publisher_ = advertise<geometry_msgs::Twist>("cmd_vel");
     state_report_ = private_.advertise<std_msgs::String>("state", 10);
     definition_report_ = private_.advertise<std_msgs::String>("definition", 1, true);
     std_msgs::String definition;
@@ -129,29 +125,22 @@ class Controller {
     watchdog_stops_ =
         parameter<bool>(private_, "watchdog_stops", true,
         "Whether a silent topic holds commands back, cancels actions and sends halt.");
-    const auto hints = ros::TransportHints().tcpNoDelay();
     order_watchdog_.emplace(parameter(private_, "watchdog_ms/order", 0, 0, 86400000,
         "Longest silence of order; 0: any."),
         [this](const auto& watchdog) { on_silence("order", watchdog); }, node_);
-    order_subscription_ = node_.subscribe("order", 10, &Controller::on_order, this, hints);
+    order_subscription_ = subscribe<std_msgs::Float32>("order", [this](const auto& message) { on_order(message); });
     order_watchdog_->start();
-    monitor_.listens_to<std_msgs::Float32>("order");
     stop_watchdog_.emplace(parameter(private_, "watchdog_ms/stop", 400, 0, 86400000,
         "Longest silence of /stop; 0: any."),
         [this](const auto& watchdog) { on_silence("/stop", watchdog); }, node_);
-    stop_subscription_ = node_.subscribe("/stop", 10, &Controller::on_stop, this, hints);
+    stop_subscription_ = subscribe<std_msgs::Empty>("/stop", [this](const auto& message) { on_stop(message); });
     stop_watchdog_->start();
-    monitor_.listens_to<std_msgs::Empty>("/stop");
-    timer_.emplace(node_, period, [this] { tick(); });
-    timer_->start();
-    monitor_.start();
+    start(period);
   }
-
-  // When nothing is delivered any more, but ROS still runs.
-  ~Controller() { stop(); }
 
   Controller(const Controller&) = delete;
   Controller& operator=(const Controller&) = delete;
+  ~Controller() override { stop(); }
 
  private:
   // What the robot tells. A message is one batch: its events in the order of the model, with nothing in between.
@@ -402,7 +391,7 @@ class Controller {
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
   }
 
-  void tick() {
+  void tick() override {
     porter_tick(&supervisor_);
     publish_state();
     publish_diagnostics();
@@ -415,7 +404,7 @@ class Controller {
 
   // Stops the robot while all triggers are held: running actions are cancelled, then these messages go out, whatever
   // is required of them.
-  void halt() {
+  void halt() override {
     porter_begin(&supervisor_);
     if (!porter_perform(&supervisor_, porter_action_travel_c_cancel)) travel_client_->interrupt();
     porter_end(&supervisor_);
@@ -424,14 +413,6 @@ class Controller {
       cmd_vel_publisher_.publish(halt_message_);
       log_.write(seconds(), "outside", porter_event_name(porter_message_halt_c_trigger));
     }
-  }
-
-  // Before the node ends, and while it can still send.
-  void stop() {
-    if (std::exchange(stopping_, true)) return;
-    halt();
-    travel_client_->stop();
-    ros::WallDuration(0.2).sleep();  // nothing tells when a message has left the node
   }
 
   // On every change, at most once in a period, and to everyone who begins to listen.
@@ -601,10 +582,10 @@ class Controller {
     return status.made();
   }
 
-  double seconds() const { return ros::Time::now().toSec(); }
+  void finish() override {
+    travel_client_->stop();
+  }
 
-  ros::NodeHandle node_;
-  ros::NodeHandle private_{"~"};
   porter_supervisor supervisor_;
 
   // Data of the model that the supervisor does not need.
@@ -624,7 +605,6 @@ class Controller {
   std::string travel_fault_;
 
   std::set<porter_event> withheld_;  // Commands whose data can't be sent.
-  bool stopping_ = false;
   bool watchdog_stops_ = false;
   EventLog log_;
   static constexpr std::size_t kTransitionsKept = 5000;
@@ -646,34 +626,10 @@ class Controller {
   ros::Subscriber order_subscription_;
   std::optional<Watchdog<Countdown>> stop_watchdog_;
   ros::Subscriber stop_subscription_;
-  std::optional<Timer> timer_;
-  GraphMonitor monitor_{node_};
 };
 
 }  // namespace porter_controller
 
 int main(int argc, char** argv) {
-  robosc::Interruption interruption;
-  ros::init(argc, argv, "porter_controller", ros::init_options::NoSigintHandler);
-  robosc::Interruption::take_requests();
-  const std::string master = "a master at " + ros::master::getURI();
-  if (!interruption.wait_until([] { return ros::master::check(); }, master)) return 0;
-  ros::CallbackQueue queue;
-  ros::NodeHandle node;
-  node.setCallbackQueue(&queue);
-  if (!interruption.wait_until([] { return ros::Time::isValid(); }, "/clock")) return 0;
-  try {
-    robosc::set_log_level(ros::NodeHandle("~"));
-    std::optional<porter_controller::Controller> controller(std::in_place, node);
-    ros::AsyncSpinner spinner(1, &queue);
-    spinner.start();
-    interruption.wait();
-    spinner.stop();
-    controller.reset();
-    interruption.let_go();
-  } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
-    return 1;
-  }
-  return 0;
+  return robosc::run_controller<porter_controller::Controller>(argc, argv, "porter_controller");
 }

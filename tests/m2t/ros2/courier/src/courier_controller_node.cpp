@@ -29,19 +29,16 @@
 
 #include "courier_controller/definition.hpp"
 #include "robosc/block_reasons.hpp"
-#include "robosc/callback_guard.hpp"
 #include "robosc/component_status.hpp"
 #include "robosc/data.hpp"
 #include "robosc/event_log.hpp"
 #include "robosc/fields.hpp"
-#include "robosc/hangup.hpp"
 #include "robosc/json.hpp"
 #include "robosc/message_headers.hpp"
 #include "robosc/watchdog.hpp"
+#include "robosc_ros2/controller_node.hpp"
 #include "robosc_ros2/countdown.hpp"
-#include "robosc_ros2/graph_monitor.hpp"
 #include "robosc_ros2/parameters.hpp"
-#include "robosc_ros2/shutdown_hook.hpp"
 #include "courier_supervisor.h"
 
 namespace courier_controller {
@@ -96,27 +93,16 @@ model::Size to_Size([[maybe_unused]] const Data& value) {
   return model::Size::small;
 }
 
-class Controller : public rclcpp::Node {
+class Controller : public ControllerNode<rclcpp::Node> {
  public:
   explicit Controller(const rclcpp::NodeOptions& options = rclcpp::NodeOptions())
-      : rclcpp::Node("courier_controller", options) {
+      : ControllerNode("courier_controller", options) {
     configure();
     activate();
-    shutdown_hook_.emplace(*this, [this] {
-      const auto lock = guard_.hold();
-      if (active_) stop();
-    });
+    stop_at_end();
   }
 
-  Controller(const Controller&) = delete;
-  Controller& operator=(const Controller&) = delete;
-
-  // Executors may call back until the end of this.
-  ~Controller() override {
-    shutdown_hook_.reset();
-    guard_.close();
-    withdraw(*get_node_base_interface()->get_default_callback_group());
-  }
+  ~Controller() override { close(); }
 
  private:
   // What the robot tells. A message is one batch: its events in the order of the model, with nothing in between.
@@ -338,7 +324,7 @@ class Controller : public rclcpp::Node {
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
   }
 
-  void tick() {
+  void tick() override {
     courier_tick(&supervisor_);
     publish_state();
     publish_diagnostics();
@@ -350,7 +336,7 @@ class Controller : public rclcpp::Node {
   }
 
   // Stops the robot while all triggers are held: running actions are cancelled.
-  void halt() {
+  void halt() override {
   }
 
   // At the start: nothing would stop the robot.
@@ -361,13 +347,6 @@ class Controller : public rclcpp::Node {
     if (!watchdog_stops_)
         RCLCPP_WARN(get_logger(), "%s",
         "onShutdown names no message: when this node ends, the robot goes on as it was told last");
-  }
-
-  // Before the node ends, and while it can still send.
-  void stop() {
-    if (std::exchange(stopping_, true)) return;
-    halt();
-    if (monitor_) monitor_->stop();
   }
 
   // On every change, at most once in a period, and to everyone who begins to listen.
@@ -521,22 +500,11 @@ class Controller : public rclcpp::Node {
     };
     courier_init(&supervisor_, &settings, &hooks);
 
-    monitor_.emplace(*this, guard_);
-    rclcpp::PublisherOptions sending;
-    sending.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
-    sending.use_default_callbacks = false;  // The graph monitor says what does not fit.
-    target_publisher_ = create_publisher<geometry_msgs::msg::PoseStamped>("target", rclcpp::QoS(10), sending);
-    monitor_->command("target", "geometry_msgs/msg/PoseStamped", target_publisher_->get_actual_qos(),
-        target_publisher_->get_gid());
-    sum_publisher_ = create_publisher<std_msgs::msg::UInt8>("sum", rclcpp::QoS(10), sending);
-    monitor_->command("sum", "std_msgs/msg/UInt8", sum_publisher_->get_actual_qos(), sum_publisher_->get_gid());
-    ratio_publisher_ = create_publisher<std_msgs::msg::Float32>("ratio", rclcpp::QoS(10), sending);
-    monitor_->command("ratio", "std_msgs/msg/Float32", ratio_publisher_->get_actual_qos(), ratio_publisher_->get_gid());
-    report_publisher_ = create_publisher<std_msgs::msg::String>("report", rclcpp::QoS(10), sending);
-    monitor_->command("report", "std_msgs/msg/String", report_publisher_->get_actual_qos(),
-        report_publisher_->get_gid());
-    busy_publisher_ = create_publisher<std_msgs::msg::Bool>("busy", rclcpp::QoS(10), sending);
-    monitor_->command("busy", "std_msgs/msg/Bool", busy_publisher_->get_actual_qos(), busy_publisher_->get_gid());
+    target_publisher_ = advertise<geometry_msgs::msg::PoseStamped>("target", rclcpp::QoS(10));
+    sum_publisher_ = advertise<std_msgs::msg::UInt8>("sum", rclcpp::QoS(10));
+    ratio_publisher_ = advertise<std_msgs::msg::Float32>("ratio", rclcpp::QoS(10));
+    report_publisher_ = advertise<std_msgs::msg::String>("report", rclcpp::QoS(10));
+    busy_publisher_ = advertise<std_msgs::msg::Bool>("busy", rclcpp::QoS(10));
 
     rclcpp::PublisherOptions reporting;
     reporting.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
@@ -557,35 +525,21 @@ class Controller : public rclcpp::Node {
     watchdog_stops_ =
         parameter<bool>(*this, "watchdog_stops", false,
         "Whether a silent topic holds commands back and cancels actions. It sends nothing: what the robot was told last stands.");
-    rclcpp::SubscriptionOptions hearing;
-    hearing.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
-    hearing.use_default_callbacks = false;
     scan_watchdog_.emplace(parameter(*this, "watchdog_ms.scan", 0, 0, 86400000, "Longest silence of /scan; 0: any."),
         [this](const auto& watchdog) { on_silence("/scan", watchdog); }, *this, guard_);
-    scan_subscription_ = create_subscription<sensor_msgs::msg::LaserScan>(
-        "/scan", rclcpp::SensorDataQoS().keep_last(20).reliable(),
-        guard_([this](const sensor_msgs::msg::LaserScan& message) { on_scan(message); }), hearing);
-    monitor_->hear("/scan", "sensor_msgs/msg/LaserScan", scan_subscription_->get_actual_qos());
+    scan_subscription_ = subscribe<sensor_msgs::msg::LaserScan>(
+        "/scan", rclcpp::SensorDataQoS().keep_last(20).reliable(), [this](const auto& message) { on_scan(message); });
     count_watchdog_.emplace(parameter(*this, "watchdog_ms.count", 0, 0, 86400000, "Longest silence of count; 0: any."),
         [this](const auto& watchdog) { on_silence("count", watchdog); }, *this, guard_);
-    count_subscription_ = create_subscription<std_msgs::msg::Int16>(
-        "count", rclcpp::QoS(10),
-        guard_([this](const std_msgs::msg::Int16& message) { on_count(message); }), hearing);
-    monitor_->hear("count", "std_msgs/msg/Int16", count_subscription_->get_actual_qos());
+    count_subscription_ = subscribe<std_msgs::msg::Int16>(
+        "count", rclcpp::QoS(10), [this](const auto& message) { on_count(message); });
     word_watchdog_.emplace(parameter(*this, "watchdog_ms.word", 0, 0, 86400000, "Longest silence of word; 0: any."),
         [this](const auto& watchdog) { on_silence("word", watchdog); }, *this, guard_);
-    word_subscription_ = create_subscription<std_msgs::msg::String>(
-        "word", rclcpp::QoS(10),
-        guard_([this](const std_msgs::msg::String& message) { on_word(message); }), hearing);
-    monitor_->hear("word", "std_msgs/msg/String", word_subscription_->get_actual_qos());
+    word_subscription_ = subscribe<std_msgs::msg::String>(
+        "word", rclcpp::QoS(10), [this](const auto& message) { on_word(message); });
 
     warn_of_no_stop();
-    const auto tick = guard_([this] { this->tick(); });
-    if (get_parameter("use_sim_time").as_bool()) {
-      timer_ = rclcpp::create_timer(this, get_clock(), period, tick);
-    } else {
-      timer_ = create_wall_timer(period, tick);
-    }
+    start(period);
   }
 
   void activate() {
@@ -594,8 +548,6 @@ class Controller : public rclcpp::Node {
     word_watchdog_->start();
     active_ = true;
   }
-
-  double seconds() const { return now().seconds(); }
 
   courier_supervisor supervisor_;
 
@@ -621,7 +573,6 @@ class Controller : public rclcpp::Node {
   std_msgs::msg::Bool busy_message_;
 
   std::set<courier_event> withheld_;  // Commands whose data can't be sent.
-  bool stopping_ = false;
   bool watchdog_stops_ = false;
   EventLog log_;
   static constexpr std::size_t kTransitionsKept = 5000;
@@ -643,12 +594,6 @@ class Controller : public rclcpp::Node {
   rclcpp::Subscription<std_msgs::msg::Int16>::SharedPtr count_subscription_;
   std::optional<Watchdog<Countdown>> word_watchdog_;
   rclcpp::Subscription<std_msgs::msg::String>::SharedPtr word_subscription_;
-  std::optional<GraphMonitor> monitor_;
-  rclcpp::TimerBase::SharedPtr timer_;
-  bool active_ = false;
-  Hangup hangup_;
-  CallbackGuard guard_;
-  std::optional<ShutdownHook> shutdown_hook_;
 };
 
 }  // namespace courier_controller

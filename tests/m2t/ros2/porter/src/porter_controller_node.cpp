@@ -29,21 +29,18 @@
 
 #include "porter_controller/definition.hpp"
 #include "robosc/block_reasons.hpp"
-#include "robosc/callback_guard.hpp"
 #include "robosc/component_status.hpp"
 #include "robosc/data.hpp"
 #include "robosc/event_log.hpp"
 #include "robosc/fields.hpp"
-#include "robosc/hangup.hpp"
 #include "robosc/json.hpp"
 #include "robosc/message_headers.hpp"
 #include "robosc/watchdog.hpp"
 #include "robosc_ros2/action_client.hpp"
+#include "robosc_ros2/controller_node.hpp"
 #include "robosc_ros2/countdown.hpp"
-#include "robosc_ros2/graph_monitor.hpp"
 #include "robosc_ros2/parameters.hpp"
 #include "robosc_ros2/service_client.hpp"
-#include "robosc_ros2/shutdown_hook.hpp"
 #include "porter_supervisor.h"
 
 namespace porter_controller {
@@ -59,27 +56,16 @@ std::uint8_t to_Distance([[maybe_unused]] const Data& value) {
   return porter_Distance_distant;
 }
 
-class Controller : public rclcpp::Node {
+class Controller : public ControllerNode<rclcpp::Node> {
  public:
   explicit Controller(const rclcpp::NodeOptions& options = rclcpp::NodeOptions())
-      : rclcpp::Node("porter_controller", options) {
+      : ControllerNode("porter_controller", options) {
     configure();
     activate();
-    shutdown_hook_.emplace(*this, [this] {
-      const auto lock = guard_.hold();
-      if (active_) stop();
-    }, [this] { return waits(); });
+    stop_at_end();
   }
 
-  Controller(const Controller&) = delete;
-  Controller& operator=(const Controller&) = delete;
-
-  // Executors may call back until the end of this.
-  ~Controller() override {
-    shutdown_hook_.reset();
-    guard_.close();
-    withdraw(*get_node_base_interface()->get_default_callback_group());
-  }
+  ~Controller() override { close(); }
 
  private:
   // What the robot tells. A message is one batch: its events in the order of the model, with nothing in between.
@@ -331,7 +317,7 @@ class Controller : public rclcpp::Node {
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
   }
 
-  void tick() {
+  void tick() override {
     porter_tick(&supervisor_);
     publish_state();
     publish_diagnostics();
@@ -344,7 +330,7 @@ class Controller : public rclcpp::Node {
 
   // Stops the robot while all triggers are held: running actions are cancelled, then these messages go out, whatever
   // is required of them.
-  void halt() {
+  void halt() override {
     porter_begin(&supervisor_);
     if (!porter_perform(&supervisor_, porter_action_travel_c_cancel)) travel_client_->interrupt();
     porter_end(&supervisor_);
@@ -353,14 +339,6 @@ class Controller : public rclcpp::Node {
       cmd_vel_publisher_->publish(halt_message_);
       log_.write(seconds(), "outside", porter_event_name(porter_message_halt_c_trigger));
     }
-  }
-
-  // Before the node ends, and while it can still send.
-  void stop() {
-    if (std::exchange(stopping_, true)) return;
-    halt();
-    if (monitor_) monitor_->stop();
-    flush(*cmd_vel_publisher_);
   }
 
   // On every change, at most once in a period, and to everyone who begins to listen.
@@ -530,8 +508,7 @@ class Controller : public rclcpp::Node {
     return status.made();
   }
 
-  // Whether a goal may still be accepted, to be cancelled then.
-  bool waits() const {
+  bool waits() const override {
     return (travel_client_ && travel_client_->waits());
   }
 
@@ -571,13 +548,7 @@ class Controller : public rclcpp::Node {
     };
     porter_init(&supervisor_, &settings, &hooks);
 
-    monitor_.emplace(*this, guard_);
-    rclcpp::PublisherOptions sending;
-    sending.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
-    sending.use_default_callbacks = false;  // The graph monitor says what does not fit.
-    cmd_vel_publisher_ = create_publisher<geometry_msgs::msg::Twist>("cmd_vel", rclcpp::QoS(10), sending);
-    monitor_->command("cmd_vel", "geometry_msgs/msg/Twist", cmd_vel_publisher_->get_actual_qos(),
-        cmd_vel_publisher_->get_gid());
+    cmd_vel_publisher_ = advertise<geometry_msgs::msg::Twist>("cmd_vel", rclcpp::QoS(10));
 
     grip_retry_.emplace(*this, guard_, retry, [this] { wake(); });
     grip_client_.emplace(*this, guard_, "/gripper/grip", rclcpp::ServicesQoS(), service_timeout,
@@ -616,28 +587,16 @@ class Controller : public rclcpp::Node {
     watchdog_stops_ =
         parameter<bool>(*this, "watchdog_stops", true,
         "Whether a silent topic holds commands back, cancels actions and sends halt.");
-    rclcpp::SubscriptionOptions hearing;
-    hearing.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
-    hearing.use_default_callbacks = false;
     order_watchdog_.emplace(parameter(*this, "watchdog_ms.order", 0, 0, 86400000, "Longest silence of order; 0: any."),
         [this](const auto& watchdog) { on_silence("order", watchdog); }, *this, guard_);
-    order_subscription_ = create_subscription<std_msgs::msg::Float32>(
-        "order", rclcpp::QoS(10),
-        guard_([this](const std_msgs::msg::Float32& message) { on_order(message); }), hearing);
-    monitor_->hear("order", "std_msgs/msg/Float32", order_subscription_->get_actual_qos());
+    order_subscription_ = subscribe<std_msgs::msg::Float32>(
+        "order", rclcpp::QoS(10), [this](const auto& message) { on_order(message); });
     stop_watchdog_.emplace(parameter(*this, "watchdog_ms.stop", 400, 0, 86400000, "Longest silence of /stop; 0: any."),
         [this](const auto& watchdog) { on_silence("/stop", watchdog); }, *this, guard_);
-    stop_subscription_ = create_subscription<std_msgs::msg::Empty>(
-        "/stop", rclcpp::QoS(10),
-        guard_([this](const std_msgs::msg::Empty& message) { on_stop(message); }), hearing);
-    monitor_->hear("/stop", "std_msgs/msg/Empty", stop_subscription_->get_actual_qos());
+    stop_subscription_ = subscribe<std_msgs::msg::Empty>(
+        "/stop", rclcpp::QoS(10), [this](const auto& message) { on_stop(message); });
 
-    const auto tick = guard_([this] { this->tick(); });
-    if (get_parameter("use_sim_time").as_bool()) {
-      timer_ = rclcpp::create_timer(this, get_clock(), period, tick);
-    } else {
-      timer_ = create_wall_timer(period, tick);
-    }
+    start(period);
   }
 
   void activate() {
@@ -646,7 +605,9 @@ class Controller : public rclcpp::Node {
     active_ = true;
   }
 
-  double seconds() const { return now().seconds(); }
+  void finish() override {
+    flush(*cmd_vel_publisher_);
+  }
 
   porter_supervisor supervisor_;
 
@@ -667,7 +628,6 @@ class Controller : public rclcpp::Node {
   std::string travel_fault_;
 
   std::set<porter_event> withheld_;  // Commands whose data can't be sent.
-  bool stopping_ = false;
   bool watchdog_stops_ = false;
   EventLog log_;
   static constexpr std::size_t kTransitionsKept = 5000;
@@ -689,12 +649,6 @@ class Controller : public rclcpp::Node {
   rclcpp::Subscription<std_msgs::msg::Float32>::SharedPtr order_subscription_;
   std::optional<Watchdog<Countdown>> stop_watchdog_;
   rclcpp::Subscription<std_msgs::msg::Empty>::SharedPtr stop_subscription_;
-  std::optional<GraphMonitor> monitor_;
-  rclcpp::TimerBase::SharedPtr timer_;
-  bool active_ = false;
-  Hangup hangup_;
-  CallbackGuard guard_;
-  std::optional<ShutdownHook> shutdown_hook_;
 };
 
 }  // namespace porter_controller

@@ -1,0 +1,118 @@
+// What controllers have in common.
+#ifndef ROBOSC_ROS2_CONTROLLER_NODE_HPP_
+#define ROBOSC_ROS2_CONTROLLER_NODE_HPP_
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <rclcpp/rclcpp.hpp>
+#include <rosidl_runtime_cpp/traits.hpp>
+
+#include "robosc/version.hpp"
+#include "robosc_ros2/graph_monitor.hpp"
+#include "robosc_ros2/guarded_node.hpp"
+#include "robosc_ros2/shutdown_hook.hpp"
+
+namespace robosc {
+inline namespace ROBOSC_VERSION {
+
+/// A node that stops its robot before ROS closes, or when it goes.
+template <typename Node>
+class ControllerNode : public GuardedNode<Node> {
+ protected:
+  using GuardedNode<Node>::GuardedNode;
+
+  /// The first thing that the destructor of a derived class does.
+  void close() {
+    shutdown_hook_.reset();
+    GuardedNode<Node>::close();
+  }
+
+  // What the model decides.
+
+  /// Whether a goal may still be accepted, to be cancelled then.
+  virtual bool waits() const { return false; }
+  /// Stops the robot while all triggers are held.
+  virtual void halt() = 0;
+  /// What else there is to do before the node ends.
+  virtual void finish() {}
+  /// A period is over.
+  virtual void tick() = 0;
+
+  // What the node does.
+
+  /// A publisher of commands, of which it is the only one as far as it knows.
+  template <typename Message>
+  auto advertise(const std::string& topic, const rclcpp::QoS& quality) {
+    rclcpp::PublisherOptions options;
+    options.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
+    options.use_default_callbacks = false;  // The graph monitor says what does not fit.
+    auto publisher = this->template create_publisher<Message>(topic, quality, options);
+    monitor().command(topic, rosidl_generator_traits::name<Message>(), publisher->get_actual_qos(),
+                      publisher->get_gid());
+    return publisher;
+  }
+
+  /// A subscription to what the robot tells.
+  template <typename Message>
+  typename rclcpp::Subscription<Message>::SharedPtr subscribe(const std::string& topic, const rclcpp::QoS& quality,
+                                                              std::function<void(const Message&)> heard) {
+    rclcpp::SubscriptionOptions options;
+    options.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
+    options.use_default_callbacks = false;
+    auto subscription =
+        this->template create_subscription<Message>(topic, quality, this->guard_(std::move(heard)), options);
+    monitor().hear(topic, rosidl_generator_traits::name<Message>(), subscription->get_actual_qos());
+    return subscription;
+  }
+
+  /// Ticks from now on.
+  void start(std::chrono::milliseconds period) {
+    const auto tick = this->guard_([this] { this->tick(); });
+    if (this->get_parameter("use_sim_time").as_bool()) {
+      timer_ = rclcpp::create_timer(this, this->get_clock(), period, tick);
+    } else {
+      timer_ = this->create_wall_timer(period, tick);
+    }
+  }
+
+  /// From here on, the robot is stopped when the node ends.
+  void stop_at_end() {
+    const auto end = [this] {
+      const auto lock = this->guard_.hold();
+      if (active_) {
+        stop();
+      } else if (monitor_) {
+        monitor_->stop();
+      }
+    };
+    shutdown_hook_.emplace(*this, end, [this] { return waits(); });
+  }
+
+  /// Before the node ends, and while it can still send.
+  void stop() {
+    if (std::exchange(stopping_, true)) return;
+    halt();
+    if (monitor_) monitor_->stop();
+    finish();
+  }
+
+  bool stopping_ = false;
+  bool active_ = false;
+  std::optional<GraphMonitor> monitor_;
+  rclcpp::TimerBase::SharedPtr timer_;
+
+ private:
+  GraphMonitor& monitor() { return monitor_ ? *monitor_ : monitor_.emplace(*this, this->guard_); }
+
+  std::optional<ShutdownHook> shutdown_hook_;
+};
+
+}  // namespace ROBOSC_VERSION
+}  // namespace robosc
+
+#endif  // ROBOSC_ROS2_CONTROLLER_NODE_HPP_

@@ -1,0 +1,36 @@
+// What controllers and layers have in common.
+#ifndef ROBOSC_ROS2_GUARDED_NODE_HPP_
+#define ROBOSC_ROS2_GUARDED_NODE_HPP_
+
+#include <rclcpp/rclcpp.hpp>
+
+#include "robosc/callback_guard.hpp"
+#include "robosc/hangup.hpp"
+#include "robosc/version.hpp"
+
+namespace robosc {
+inline namespace ROBOSC_VERSION {
+
+/// A node whose callbacks end with it.
+template <typename Node>
+class GuardedNode : public Node {
+ protected:
+  using Node::Node;
+
+  /// The first thing that the destructor of a derived class does: executors may call back until the end of this.
+  void close() {
+    guard_.close();
+    withdraw(*this->get_node_base_interface()->get_default_callback_group());
+  }
+
+  /// The time of the node.
+  double seconds() const { return this->now().seconds(); }
+
+  Hangup hangup_;
+  CallbackGuard guard_;
+};
+
+}  // namespace ROBOSC_VERSION
+}  // namespace robosc
+
+#endif  // ROBOSC_ROS2_GUARDED_NODE_HPP_

@@ -1,0 +1,97 @@
+// A controller with a life cycle.
+#ifndef ROBOSC_ROS2_MANAGED_NODE_HPP_
+#define ROBOSC_ROS2_MANAGED_NODE_HPP_
+
+#include <exception>
+#include <string>
+
+#include <rclcpp/rclcpp.hpp>
+#include <rclcpp_lifecycle/lifecycle_node.hpp>
+#include <rclcpp_lifecycle/lifecycle_publisher.hpp>
+
+#include "robosc/version.hpp"
+#include "robosc_ros2/controller_node.hpp"
+
+namespace robosc {
+inline namespace ROBOSC_VERSION {
+
+/// A controller that others configure and activate. While it is not active, it follows what the robot does and sends
+/// nothing.
+class ManagedNode : public ControllerNode<rclcpp_lifecycle::LifecycleNode> {
+ public:
+  using CallbackReturn = rclcpp_lifecycle::node_interfaces::LifecycleNodeInterface::CallbackReturn;
+
+  CallbackReturn on_configure(const rclcpp_lifecycle::State&) override {
+    try {
+      configure();
+      return CallbackReturn::SUCCESS;
+    } catch (const std::exception& error) {
+      RCLCPP_ERROR(get_logger(), "not configured: %s", error.what());
+      release();
+      return CallbackReturn::FAILURE;
+    }
+  }
+
+  CallbackReturn on_activate(const rclcpp_lifecycle::State& state) override {
+    const CallbackReturn done = LifecycleNode::on_activate(state);
+    if (done == CallbackReturn::SUCCESS) activate();
+    return done;
+  }
+
+  CallbackReturn on_deactivate(const rclcpp_lifecycle::State& state) override {
+    deactivate();
+    return LifecycleNode::on_deactivate(state);
+  }
+
+  CallbackReturn on_cleanup(const rclcpp_lifecycle::State&) override {
+    if (waits()) {
+      RCLCPP_ERROR(get_logger(), "not cleaned up: a goal that is to be cancelled is not accepted yet");
+      return CallbackReturn::FAILURE;
+    }
+    release();
+    return CallbackReturn::SUCCESS;
+  }
+
+  CallbackReturn on_error(const rclcpp_lifecycle::State&) override {
+    if (active_) deactivate();
+    if (waits()) return CallbackReturn::FAILURE;
+    release();
+    return CallbackReturn::SUCCESS;
+  }
+
+  CallbackReturn on_shutdown(const rclcpp_lifecycle::State&) override {
+    if (active_) deactivate();
+    if (!waits()) release();
+    return CallbackReturn::SUCCESS;
+  }
+
+ protected:
+  ManagedNode(const std::string& name, const rclcpp::NodeOptions& options) : ControllerNode(name, options) {
+    stop_at_end();
+  }
+
+  // What the model decides.
+
+  /// Connects the node to everything that the model names.
+  virtual void configure() = 0;
+  /// It may send from now on.
+  virtual void activate() = 0;
+  /// Stops the robot; nothing is sent any more.
+  virtual void deactivate() = 0;
+  /// Lets go of all that it was connected to, and keeps nothing.
+  virtual void disconnect() = 0;
+
+ private:
+  void release() {
+    guard_.close();
+    timer_.reset();
+    finish();
+    disconnect();
+    monitor_.reset();
+  }
+};
+
+}  // namespace ROBOSC_VERSION
+}  // namespace robosc
+
+#endif  // ROBOSC_ROS2_MANAGED_NODE_HPP_
