@@ -2,15 +2,12 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
-#include <exception>
 #include <optional>
 #include <set>
 #include <string>
 #include <utility>
 
 #include <diagnostic_msgs/DiagnosticArray.h>
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <std_msgs/String.h>
 
@@ -19,7 +16,7 @@
 #include "robosc/data.hpp"
 #include "robosc/event_log.hpp"
 #include "robosc/json.hpp"
-#include "robosc_ros1/countdown.hpp"
-#include "robosc_ros1/graph_monitor.hpp"
-#include "robosc_ros1/interruption.hpp"
+#include "robosc_ros1/controller_node.hpp"
 #include "robosc_ros1/parameters.hpp"
+#include "robosc_ros1/report.hpp"
+#include "robosc_ros1/run_controller.hpp"

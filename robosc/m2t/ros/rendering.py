@@ -13,7 +13,6 @@ from xml.sax.saxutils import escape, quoteattr
 from robosc.files.templates import environment
 from robosc.m2t.c.comments import comment_text, string_literal
 from robosc.semantics.communication import QUEUE_DEPTH
-from robosc.semantics.definition import TRANSITIONS_KEPT
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -35,7 +34,6 @@ def node_environment(middleware: str) -> Environment:
         xml=xml_text,
         attribute=xml_attribute,
     )
-    templates.globals["transitions_kept"] = TRANSITIONS_KEPT
     templates.globals["queue_depth"] = QUEUE_DEPTH
     return templates
 

@@ -18,6 +18,7 @@ import robosc
 from robosc.diagnostics.visible import HIDDEN
 from robosc.runtime.core.json_text import json_text
 from robosc.semantics.communication import QUEUE_DEPTH
+from robosc.semantics.definition import TRANSITIONS_KEPT
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -116,6 +117,11 @@ def test_hidden_characters_are_those_of_the_tool() -> None:
     assert [(int(first, 16), int(last, 16)) for first, last in rows] == list(HIDDEN)
 
 
+def test_as_many_transitions_are_kept_as_in_the_node_that_is_not_generated() -> None:
+    text = (INCLUDE / "robosc/transitions.hpp").read_text(encoding="utf-8")
+    assert re.findall(r"kTransitionsKept = (\d+);", text) == [str(TRANSITIONS_KEPT)]
+
+
 def test_as_many_messages_wait_as_in_the_node_that_is_not_generated() -> None:
     text = (INCLUDE / "robosc/queue_depth.hpp").read_text(encoding="utf-8")
     assert re.findall(r"kQueueDepth = (\d+);", text) == [str(QUEUE_DEPTH)]
@@ -141,7 +147,7 @@ def test_numbers_arrays_fields_and_json(
         assert json.loads(told) == text
 
 
-@pytest.mark.parametrize("source", ["calls.cpp", "goals.cpp", "timeouts.cpp"])
+@pytest.mark.parametrize("source", ["calls.cpp", "goals.cpp", "timeouts.cpp", "transitions.cpp"])
 def test_without_middleware(source: str, tmp_path: Path) -> None:
     if shutil.which("g++") is None:
         pytest.skip("no g++")

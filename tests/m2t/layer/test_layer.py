@@ -209,10 +209,10 @@ def test_leaves_out_what_is_not_asked_for(usher: robosc.Models, tmp_path: Path) 
         assert "Threads" not in files["CMakeLists.txt"]
         headers = {path for path in files if path.startswith("include")}
         ros = f"robosc_{target.removesuffix('-layer')}"
-        names = {"robosc/data", "robosc/event_log", "robosc/json", "robosc/version"}
-        names |= {f"{ros}/message_relay", f"{ros}/parameters"}
+        names = {"robosc/data", "robosc/event_log", "robosc/json", "robosc/transitions", "robosc/version"}
+        names |= {"robosc/queue_depth", f"{ros}/message_relay", f"{ros}/parameters", f"{ros}/report"}
         own = {"robosc/callback_guard", "robosc/hangup", f"{ros}/arrivals", f"{ros}/guarded_node"}
-        names |= own if target == "ros2-layer" else {"robosc/queue_depth", f"{ros}/run_layer"}
+        names |= own if target == "ros2-layer" else {f"{ros}/run_layer"}
         assert headers == {f"include/{name}.hpp" for name in (*names, "ear_layer/definition")}
 
 

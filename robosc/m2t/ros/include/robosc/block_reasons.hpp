@@ -38,6 +38,19 @@ class BlockReasons {
     return list;
   }
 
+  /// What is told where an event is blocked.
+  std::string report(const char* robot, double time, const char* name, const char* event,
+                     const Json& components) const {
+    return to_json(Json::object()
+                       .add("robot", robot)
+                       .add("time", time)
+                       .add("name", name)
+                       .add("event", event)
+                       .add("reason", kind())
+                       .add("because", texts())
+                       .add("components", components));
+  }
+
   /// All of it in a sentence.
   std::string sentence() const {
     const bool possible = states_.empty() || !requirements_.empty();

@@ -99,7 +99,8 @@ class GraphMonitor {
       for (const std::string& other : publishers[topic]) {
         if (!asked_.emplace(topic, other).second) continue;
         const std::string found = type_at(other, topic);
-        if (!found.empty() && found != type) report(topic, other + " publishes " + found + ", not " + type);
+        if (!found.empty() && found != type)
+          report(topic, std::string(other).append(" publishes ").append(found).append(", not ").append(type));
       }
     }
     for (const auto& [topic, type] : commanded_) {

@@ -9,7 +9,6 @@
 
 #include <chrono>
 #include <cstddef>
-#include <deque>
 #include <memory>
 #include <set>
 #include <string>
@@ -29,9 +28,11 @@
 #include "robosc/data.hpp"
 #include "robosc/event_log.hpp"
 #include "robosc/json.hpp"
+#include "robosc/transitions.hpp"
 #include "robosc_ros1/action_proxy.hpp"
 #include "robosc_ros1/message_relay.hpp"
 #include "robosc_ros1/parameters.hpp"
+#include "robosc_ros1/report.hpp"
 #include "robosc_ros1/run_layer.hpp"
 #include "robosc_ros1/service_proxy.hpp"
 #include "usher_layer/definition.hpp"
@@ -81,18 +82,16 @@ class Layer {
         std::chrono::milliseconds(parameter(private_, "period_ms", 100, 1, 86400000,
         "Time from one report of the state to the next."));
 
-    blocked_report_ = private_.advertise<std_msgs::String>("blocked", 10);
-    state_report_ = private_.advertise<std_msgs::String>("state", 10);
-    definition_report_ = private_.advertise<std_msgs::String>("definition", 1, true);
-    std_msgs::String definition;
-    definition.data = kDefinition;
-    definition_report_.publish(definition);
+    blocked_report_.open(private_, "blocked");
+    state_report_.open(private_, "state");
+    definition_report_.open_lasting(private_, "definition");
+    definition_report_.publish_text(kDefinition);
     const auto report_period =
         std::chrono::milliseconds(parameter(private_, "diagnostics_ms", 1000, 0, 86400000,
         "From one report on /diagnostics to the next; 0: none."));
     report_pace_.open(report_period, period);
-    if (report_period.count() > 0) diagnostics_report_ =
-        node_.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10);
+    if (report_period.count() > 0) diagnostics_report_.open(node_, "/diagnostics");
+
 
     usher_hooks hooks = {};
     hooks.context = this;
@@ -265,16 +264,7 @@ class Layer {
   }
 
   void block(usher_event event, const char* name, const BlockReasons& reasons) {
-    std_msgs::String report;
-    report.data = to_json(Json::object()
-                              .add("robot", "Usher")
-                              .add("time", seconds())
-                              .add("name", name)
-                              .add("event", usher_event_name(event))
-                              .add("reason", reasons.kind())
-                              .add("because", reasons.texts())
-                              .add("components", components()));
-    blocked_report_.publish(report);
+    blocked_report_.publish_text(reasons.report("Usher", seconds(), name, usher_event_name(event), components()));
     blocked_.insert(event);
     log_.write(seconds(), "blocked", usher_event_name(event));
     ROS_WARN("%s is blocked: %s %s", name, reasons.kind(), to_json(reasons.texts()).c_str());
@@ -319,26 +309,13 @@ class Layer {
     }
     log_.write(seconds(), direction, usher_event_name(event));
     if (const std::size_t lost = log_.lost(); lost > 0) ROS_WARN("the event log lost %zu events", lost);
-    transitions_.push_back(event);
-    // Where simulated time stands still, or the period is long, many come before the next report.
-    if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
+    transitions_.add(usher_event_name(event));
   }
 
   // On every change, at most once in a period, and to everyone who begins to listen.
   void publish_state() {
-    const std::size_t listeners = state_report_.getNumSubscribers();
-    if (listeners > listeners_ || (listeners > 0 && !transitions_.empty())) {
-      Json transitions = Json::array();
-      for (const usher_event event : transitions_) transitions.add(usher_event_name(event));
-      std_msgs::String report;
-      report.data = to_json(Json::object()
-                                .add("robot", "Usher")
-                                .add("time", seconds())
-                                .add("components", components())
-                                .add("transitions", transitions));
-      state_report_.publish(report);
-    }
-    listeners_ = listeners;
+    const bool changed = !transitions_.empty();
+    if (state_report_.due(changed)) state_report_.publish_text(transitions_.report("Usher", seconds(), components()));
     transitions_.clear();
   }
 
@@ -415,7 +392,7 @@ class Layer {
   // A status for each component, once in a number of ticks, for whoever listens.
   void publish_diagnostics() {
     if (!report_pace_.due()) return;
-    if (diagnostics_report_.getNumSubscribers() > 0) {
+    if (diagnostics_report_.heard()) {
       diagnostic_msgs::DiagnosticArray report;
       report.header.stamp = ros::Time::now();
       report.status.push_back(status_of_Guard());
@@ -495,16 +472,14 @@ class Layer {
   } data_;
 
   EventLog log_;
-  static constexpr std::size_t kTransitionsKept = 5000;
-  std::deque<usher_event> transitions_;
-  std::size_t listeners_ = 0;
-  ros::Publisher state_report_;
-  ros::Publisher definition_report_;
+  Transitions transitions_;
+  Report<std_msgs::String> state_report_;
+  Report<std_msgs::String> definition_report_;
   ReportPace report_pace_;
-  ros::Publisher diagnostics_report_;
+  Report<diagnostic_msgs::DiagnosticArray> diagnostics_report_;
 
   std::set<usher_event> blocked_;  // Since the last report on /diagnostics.
-  ros::Publisher blocked_report_;
+  Report<std_msgs::String> blocked_report_;
   std::unique_ptr<MessageRelay<std_msgs::Empty>> stop_relay_;
   std::unique_ptr<MessageRelay<std_msgs::Empty>> resume_relay_;
   std::unique_ptr<MessageRelay<std_msgs::Int16>> battery_relay_;

@@ -10,7 +10,6 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <set>
 #include <string>
@@ -31,10 +30,12 @@
 #include "robosc/data.hpp"
 #include "robosc/event_log.hpp"
 #include "robosc/json.hpp"
+#include "robosc/transitions.hpp"
 #include "robosc_ros2/action_proxy.hpp"
 #include "robosc_ros2/guarded_node.hpp"
 #include "robosc_ros2/message_relay.hpp"
 #include "robosc_ros2/parameters.hpp"
+#include "robosc_ros2/report.hpp"
 #include "robosc_ros2/service_proxy.hpp"
 #include "usher_layer/definition.hpp"
 #include "usher_supervisor.h"
@@ -84,18 +85,16 @@ class Layer : public GuardedNode<rclcpp::Node> {
         std::chrono::milliseconds(parameter(*this, "period_ms", 100, 1, 86400000,
         "Time from one report of the state to the next."));
 
-    blocked_report_ = create_publisher<std_msgs::msg::String>("~/blocked", 10);
-    state_report_ = create_publisher<std_msgs::msg::String>("~/state", 10);
-    definition_report_ = create_publisher<std_msgs::msg::String>("~/definition", rclcpp::QoS(1).transient_local());
-    std_msgs::msg::String definition;
-    definition.data = kDefinition;
-    definition_report_->publish(definition);
+    blocked_report_.open(*this, "~/blocked");
+    state_report_.open(*this, "~/state");
+    definition_report_.open_lasting(*this, "~/definition");
+    definition_report_.publish_text(kDefinition);
     const auto report_period =
         std::chrono::milliseconds(parameter(*this, "diagnostics_ms", 1000, 0, 86400000,
         "From one report on /diagnostics to the next; 0: none."));
     report_pace_.open(report_period, period);
-    if (report_period.count() > 0) diagnostics_report_ =
-        create_publisher<diagnostic_msgs::msg::DiagnosticArray>("/diagnostics", 10);
+    if (report_period.count() > 0) diagnostics_report_.open(*this, "/diagnostics");
+
 
     usher_hooks hooks = {};
     hooks.context = this;
@@ -269,16 +268,7 @@ class Layer : public GuardedNode<rclcpp::Node> {
   }
 
   void block(usher_event event, const char* name, const BlockReasons& reasons) {
-    std_msgs::msg::String report;
-    report.data = to_json(Json::object()
-                              .add("robot", "Usher")
-                              .add("time", seconds())
-                              .add("name", name)
-                              .add("event", usher_event_name(event))
-                              .add("reason", reasons.kind())
-                              .add("because", reasons.texts())
-                              .add("components", components()));
-    blocked_report_->publish(report);
+    blocked_report_.publish_text(reasons.report("Usher", seconds(), name, usher_event_name(event), components()));
     blocked_.insert(event);
     log_.write(seconds(), "blocked", usher_event_name(event));
     RCLCPP_WARN(get_logger(), "%s is blocked: %s %s", name, reasons.kind(), to_json(reasons.texts()).c_str());
@@ -324,26 +314,13 @@ class Layer : public GuardedNode<rclcpp::Node> {
     log_.write(seconds(), direction, usher_event_name(event));
     if (const std::size_t lost = log_.lost(); lost > 0)
         RCLCPP_WARN(get_logger(), "the event log lost %zu events", lost);
-    transitions_.push_back(event);
-    // Where simulated time stands still, or the period is long, many come before the next report.
-    if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
+    transitions_.add(usher_event_name(event));
   }
 
   // On every change, at most once in a period, and to everyone who begins to listen.
   void publish_state() {
-    const std::size_t listeners = state_report_->get_subscription_count();
-    if (listeners > listeners_ || (listeners > 0 && !transitions_.empty())) {
-      Json transitions = Json::array();
-      for (const usher_event event : transitions_) transitions.add(usher_event_name(event));
-      std_msgs::msg::String report;
-      report.data = to_json(Json::object()
-                                .add("robot", "Usher")
-                                .add("time", seconds())
-                                .add("components", components())
-                                .add("transitions", transitions));
-      state_report_->publish(report);
-    }
-    listeners_ = listeners;
+    const bool changed = !transitions_.empty();
+    if (state_report_.due(changed)) state_report_.publish_text(transitions_.report("Usher", seconds(), components()));
     transitions_.clear();
   }
 
@@ -420,7 +397,7 @@ class Layer : public GuardedNode<rclcpp::Node> {
   // A status for each component, once in a number of ticks, for whoever listens.
   void publish_diagnostics() {
     if (!report_pace_.due()) return;
-    if (diagnostics_report_->get_subscription_count() > 0) {
+    if (diagnostics_report_.heard()) {
       diagnostic_msgs::msg::DiagnosticArray report;
       report.header.stamp = now();
       report.status.push_back(status_of_Guard());
@@ -428,7 +405,7 @@ class Layer : public GuardedNode<rclcpp::Node> {
       report.status.push_back(status_of_Lamp());
       report.status.push_back(status_of_Navigation());
       report.status.push_back(status_of_Drive());
-      diagnostics_report_->publish(report);
+      diagnostics_report_.publish(report);
     }
     blocked_.clear();
   }
@@ -497,16 +474,14 @@ class Layer : public GuardedNode<rclcpp::Node> {
   } data_;
 
   EventLog log_;
-  static constexpr std::size_t kTransitionsKept = 5000;
-  std::deque<usher_event> transitions_;
-  std::size_t listeners_ = 0;
-  rclcpp::Publisher<std_msgs::msg::String>::SharedPtr state_report_;
-  rclcpp::Publisher<std_msgs::msg::String>::SharedPtr definition_report_;
+  Transitions transitions_;
+  Report<std_msgs::msg::String> state_report_;
+  Report<std_msgs::msg::String> definition_report_;
   ReportPace report_pace_;
-  rclcpp::Publisher<diagnostic_msgs::msg::DiagnosticArray>::SharedPtr diagnostics_report_;
+  Report<diagnostic_msgs::msg::DiagnosticArray> diagnostics_report_;
 
   std::set<usher_event> blocked_;  // Since the last report on /diagnostics.
-  rclcpp::Publisher<std_msgs::msg::String>::SharedPtr blocked_report_;
+  Report<std_msgs::msg::String> blocked_report_;
   std::unique_ptr<MessageRelay<std_msgs::msg::Empty>> stop_relay_;
   std::unique_ptr<MessageRelay<std_msgs::msg::Empty>> resume_relay_;
   std::unique_ptr<MessageRelay<std_msgs::msg::Int16>> battery_relay_;

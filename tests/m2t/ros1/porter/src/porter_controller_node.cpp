@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -33,11 +32,13 @@
 #include "robosc/fields.hpp"
 #include "robosc/json.hpp"
 #include "robosc/message_headers.hpp"
+#include "robosc/transitions.hpp"
 #include "robosc/watchdog.hpp"
 #include "robosc_ros1/action_client.hpp"
 #include "robosc_ros1/controller_node.hpp"
 #include "robosc_ros1/countdown.hpp"
 #include "robosc_ros1/parameters.hpp"
+#include "robosc_ros1/report.hpp"
 #include "robosc_ros1/run_controller.hpp"
 #include "robosc_ros1/service_client.hpp"
 #include "robosc_ros1/unit_quaternions.hpp"
@@ -86,17 +87,15 @@ class Controller : public ControllerNode {
         "From the failure of a service or action to its reset."));
 
     cmd_vel_publisher_ = advertise<geometry_msgs::Twist>("cmd_vel");
-    state_report_ = private_.advertise<std_msgs::String>("state", 10);
-    definition_report_ = private_.advertise<std_msgs::String>("definition", 1, true);
-    std_msgs::String definition;
-    definition.data = kDefinition;
-    definition_report_.publish(definition);
+    state_report_.open(private_, "state");
+    definition_report_.open_lasting(private_, "definition");
+    definition_report_.publish_text(kDefinition);
     const auto report_period =
         std::chrono::milliseconds(parameter(private_, "diagnostics_ms", 1000, 0, 86400000,
         "From one report on /diagnostics to the next; 0: none."));
     report_pace_.open(report_period, period);
-    if (report_period.count() > 0) diagnostics_report_ =
-        node_.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10);
+    if (report_period.count() > 0) diagnostics_report_.open(node_, "/diagnostics");
+
 
     porter_hooks hooks = {};
     hooks.context = this;
@@ -386,9 +385,7 @@ class Controller : public ControllerNode {
     }
     log_.write(seconds(), direction, porter_event_name(event));
     if (const std::size_t lost = log_.lost(); lost > 0) ROS_WARN("the event log lost %zu events", lost);
-    transitions_.push_back(event);
-    // Where simulated time stands still, or the period is long, many come before the next report.
-    if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
+    transitions_.add(porter_event_name(event));
   }
 
   void tick() override {
@@ -417,19 +414,8 @@ class Controller : public ControllerNode {
 
   // On every change, at most once in a period, and to everyone who begins to listen.
   void publish_state() {
-    const std::size_t listeners = state_report_.getNumSubscribers();
-    if (listeners > listeners_ || (listeners > 0 && !transitions_.empty())) {
-      Json transitions = Json::array();
-      for (const porter_event event : transitions_) transitions.add(porter_event_name(event));
-      std_msgs::String report;
-      report.data = to_json(Json::object()
-                                .add("robot", "Porter")
-                                .add("time", seconds())
-                                .add("components", components())
-                                .add("transitions", transitions));
-      state_report_.publish(report);
-    }
-    listeners_ = listeners;
+    const bool changed = !transitions_.empty();
+    if (state_report_.due(changed)) state_report_.publish_text(transitions_.report("Porter", seconds(), components()));
     transitions_.clear();
   }
 
@@ -534,7 +520,7 @@ class Controller : public ControllerNode {
   // A status for each component, once in a number of ticks, for whoever listens.
   void publish_diagnostics() {
     if (!report_pace_.due()) return;
-    if (diagnostics_report_.getNumSubscribers() > 0) {
+    if (diagnostics_report_.heard()) {
       diagnostic_msgs::DiagnosticArray report;
       report.header.stamp = ros::Time::now();
       report.status.push_back(status_of_Desk());
@@ -607,13 +593,11 @@ class Controller : public ControllerNode {
   std::set<porter_event> withheld_;  // Commands whose data can't be sent.
   bool watchdog_stops_ = false;
   EventLog log_;
-  static constexpr std::size_t kTransitionsKept = 5000;
-  std::deque<porter_event> transitions_;
-  std::size_t listeners_ = 0;
-  ros::Publisher state_report_;
-  ros::Publisher definition_report_;
+  Transitions transitions_;
+  Report<std_msgs::String> state_report_;
+  Report<std_msgs::String> definition_report_;
   ReportPace report_pace_;
-  ros::Publisher diagnostics_report_;
+  Report<diagnostic_msgs::DiagnosticArray> diagnostics_report_;
 
   ros::Publisher cmd_vel_publisher_;
   std::optional<ServiceClient<std_srvs::SetBool>> grip_client_;

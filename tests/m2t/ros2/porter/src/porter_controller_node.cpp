@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -35,11 +34,13 @@
 #include "robosc/fields.hpp"
 #include "robosc/json.hpp"
 #include "robosc/message_headers.hpp"
+#include "robosc/transitions.hpp"
 #include "robosc/watchdog.hpp"
 #include "robosc_ros2/action_client.hpp"
 #include "robosc_ros2/controller_node.hpp"
 #include "robosc_ros2/countdown.hpp"
 #include "robosc_ros2/parameters.hpp"
+#include "robosc_ros2/report.hpp"
 #include "robosc_ros2/service_client.hpp"
 #include "porter_supervisor.h"
 
@@ -312,9 +313,7 @@ class Controller : public ControllerNode<rclcpp::Node> {
     log_.write(seconds(), direction, porter_event_name(event));
     if (const std::size_t lost = log_.lost(); lost > 0)
         RCLCPP_WARN(get_logger(), "the event log lost %zu events", lost);
-    transitions_.push_back(event);
-    // Where simulated time stands still, or the period is long, many come before the next report.
-    if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
+    transitions_.add(porter_event_name(event));
   }
 
   void tick() override {
@@ -343,19 +342,8 @@ class Controller : public ControllerNode<rclcpp::Node> {
 
   // On every change, at most once in a period, and to everyone who begins to listen.
   void publish_state() {
-    const std::size_t listeners = state_report_->get_subscription_count();
-    if (listeners > listeners_ || (listeners > 0 && !transitions_.empty())) {
-      Json transitions = Json::array();
-      for (const porter_event event : transitions_) transitions.add(porter_event_name(event));
-      std_msgs::msg::String report;
-      report.data = to_json(Json::object()
-                                .add("robot", "Porter")
-                                .add("time", seconds())
-                                .add("components", components())
-                                .add("transitions", transitions));
-      state_report_->publish(report);
-    }
-    listeners_ = listeners;
+    const bool changed = !transitions_.empty();
+    if (state_report_.due(changed)) state_report_.publish_text(transitions_.report("Porter", seconds(), components()));
     transitions_.clear();
   }
 
@@ -460,13 +448,13 @@ class Controller : public ControllerNode<rclcpp::Node> {
   // A status for each component, once in a number of ticks, for whoever listens.
   void publish_diagnostics() {
     if (!report_pace_.due()) return;
-    if (diagnostics_report_->get_subscription_count() > 0) {
+    if (diagnostics_report_.heard()) {
       diagnostic_msgs::msg::DiagnosticArray report;
       report.header.stamp = now();
       report.status.push_back(status_of_Desk());
       report.status.push_back(status_of_Gripper());
       report.status.push_back(status_of_Base());
-      diagnostics_report_->publish(report);
+      diagnostics_report_.publish(report);
     }
   }
 
@@ -568,21 +556,14 @@ class Controller : public ControllerNode<rclcpp::Node> {
         [this](const std::string& why) { on_travel_error(why); },
         [this] { wake(); }});
 
-    rclcpp::PublisherOptions reporting;
-    reporting.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
+    state_report_.open(*this, "~/state");
+    definition_report_.open_lasting(*this, "~/definition");
+    definition_report_.publish_text(kDefinition);
     const auto report_period =
         std::chrono::milliseconds(parameter(*this, "diagnostics_ms", 1000, 0, 86400000,
         "From one report on /diagnostics to the next; 0: none."));
     report_pace_.open(report_period, period);
-    if (report_period.count() > 0) diagnostics_report_ =
-        rclcpp::create_publisher<diagnostic_msgs::msg::DiagnosticArray>(*this, "/diagnostics", 10, reporting);
-    state_report_ = rclcpp::create_publisher<std_msgs::msg::String>(*this, "~/state", 10, reporting);
-    definition_report_ =
-        rclcpp::create_publisher<std_msgs::msg::String>(*this, "~/definition", rclcpp::QoS(1).transient_local(),
-        reporting);
-    std_msgs::msg::String definition;
-    definition.data = kDefinition;
-    definition_report_->publish(definition);
+    if (report_period.count() > 0) diagnostics_report_.open(*this, "/diagnostics");
 
     watchdog_stops_ =
         parameter<bool>(*this, "watchdog_stops", true,
@@ -630,13 +611,11 @@ class Controller : public ControllerNode<rclcpp::Node> {
   std::set<porter_event> withheld_;  // Commands whose data can't be sent.
   bool watchdog_stops_ = false;
   EventLog log_;
-  static constexpr std::size_t kTransitionsKept = 5000;
-  std::deque<porter_event> transitions_;
-  std::size_t listeners_ = 0;
-  rclcpp::Publisher<std_msgs::msg::String>::SharedPtr state_report_;
-  rclcpp::Publisher<std_msgs::msg::String>::SharedPtr definition_report_;
+  Transitions transitions_;
+  Report<std_msgs::msg::String> state_report_;
+  Report<std_msgs::msg::String> definition_report_;
   ReportPace report_pace_;
-  rclcpp::Publisher<diagnostic_msgs::msg::DiagnosticArray>::SharedPtr diagnostics_report_;
+  Report<diagnostic_msgs::msg::DiagnosticArray> diagnostics_report_;
 
   rclcpp::Publisher<geometry_msgs::msg::Twist>::SharedPtr cmd_vel_publisher_;
   std::optional<ServiceClient<std_srvs::srv::SetBool>> grip_client_;

@@ -1,0 +1,63 @@
+// What a node tells about its state.
+#ifndef ROBOSC_TRANSITIONS_HPP_
+#define ROBOSC_TRANSITIONS_HPP_
+
+#include <cstddef>
+#include <deque>
+#include <string>
+#include <utility>
+
+#include "robosc/json.hpp"
+#include "robosc/version.hpp"
+
+namespace robosc {
+inline namespace ROBOSC_VERSION {
+
+/// `TRANSITIONS_KEPT` of robosc/semantics/definition.py.
+inline constexpr std::size_t kTransitionsKept = 5000;
+
+/// The events since the last report on the state. Where simulated time stands still, or the period is long, many come
+/// before the next one: the last are kept.
+class Transitions {
+ public:
+  /// `event`: a name that lasts.
+  void add(const char* event) {
+    events_.push_back(event);
+    if (events_.size() > kTransitionsKept) events_.pop_front();
+  }
+
+  bool empty() const { return events_.empty(); }
+  void clear() { events_.clear(); }
+
+  /// The state, and what led to it.
+  std::string report(const char* robot, double time, const Json& components) const {
+    Json transitions = Json::array();
+    for (const char* event : events_) transitions.add(event);
+    return to_json(Json::object()
+                       .add("robot", robot)
+                       .add("time", time)
+                       .add("components", components)
+                       .add("transitions", transitions));
+  }
+
+ private:
+  std::deque<const char*> events_;
+};
+
+/// Those who listen to a report.
+class Audience {
+ public:
+  /// Whether they are to be told: on every change, and when another one begins to listen.
+  bool waits(std::size_t listeners, bool changed) {
+    const bool more = listeners > std::exchange(listeners_, listeners);
+    return more || (listeners > 0 && changed);
+  }
+
+ private:
+  std::size_t listeners_ = 0;
+};
+
+}  // namespace ROBOSC_VERSION
+}  // namespace robosc
+
+#endif  // ROBOSC_TRANSITIONS_HPP_

@@ -1,0 +1,51 @@
+// A topic on which a node tells about itself.
+#ifndef ROBOSC_ROS1_REPORT_HPP_
+#define ROBOSC_ROS1_REPORT_HPP_
+
+#include <string>
+
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+
+#include "robosc/queue_depth.hpp"
+#include "robosc/transitions.hpp"
+#include "robosc/version.hpp"
+
+namespace robosc {
+inline namespace ROBOSC_VERSION {
+
+template <typename Message>
+class Report {
+ public:
+  void open(ros::NodeHandle& node, const std::string& topic) {
+    publisher_ = node.advertise<Message>(topic, kQueueDepth);
+  }
+
+  /// What is published is kept for those who come later.
+  void open_lasting(ros::NodeHandle& node, const std::string& topic) {
+    publisher_ = node.advertise<Message>(topic, 1, true);
+  }
+
+  /// Whether anyone listens.
+  bool heard() const { return publisher_.getNumSubscribers() > 0; }
+  /// Whether those who listen are to be told what has `changed`, or another one what is.
+  bool due(bool changed) { return audience_.waits(publisher_.getNumSubscribers(), changed); }
+
+  void publish(const Message& message) const { publisher_.publish(message); }
+
+  /// Of a message with a text.
+  void publish_text(const std::string& text) const {
+    Message message;
+    message.data = text;
+    publish(message);
+  }
+
+ private:
+  ros::Publisher publisher_;
+  Audience audience_;
+};
+
+}  // namespace ROBOSC_VERSION
+}  // namespace robosc
+
+#endif  // ROBOSC_ROS1_REPORT_HPP_
