@@ -141,7 +141,7 @@ def test_logs_events_with_their_data(courier: Courier) -> None:
 def test_a_compiled_node_tells_its_state_as_a_message(courier: Courier) -> None:
     if not any(step["typed"] for step in courier.steps.values()):
         pytest.skip("the package of the message's type is built with a compiled node")
-    text = (HERE.parent / "m2t" / "typed_state" / "ros2" / "courier_msgs" / "msg" / "State.msg").read_text()
+    text = (HERE.parent / "m2t" / "typed_state" / "State.msg").read_text()
     values: dict[str, list[str]] = {}
     constants: list[str] = []
     for name, is_constant in re.findall(r"^\w+ (\w+)(=\d+)?$", text, re.MULTILINE):
