@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -28,16 +27,7 @@ def test_gcc_has_nothing_to_say(ros1_workspace: Workspace, package: str) -> None
     """The compiler of Debian, with nothing precompiled, of what clang builds here because it is faster."""
     if shutil.which("g++") is None:
         pytest.skip("no g++")
-    source = ros1_workspace.folder / "src" / package
-    command = ["g++", "-std=c++17", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
-    # As catkin has them: ROS's own headers are of the system.
-    prefix = Path(ros1_workspace.ros.environment["ROS_PACKAGE_PATH"].partition(":")[0]).parent
-    folders = [ros1_workspace.folder / "devel/include", prefix / "include", prefix / "include/xmlrpcpp"]
-    command += [
-        f"-I{source / 'include'}",
-        *(f"-isystem{folder}" for folder in folders if folder != Path("/usr/include")),
-    ]
-    done = subprocess.run(
-        [*command, source / "src" / f"{package}_node.cpp"], capture_output=True, text=True, check=False
-    )
+    command = ["g++", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
+    command += ros1_workspace.compiler_options(package)
+    done = subprocess.run([*command, ros1_workspace.source(package)], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")

@@ -1,4 +1,4 @@
-"""The generated C++ of a ROS 2 node with everything in it, read by clang-tidy: see `.clang-tidy`."""
+"""The generated C++ of controllers and layers with everything in them, read by clang-tidy: see `.clang-tidy`."""
 
 from __future__ import annotations
 
@@ -15,27 +15,32 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parent
 
 
-@pytest.mark.parametrize("package", ["porter_controller", "managed_porter"])
-def test_clang_tidy_is_content(ros2_workspace: Workspace, package: str) -> None:
+# Not `usher_layer`, whose end clang-tidy 14 does not reach with ROS 2: see docs/sanitizers.md.
+@pytest.mark.parametrize("package", ["porter_controller", "managed_porter", "guard_layer"])
+def test_clang_tidy_is_content_with_ros_2(ros2_workspace: Workspace, package: str) -> None:
+    build = ros2_workspace.folder / "build" / package
+    command = ["cmake", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", "."]
+    subprocess.run(command, cwd=build, env=ros2_workspace.environment(), check=True, capture_output=True)
+    assert said(ros2_workspace, package, ["-p", str(build), "--extra-arg=-std=c++17"], []) == ""
+
+
+@pytest.mark.parametrize("package", ["porter_controller", "usher_layer"])
+def test_clang_tidy_is_content_with_ros_1(ros1_workspace: Workspace, package: str) -> None:
+    assert said(ros1_workspace, package, [], ["--", *ros1_workspace.compiler_options(package)]) == ""
+
+
+def said(workspace: Workspace, package: str, options: list[str], compiler: list[str]) -> str:
+    """What clang-tidy has to say of a node and of the headers that come with it."""
     if shutil.which("clang-tidy") is None:
         pytest.skip("no clang-tidy (Debian: clang-tidy)")
-    build = ros2_workspace.folder / "build" / package
-    environment = ros2_workspace.environment()
-    command = ["cmake", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", "."]
-    subprocess.run(command, cwd=build, env=environment, check=True, capture_output=True)
-    source = ros2_workspace.folder / "src" / package / "src" / f"{package}_node.cpp"
-    options = [
-        f"--config-file={HERE / '.clang-tidy'}",
-        "-p",
-        build,
-        f"--header-filter=include/({package}|robosc_?[a-z0-9]*)/.*",
-    ]
+    headers = f"--header-filter=include/({package}|robosc_?[a-z0-9]*)/.*"
+    command = ["clang-tidy", f"--config-file={HERE / '.clang-tidy'}", headers, "--quiet", *options]
     done = subprocess.run(
-        ["clang-tidy", *options, "--extra-arg=-std=c++17", "--quiet", source.resolve()],
-        env=environment,
+        [*command, workspace.source(package).resolve(), *compiler],
+        env=workspace.environment(),
         capture_output=True,
         text=True,
         timeout=900,
         check=False,
     )
-    assert done.returncode == 0, done.stdout
+    return done.stdout if done.returncode else ""

@@ -126,6 +126,17 @@ class Workspace:
         options = [word for parameter in parameters for word in ("-p", parameter)]
         return [self.folder / f"install/{package}/lib/{package}/{package}", "--ros-args", *options]
 
+    def source(self, package: str) -> Path:
+        """The C++ of a node."""
+        return self.folder / "src" / package / "src" / f"{package}_node.cpp"
+
+    def compiler_options(self, package: str) -> list[str]:
+        """What a compiler needs to find what a node of ROS 1 includes, as catkin has it: ROS's own is of the system."""
+        prefix = Path(self.ros.environment["ROS_PACKAGE_PATH"].partition(":")[0]).parent
+        folders = [self.folder / "devel/include", prefix / "include", prefix / "include/xmlrpcpp"]
+        system = [f"-isystem{folder}" for folder in folders if folder != Path("/usr/include")]
+        return ["-std=c++17", f"-I{self.folder / 'src' / package / 'include'}", *system]
+
     def environment(self) -> dict[str, str]:
         """What programs need to find the packages and the Python modules of their interfaces."""
         environment = {**self.ros.environment, "PYTHONDONTWRITEBYTECODE": "1"}

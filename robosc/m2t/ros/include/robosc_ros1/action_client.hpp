@@ -31,7 +31,7 @@ class ActionClient : public GoalClient<Countdown, typename Type::_action_feedbac
         name_(node.resolveName(name)),
         client_(node, name, node.getCallbackQueue()) {}
 
-  ~ActionClient() override { stop(); }
+  ~ActionClient() override { stop(); }  // NOLINT(bugprone-exception-escape): locks of boost, should they fail
 
   /// Sends a goal as soon as there is a server. A goal that has not ended is given up.
   void start(const Goal& goal) {
