@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.diagnostics.visible import visible
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct, xmi
+from robosc.semantics.operators import FUNCTIONS, operator_of
 from robosc.validity import robosc_models, rosgraph_models, sct_models
 from robosc.validity.model_checks import Model, demand, faults_of
 
@@ -103,9 +104,29 @@ _CHECKS: Checks = {
         )
     ],
 }
+#: What the checks of types rely on. How many arguments a call has in a robosc model, a rule of the language says.
+_CALLED: Checks = {
+    ex.FunctionCall: [demand(lambda call: call.function in FUNCTIONS, "there is no function '{0.function}'")]
+}
+_ARGUMENTS: Checks = {
+    ex.FunctionCall: [
+        demand(
+            lambda call: len(call.arguments) == getattr(operator_of(call), "parameters", None),
+            "'{0.function}' has another number of arguments",
+        )
+    ]
+}
 #: The tables for each kind of model; where one finds something, the next are not asked.
 _OWN_CHECKS: Mapping[type, Sequence[Checks]] = {
-    robosc.Base: (robosc_models.IMPORT_CHECKS, robosc_models.CHECKS),
-    sct.SupervisoryControlModel: (sct_models.CHECKS,),
-    rosgraph.RosGraph: (rosgraph_models.CHECKS,),
+    robosc.Base: (_CALLED, robosc_models.IMPORT_CHECKS, robosc_models.CHECKS),
+    sct.SupervisoryControlModel: (
+        _CALLED,
+        _ARGUMENTS,
+        sct_models.CHECKS,
+    ),
+    rosgraph.RosGraph: (
+        _CALLED,
+        _ARGUMENTS,
+        rosgraph_models.CHECKS,
+    ),
 }

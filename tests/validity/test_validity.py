@@ -198,6 +198,15 @@ def _function_of_arrays(given: Any) -> None:
     _plants(given)[0].locations[0].edges[0].updates[0].value = call
 
 
+def _unknown_function(given: Any) -> None:
+    call = ex.FunctionCall(function="median", arguments=[ex.IntegerLiteral(value=1)])
+    _plants(given)[0].locations[0].edges[0].updates[0].value = call
+
+
+def _no_argument(given: Any) -> None:
+    _plants(given)[0].locations[0].edges[0].updates[0].value = ex.FunctionCall(function="min")
+
+
 def _restricted_response(given: Any) -> None:
     given.requirements[0].event = _plants(given)[0].events[1]
 
@@ -271,6 +280,8 @@ BROKEN: list[tuple[Callable[[Any], None], list[str]]] = [
     (_negative_literal, ["a literal has no sign; the sign is a UnaryMinus around it"]),
     (_access, ["Access belongs in a robosc model only"]),
     (_function_of_arrays, ["this call of 'max' has no place in an sct model"]),
+    (_unknown_function, ["there is no function 'median'"]),
+    (_no_argument, ["'min' has another number of arguments"]),
     (_restricted_response, ["the event 'u' is uncontrollable: nothing can restrict it"]),
     (_no_guard, ["the event 'p.c' has no guard"]),
     (_foreign_requirement, ["a requirement of this guard is not one on 'c'"]),
@@ -446,3 +457,9 @@ def test_rosgraph_references() -> None:
 )
 def test_robosc(element: Any, message: str) -> None:
     assert messages(element) == [message]
+
+
+def test_functions_of_a_robosc_model() -> None:
+    condition = ex.FunctionCall(function="median", arguments=[ex.IntegerLiteral(value=1)])
+    requirement = robosc.NeedsRequirement(condition=condition)
+    assert messages(robosc.Robot(name="R", definitions=[requirement])) == ["there is no function 'median'"]
