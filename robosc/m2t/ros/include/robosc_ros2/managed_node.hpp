@@ -3,7 +3,6 @@
 #define ROBOSC_ROS2_MANAGED_NODE_HPP_
 
 #include <exception>
-#include <string>
 
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
@@ -66,9 +65,7 @@ class ManagedNode : public ControllerNode<rclcpp_lifecycle::LifecycleNode> {
   }
 
  protected:
-  ManagedNode(const std::string& name, const rclcpp::NodeOptions& options) : ControllerNode(name, options) {
-    stop_at_end();
-  }
+  using ControllerNode::ControllerNode;
 
   // What the model decides.
 
