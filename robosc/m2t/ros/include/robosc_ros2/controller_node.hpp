@@ -80,7 +80,8 @@ class ControllerNode : public GuardedNode<Node> {
     }
   }
 
-  /// The last thing that the constructor of a derived class does: from here on, the robot is stopped when the node ends.
+  /// The last thing that the constructor of a derived class does: from here on, the robot is stopped when the node
+  /// ends.
   void stop_at_end() {
     const auto end = [this] {
       const auto lock = this->guard_.hold();
