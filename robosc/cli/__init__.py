@@ -191,6 +191,7 @@ def run() -> NoReturn:
     """
     interruption.note()
     gc.set_threshold(500_000, 20, 20)
+    sys.set_int_max_str_digits(0)  # how many states a robot has, for one
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:  # closed by the caller, who wants nothing of it
             setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: PTH123, SIM115

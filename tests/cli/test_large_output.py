@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import re
+import subprocess
+import sys
 from typing import TYPE_CHECKING
 
 import pytest
@@ -43,3 +46,20 @@ def test_errors_are_shown_before_warnings() -> None:
 def test_a_long_message_is_cut() -> None:
     finding = Diagnostic("a", Span(1, 1, 1, 2), Severity.ERROR, "x", "m" * 100_000, "h" * 100_000)
     assert len(as_text.render([finding], {})) < 10_000
+
+
+@pytest.mark.slow
+def test_a_number_of_states_with_thousands_of_digits(tmp_path: Path) -> None:
+    level = f"integer(0..{10**18})"
+    parts = [
+        f"component C{number} {{ outgoing message m{number} with type: {level}"
+        f" behaviour {{ variable height: {level} = 0"
+        f" initial marked state there {{ on response from m{number} do height := value }} }} }}"
+        f" requirement go needs C{number}.height > 5"
+        for number in range(240)
+    ]
+    file = tmp_path / "many.rscd"
+    file.write_text(f"robot R {{ component B {{ incoming message go with type: none }} {' '.join(parts)} }}")
+    command = [sys.executable, "-m", "robosc", "synthesize", "--counts", "--json", str(file)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert re.search(r'"uncontrolled_states": 1\d{4320},', done.stdout)

@@ -116,12 +116,13 @@ def test_every_text_comes_back(text: str, tmp_path: Any) -> None:
 @pytest.mark.parametrize("value", [0, 7, 2**63 - 1])
 def test_integers_come_back(value: int, tmp_path: Any) -> None:
     saved = model([plant("p", {"s": []})])
+    states = 10**5000 + 1  # more digits than Python writes by itself
     saved.supervisor = sct.Supervisor(
-        uncontrolledStates=10**30, controlledStates=0, bddNodes=value, settlingBound=value
+        uncontrolledStates=states, controlledStates=0, bddNodes=value, settlingBound=value
     )
     (tmp_path / "r.xmi").write_text(to_texts({"r.xmi": saved})["r.xmi"])
     supervisor = load(tmp_path / "r.xmi").supervisor
-    assert (supervisor.bddNodes, supervisor.settlingBound, supervisor.uncontrolledStates) == (value, value, 10**30)
+    assert (supervisor.bddNodes, supervisor.settlingBound, supervisor.uncontrolledStates) == (value, value, states)
 
 
 @pytest.mark.parametrize("value", [0.0, 0.1, 1e300, 5e-324, 123456789.125])

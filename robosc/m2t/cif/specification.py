@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
 from itertools import groupby
 from textwrap import wrap
 from typing import TYPE_CHECKING
@@ -158,10 +159,10 @@ class Writer:
         told = f"The plants of {self._model.name} under their supervisor"
         if left is None or all_of is None:  # A supervisor of a saved model need not have been counted.
             return [f"{told}."]
-        counts = (
-            f"CIF counts {left * inputs} of {all_of * inputs}: each of them with the {inputs} values of the inputs."
-        )
-        return [f"{told}, which leaves them {left} of {all_of} states.", *([counts] if inputs > 1 else [])]
+        # Python writes numbers of thousands of digits only as decimals.
+        here, there = (f"{Decimal(left * times)} of {Decimal(all_of * times)}" for times in (1, inputs))
+        counts = f"CIF counts {there}: each of them with the {Decimal(inputs)} values of the inputs."
+        return [f"{told}, which leaves them {here} states.", *([counts] if inputs > 1 else [])]
 
 
 def document(texts: Iterable[str], indent: str = "", sign: str = "@") -> list[str]:

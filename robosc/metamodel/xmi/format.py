@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Callable, Mapping
+from decimal import Decimal
 from typing import Any
 
 from pyecore.ecore import EEnum
@@ -14,6 +15,8 @@ XSI = "http://www.w3.org/2001/XMLSchema-instance"
 DEEPEST = 6000
 #: What XML 1.0 can't hold, not even escaped.
 UNWRITABLE = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+#: More digits than the number of states has of any robot that can be synthesized.
+_INTEGER = re.compile("[+-]?[0-9]{1,1000000}")
 _LONG = range(-(2**63), 2**63)
 _DOUBLE = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,4})?")
 
@@ -22,6 +25,8 @@ def to_text(value: object) -> str:
     """The text of a value, as EMF reads it."""
     if isinstance(value, bool):
         return str(value).lower()
+    if isinstance(value, int):
+        return str(Decimal(value))  # a number of states may have more digits than Python writes by itself
     return repr(value) if isinstance(value, float) else str(value)
 
 
@@ -34,7 +39,7 @@ def from_text(kind: Any, text: str) -> object | None:
 
 
 def _integer(text: str) -> int | None:
-    return int(text) if re.fullmatch("[+-]?[0-9]{1,4000}", text) else None
+    return int(Decimal(text)) if _INTEGER.fullmatch(text) else None
 
 
 def _long(text: str) -> int | None:

@@ -526,6 +526,9 @@ def test_the_head_says_how_cif_counts() -> None:
     given.supervisor = sct.Supervisor(uncontrolledStates=10, controlledStates=3, bddNodes=1)
     head = generated(given)["Listings.supervised.cif"].splitlines()[1]
     assert head == '@@doc("CIF counts 252 of 840: each of them with the 84 values of the inputs.")'
+    given.supervisor = sct.Supervisor(uncontrolledStates=10**5000, controlledStates=10**4999, bddNodes=1)
+    zeros = "".join(generated(given)["Listings.supervised.cif"].partition("\nplant")[0]).count("0")
+    assert zeros == 2 * (4999 + 5000)
     given.supervisor = sct.Supervisor()
     head, below, *_ = generated(given)["Listings.supervised.cif"].splitlines()
     assert (head, below) == ('@@doc("The plants of Listings under their supervisor.")', "")
