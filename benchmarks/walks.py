@@ -31,6 +31,7 @@ from benchmarks.walk_families import FAMILIES, write  # noqa: E402
 from robosc.checks import check  # noqa: E402
 from robosc.diagnostics import has_errors  # noqa: E402
 from robosc.language import read  # noqa: E402
+from robosc.m2t.targets import together  # noqa: E402
 
 SIZES = (100, 400, 1600, 5000)
 TARGETS = ("cif", "supervisor", "ros1", "ros2", "xmi")
@@ -113,8 +114,9 @@ def _through(path: Path) -> None:
     robot = robosc.load(path)
     models = robosc.Models(robosc.to_sct(robot), robosc.to_rosgraph(robot), robot)
     robosc.synthesize(models.sct)
-    for target in TARGETS:
-        robosc.generate(target, models)
+    with together():  # as `robosc transform` does
+        for target in TARGETS:
+            robosc.generate(target, models)
 
 
 def exponent(points: list[dict[str, Any]]) -> float:

@@ -19,9 +19,10 @@ _made: ContextVar[dict[object, Any] | None] = ContextVar("made", default=None)
 def remembered() -> Iterator[None]:
     """A context in which `once` keeps its results, so that each model is transformed once.
 
-    Models must not change meanwhile. A nested context starts empty.
+    Models must not change meanwhile. Within another context it is that one.
     """
-    before = _made.set({})
+    known = _made.get()
+    before = _made.set({} if known is None else known)
     try:
         yield
     finally:
