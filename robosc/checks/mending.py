@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 from robosc.checks.definitions import unit_of
 from robosc.checks.facts import fact
 from robosc.diagnostics import Edit, Span
+from robosc.diagnostics.lines import lines
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.places import place
@@ -273,22 +274,13 @@ def _offsets(element: ex.Located) -> tuple[str, int, int] | None:
     if source is None or source.file is None or not source.file.content:
         return None
     content, span = source.file.content, source.span
-    return content, _offset(content, span.line, span.column), _offset(content, span.end_line, span.end_column)
-
-
-def _offset(content: str, line: int, column: int) -> int:
-    start = 0
-    for _ in range(line - 1):
-        start = content.find("\n", start) + 1
-    return start + column - 1
+    known = lines(content)
+    return content, known.offset(span.line, span.column), known.offset(span.end_line, span.end_column)
 
 
 def _edit(content: str, start: int, end: int, text: str) -> Edit:
-    return Edit(Span(*_position(content, start), *_position(content, end)), text)
-
-
-def _position(content: str, offset: int) -> tuple[int, int]:
-    return content.count("\n", 0, offset) + 1, offset - content.rfind("\n", 0, offset)
+    known = lines(content)
+    return Edit(Span(*known.place(start), *known.place(end)), text)
 
 
 def _start_of(span: Span) -> Span:

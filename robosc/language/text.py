@@ -5,13 +5,13 @@ from __future__ import annotations
 import codecs
 import os
 import re
-from bisect import bisect_right
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics import Alternative, Diagnostic, Edit, Repair, Severity, Span
+from robosc.diagnostics.lines import Lines
 from robosc.files import reading as files
 from robosc.metamodel.places import Place, SourceFile
 
@@ -38,46 +38,33 @@ class Text:
     source_file: SourceFile | None = None
 
     @cached_property
-    def _line_starts(self) -> list[int]:
-        starts = [0]
-        position = self.content.find("\n")
-        while position >= 0:
-            starts.append(position + 1)
-            position = self.content.find("\n", position + 1)
-        return starts
+    def _lines(self) -> Lines:
+        return Lines(self.content)
 
     def span(self, start: int, end: int) -> Span:
         """The span between two offsets."""
-        return Span(*self._place(start), *self._place(end))
+        return Span(*self._lines.place(start), *self._lines.place(end))
 
     def comment_above(self, offset: int) -> str | None:
         """The words of the comments in the lines right above an offset, as one line; None where there are none."""
-        line, _ = self._place(offset)
+        line, _ = self._lines.place(offset)
         words: list[str] = []
         while line > 1:
             line -= 1
-            found = _COMMENT.fullmatch(self.content, self._line_starts[line - 1], self._line_starts[line] - 1)
+            found = _COMMENT.fullmatch(self.content, self._lines.starts[line - 1], self._lines.starts[line] - 1)
             if found is None:
                 break
             words[:0] = found["words"].split()
         return " ".join(words) or None
 
-    def _place(self, offset: int) -> tuple[int, int]:
-        offset = min(offset, len(self.content))  # Braces that are missing are added behind the end.
-        line = bisect_right(self._line_starts, offset)
-        return line, offset - self._line_starts[line - 1] + 1
-
     def offset(self, line: int, column: int) -> int:
         """The offset of a line and a column, both counted from 1; what lies behind the end of a line is its end."""
-        if line < 1 or column < 1:
-            return 0
-        start, end = self._line(line - 1)
-        return min(start + column - 1, end)
+        return self._lines.offset(line, column)
 
     def to_utf16(self, offset: int) -> tuple[int, int]:
         """The UTF-16 position of an offset."""
-        line, column = self._place(offset)
-        start = self._line_starts[line - 1]
+        line, column = self._lines.place(offset)
+        start = self._lines.starts[line - 1]
         return line - 1, len(self.content[start : start + column - 1].encode("utf-16-le", "surrogatepass")) // 2
 
     def from_utf16(self, line: int, unit: int) -> int:
@@ -85,17 +72,10 @@ class Text:
 
         What lies behind the end of a line is its end, what lies behind the last line the end of the text.
         """
-        start, end = self._line(line)
+        start, end = self._lines.line(line + 1)
         units = self.content[start:end].encode("utf-16-le", "surrogatepass")[: 2 * max(unit, 0)]
         # A first half alone is left out, and so is the character that it belongs to.
         return start + len(units.decode("utf-16-le", "ignore"))
-
-    def _line(self, number: int) -> tuple[int, int]:
-        """The offsets of the start and the end of a line, counted from 0, its line break left out."""
-        starts = self._line_starts
-        if number >= len(starts):
-            return len(self.content), len(self.content)
-        return starts[number], starts[number + 1] - 1 if number + 1 < len(starts) else len(self.content)
 
     def after(self, edits: Iterable[Edit]) -> str:
         """The text after edits that do not overlap."""

@@ -104,6 +104,20 @@ def test_outlining(family, tmp_path):
     assert exponent(*counts) < MOST, counts
 
 
+def test_findings_that_can_be_mended(tmp_path):
+    """Each has a place in the text, which is not sought from its start."""
+    counts = []
+    for number in (100, 200, 400):
+        (tmp_path / str(number)).mkdir()
+        base = read(write("topics", number, tmp_path / str(number))).base
+        check(base)
+        count, found = calls(check, base)
+        assert len([finding for finding in found if finding.alternatives]) >= number - 1
+        counts.append(count)
+    few, more, many = counts
+    assert log2((many - more) / (more - few)) < MOST_WITHOUT_ONCE, counts
+
+
 def test_an_offset_in_a_long_text_copies_nothing():
     text = Text("long.rscd", "\n" * 100_000)
     assert text.offset(1, 1) == 0
