@@ -101,9 +101,10 @@ passed, and the eight of `tests/ros/test_traces.py` that are of compiled ROS 2 n
 the managed porter follow their traces. So does `courier_controller`, generated with tests, whose trace `colcon test`
 played. Of the 20 tests of `tests/ros/test_ros2_node.py`, 18 passed; the two that load 500 components were not run.
 
-clang-tidy 14 has read `managed_porter` in ROS 2 and `usher_layer` in ROS 1, and with them the shared headers that they
-include, by `tests/ros/.clang-tidy` (2026-11-25). It found a comparison of a number with itself, a constant in a header
-that was not `inline`, virtual destructors that were protected, and two copies too many. All of that was mended; no
+clang-tidy 14 has read the porter in ROS 1 and ROS 2, its managed twin, `usher_layer` in ROS 1 and `guard_layer` in
+ROS 2, and with them the shared headers that they include, by `tests/ros/.clang-tidy` (2026-11-26). It found a
+comparison of a number with itself, a constant in a header that was not `inline`, virtual destructors that were
+protected, and two copies too many. All of that was mended; no
 behaviour was wrong. The three headers that only layers in ROS 2 include were read one by one, as templates with types
 put in. It found shared pointers that callbacks take by value, as rclcpp wants them, and nothing else. The static
 analyser says nothing of these three: it does not find a fault that is planted in one. It found nothing in the node of
