@@ -6,11 +6,11 @@ the same, and as what it tells where the condition does not hold.
 
 from __future__ import annotations
 
-from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from robosc.m2t.c.comments import comment, string_literal
 from robosc.m2t.ros.rendering import line_comment
+from robosc.semantics.printing import remark
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -32,11 +32,10 @@ class Sources:
         """The files that cite the requirement, and the lines in which what cites it begins."""
         if not requirement.text:
             return {}
-        file = requirement.source.file if requirement.source else None
-        remark = f"{requirement.text}{f' ({PurePath(file.name).name})' if file else ''}"
+        said = remark(requirement)
         printed = [f"reasons.add_requirement({string_literal(requirement.text)});"]
         for indent in _INDENTS:
-            printed += [comment([remark], indent), line_comment(remark, indent)]
+            printed += [comment([said], indent), line_comment(said, indent)]
             printed.append(line_comment(f"Overrides: {requirement.text}", indent))
         found = {
             path: sorted({line for text in printed for line in lines.places(text)})

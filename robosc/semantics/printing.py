@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from decimal import Decimal
 from functools import reduce
+from pathlib import PurePath
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from robosc.diagnostics.visible import visible
@@ -210,3 +211,13 @@ def _chain(operator: type[ex.BinaryExpression], parts: Iterable[ex.Expression]) 
     rest = iter(parts)
     first = next(rest, None)
     return None if first is None else reduce(lambda left, right: operator(left=left, right=right), rest, first)
+
+
+def remark(requirement: sct.StatedRequirement) -> str:
+    """What a requirement with a text says, with its file.
+
+    Where in the file it stands is left out: what does not change the robot does not change its code.
+    """
+    file = requirement.source.file if requirement.source else None
+    where = f" ({PurePath(file.name).name})" if file else ""
+    return f"{requirement.text}{where}"

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import engine, sct
 from robosc.semantics.durations import timer_text
 from robosc.semantics.edges import edges_by_event, origin
-from robosc.semantics.printing import RobotPrinter
+from robosc.semantics.printing import RobotPrinter, remark
 from robosc.semantics.roles import Roles, event_name, plant_of, provide_numbers
 
 if TYPE_CHECKING:
@@ -111,16 +110,11 @@ def collect_groups(model: sct.SupervisoryControlModel, events: Mapping[sct.Event
 
 
 def _remarks(model: sct.SupervisoryControlModel) -> dict[sct.Event, list[str]]:
-    """What the requirements on each event say, each with its file, and why synthesis restricts it.
-
-    Where in the file it stands is left out: what does not change the robot does not change its code.
-    """
+    """What the requirements on each event say, each with its file, and why synthesis restricts it."""
     remarks: dict[sct.Event, list[str]] = {}
     for requirement in model.requirements:
         if requirement.text:
-            file = requirement.source.file if requirement.source else None
-            where = f" ({PurePath(file.name).name})" if file else ""
-            remarks.setdefault(requirement.event, []).append(f"{requirement.text}{where}")
+            remarks.setdefault(requirement.event, []).append(remark(requirement))
     for guard in model.supervisor.guards if model.supervisor else ():
         if guard.explanation:
             remarks.setdefault(guard.event, []).append(f"synthesis prevents this: {guard.explanation}")
