@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robosc.m2m.sct_to_engine.merge_effects import left_open
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
 
@@ -59,14 +60,7 @@ def _possible(plant: sct.Plant, edges: Edges, lower: Lowering) -> Term:
     """That a plant has an edge for an event from where it is: locations with the same guard together."""
     if None in edges:
         return _one_of(edges[None], lower)
-    by_guard: dict[Term, list[sct.Location | None]] = {}
-    for location, leaving in edges.items():
-        by_guard.setdefault(_one_of(leaving, lower), []).append(location)
-    alternatives = [
-        lower.terms.junction(engine.And, [lower.within(plant, locations), guard])
-        for guard, locations in by_guard.items()
-    ]
-    return lower.terms.junction(engine.Or, alternatives)
+    return lower.where(plant, {location: _one_of(leaving, lower) for location, leaving in edges.items()})
 
 
 def _one_of(edges: Sequence[sct.Edge], lower: Lowering) -> Term:
@@ -74,19 +68,12 @@ def _one_of(edges: Sequence[sct.Edge], lower: Lowering) -> Term:
 
     Raises ValueError where it depends on the data of the event: that comes when the event is happening already.
     """
-    terms = lower.terms
+    # Each is lowered, also where nothing of it is needed: it may be what no sct model holds.
     guards = [lower(edge.guard) for edge in edges]
     if _all_covered(edges, lower):
-        return terms.true
-    alternatives: dict[Term, None] = {}
+        return lower.terms.true
     denied: set[Term] = set()
-    for guard in guards:
-        parts = guard.operands if guard.operator is engine.And else (guard,)
-        left = terms.junction(engine.And, [part for part in parts if part not in denied])
-        found = left.operands if left.operator is engine.Or else (left,)
-        alternatives |= dict.fromkeys(found)
-        denied |= {terms.opposite(part) for part in found}
-    whole = terms.junction(engine.Or, alternatives)
+    whole = lower.terms.junction(engine.Or, [left_open(guard, denied, lower.terms) for guard in guards])
     if any(isinstance(read, engine.Input) for read in whole.reads()):
         raise ValueError(
             f"for some data of '{edges[0].event.name}' there is no edge in '{edges[0].target.eContainer().name}'"

@@ -70,6 +70,24 @@ class Lowering:
             [self.terms.at(variable, place, holds=holds) for place in possible if place and (place in chosen) is holds],
         )
 
+    def where(
+        self,
+        plant: sct.Plant,
+        guards: Mapping[sct.Location | None, Term],
+        possible: Sequence[sct.Location | None] | None = None,
+    ) -> Term:
+        """That a plant is in one of the locations, and its guard holds: locations with the same guard together."""
+        by_guard: dict[Term, list[sct.Location | None]] = {}
+        for location, guard in guards.items():
+            by_guard.setdefault(guard, []).append(location)
+        return self.terms.junction(
+            engine.Or,
+            [
+                self.terms.junction(engine.And, [self.within(plant, locations, possible), guard])
+                for guard, locations in by_guard.items()
+            ],
+        )
+
     def _made(self, wanted: _Wanted, parts: list[Term]) -> Term:
         expression, positive = wanted
         kind = _junction(wanted)

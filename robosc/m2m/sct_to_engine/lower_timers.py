@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.m2m.sct_to_engine.build_expressions import build_expression
-from robosc.m2m.sct_to_engine.merge_effects import one_taken
+from robosc.m2m.sct_to_engine.merge_effects import Alternatives
 from robosc.metamodel import engine, sct
 from robosc.semantics.roles import plant_of
 
@@ -72,7 +72,7 @@ def _restarts(
                 cases.setdefault((left, starts), []).append(edge)
     found = []
     for (left, starts), edges in cases.items():
-        found.append(_restart(one_taken(plant, edges, taken, lower), plant if left else None, starts))
+        found.append(_restart(Alternatives(plant, taken, lower).one_of(edges), plant if left else None, starts))
     return found
 
 

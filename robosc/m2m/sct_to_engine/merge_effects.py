@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from robosc.m2m.sct_to_engine.collect_events import Edges
     from robosc.m2m.sct_to_engine.lower_expressions import Lowering
-    from robosc.m2m.sct_to_engine.terms import Term
+    from robosc.m2m.sct_to_engine.terms import Term, Terms
 
 #: Variables with the values that they get.
 Values = dict[engine.StateVariable, "Term"]
@@ -102,15 +102,37 @@ def _all(edges: Edges) -> list[sct.Edge]:
     return [edge for leaving in edges.values() for edge in leaving]
 
 
-def one_taken(plant: sct.Plant, chosen: Sequence[sct.Edge], edges: Edges, lower: Lowering) -> Term:
-    """That one of these edges of a plant is taken; where one is the only one of its location its guard holds."""
-    lone = [origin(edge) for edge in chosen if len(edges[origin(edge)]) == 1]
-    parts = [lower.within(plant, lone, list(edges))] if lone else []
-    for edge in chosen:
-        if len(edges[origin(edge)]) > 1:
-            here = lower.within(plant, [origin(edge)], list(edges))
-            parts.append(lower.terms.junction(engine.And, [here, lower(edge.guard)]))
-    return lower.terms.junction(engine.Or, parts)
+class Alternatives:
+    """The edges of an event in a plant: one of them is taken, and they are tried one after the other."""
+
+    def __init__(self, plant: sct.Plant, edges: Edges, lower: Lowering) -> None:
+        self._plant = plant
+        self._lower = lower
+        self._untried = {location: len(leaving) for location, leaving in edges.items()}
+        self._denied: dict[sct.Location | None, set[Term]] = {location: set() for location in edges}
+
+    def one_of(self, chosen: Sequence[sct.Edge]) -> Term:
+        """That one of these is taken where none is that was tried before: what that says already is left out."""
+        terms = self._lower.terms
+        left: dict[sct.Location | None, list[Term]] = {}
+        for edge in chosen:
+            location = origin(edge)
+            self._untried[location] -= 1
+            guard = left_open(self._lower(edge.guard), self._denied[location], terms)
+            left.setdefault(location, []).append(guard)
+        guards = {
+            location: terms.junction(engine.Or, found) if self._untried[location] else terms.true
+            for location, found in left.items()
+        }
+        return self._lower.where(self._plant, guards, list(self._untried))
+
+
+def left_open(guard: Term, denied: set[Term], terms: Terms) -> Term:
+    """What a guard asks beyond what is `denied` by those that are tried before it; its own opposite is added."""
+    parts = guard.operands if guard.operator is engine.And else (guard,)
+    left = terms.junction(engine.And, [part for part in parts if part not in denied])
+    denied |= {terms.opposite(part) for part in (left.operands if left.operator is engine.Or else (left,))}
+    return left
 
 
 def _by_edge(
@@ -122,9 +144,8 @@ def _by_edge(
     """A step with the cases that change something; the last needs no condition where all do."""
     acting = [(chosen, values) for chosen, values in cases if values]
     others = len(acting) == len(cases)
-    found: list[tuple[Term | None, Values]] = [
-        (one_taken(plant, chosen, edges, lower), values) for chosen, values in acting
-    ]
+    alternatives = Alternatives(plant, edges, lower)
+    found: list[tuple[Term | None, Values]] = [(alternatives.one_of(chosen), values) for chosen, values in acting]
     if others:
         found[-1] = None, acting[-1][1]
     return [StepTerms(found)] if found else []

@@ -183,6 +183,34 @@ def test_effects_are_simultaneous(do: dict[str, str], steps: list[str]) -> None:
     assert effect_of(transform(machine(**do)), "p.c_tau1") == steps
 
 
+def test_a_case_does_not_say_again_what_the_cases_before_it_deny() -> None:
+    p = plant(
+        "p",
+        {
+            "x": [
+                edge("c_tau1", when="m == 1", do={"n": "1"}),
+                edge("c_tau1", when="not m == 1 and b and c", do={"n": "2"}),
+                edge("c_tau1", "y", when="not m == 1 and not (b and c) and v > 3", do={"n": "3"}),
+            ],
+            "y": [
+                edge("c_tau1", to="x", when="m == 1", do={"n": "1"}),
+                edge("c_tau1", to="x", when="not m == 1", do={"n": "4"}),
+            ],
+            "z": [],
+        },
+        controllable=["c_tau1"],
+        variables={"n": "0..9", "m": "0..9", "v": "0..9", "b": "bool", "c": "bool"},
+    )
+    assert effect_of(transform(model([p], guards={})), "p.c_tau1") == [
+        "p.m == 1: p.n := 1",
+        "(p == x) and p.b and p.c: p.n := 2",
+        "p == x: p.n := 3",
+        "else: p.n := 4",
+        "(p == x) and (p.m == 1) or (p.b and p.c) or (p == y): p := x",
+        "else: p := y",
+    ]
+
+
 def test_an_effect_that_depends_on_a_location_is_a_switch() -> None:
     p = plant(
         "p",
