@@ -92,7 +92,6 @@ class Layer {
     report_pace_.open(report_period, period);
     if (report_period.count() > 0) diagnostics_report_.open(node_, "/diagnostics");
 
-
     usher_hooks hooks = {};
     hooks.context = this;
     hooks.after = [](void* self, usher_event event) { static_cast<Layer*>(self)->after(event); };

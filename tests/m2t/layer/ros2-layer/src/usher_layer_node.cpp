@@ -95,7 +95,6 @@ class Layer : public GuardedNode<rclcpp::Node> {
     report_pace_.open(report_period, period);
     if (report_period.count() > 0) diagnostics_report_.open(*this, "/diagnostics");
 
-
     usher_hooks hooks = {};
     hooks.context = this;
     hooks.after = [](void* self, usher_event event) { static_cast<Layer*>(self)->after(event); };
@@ -456,7 +455,6 @@ class Layer : public GuardedNode<rclcpp::Node> {
     if (blocked_.count(usher_message_label_c_trigger) > 0) status.warn("label was blocked");
     return status.made();
   }
-
 
   usher_supervisor supervisor_;
 

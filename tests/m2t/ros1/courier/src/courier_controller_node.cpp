@@ -129,7 +129,6 @@ class Controller : public ControllerNode {
     report_pace_.open(report_period, period);
     if (report_period.count() > 0) diagnostics_report_.open(node_, "/diagnostics");
 
-
     courier_hooks hooks = {};
     hooks.context = this;
     hooks.before = [](void* self, courier_event event) { return static_cast<Controller*>(self)->before(event); };
@@ -138,7 +137,6 @@ class Controller : public ControllerNode {
       ROS_ERROR("internal transitions follow each other without end");
     };
     courier_init(&supervisor_, &settings, &hooks);
-
 
     watchdog_stops_ =
         parameter<bool>(private_, "watchdog_stops", false,
@@ -515,7 +513,6 @@ class Controller : public ControllerNode {
     if (withheld_.count(courier_message_ratio_c_trigger) > 0) status.warn("ratio is withheld");
     return status.made();
   }
-
 
   courier_supervisor supervisor_;
 

@@ -96,7 +96,6 @@ class Controller : public ControllerNode {
     report_pace_.open(report_period, period);
     if (report_period.count() > 0) diagnostics_report_.open(node_, "/diagnostics");
 
-
     porter_hooks hooks = {};
     hooks.context = this;
     hooks.before = [](void* self, porter_event event) { return static_cast<Controller*>(self)->before(event); };
@@ -120,7 +119,6 @@ class Controller : public ControllerNode {
         [this](const auto& response) { on_travel_response(response); },
         [this](const std::string& why) { on_travel_error(why); },
         [this] { wake(); }});
-
     watchdog_stops_ =
         parameter<bool>(private_, "watchdog_stops", true,
         "Whether a silent topic holds commands back, cancels actions and sends halt.");
