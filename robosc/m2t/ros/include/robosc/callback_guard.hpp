@@ -60,13 +60,20 @@ class CallbackGuard {
 };
 
 /// Takes a callback group from its executor for good, as soon as nothing of it runs: what rclcpp itself has in it (the
-/// services of parameters, of a managed node) can't be guarded.
+/// services of parameters, of a managed node) can't be guarded. The executor must not find the group taken while it
+/// chooses what to run: rclcpp asserts that it does not. So it may first let go of the group's services, as it does
+/// once it hears that the node was removed; then only their owner and who looks here point to them. An executor that
+/// runs this can't, and one that is busy does not for now: neither is waited for long.
 template <typename Group>
 void withdraw(Group& group) {
-  const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(5);
-  while (!group.can_be_taken_from().exchange(false) && std::chrono::steady_clock::now() < patience) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
+  const auto until = [start = std::chrono::steady_clock::now()](std::chrono::milliseconds patience, auto condition) {
+    while (!condition() && std::chrono::steady_clock::now() - start < patience) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  };
+  const auto held = [](const auto& service) { return service.use_count() > 2; };
+  until(std::chrono::milliseconds(50), [&] { return group.find_service_ptrs_if(held) == nullptr; });
+  until(std::chrono::seconds(5), [&] { return group.can_be_taken_from().exchange(false); });
 }
 
 }  // namespace ROBOSC_VERSION
