@@ -82,20 +82,30 @@ def _in_order(values: Values) -> Values:
 
 
 def _moves(plant: sct.Plant, edges: Edges, lower: Lowering) -> list[StepTerms]:
-    """The change of location. Staying counts as going to the same location, so that one assignment often does."""
+    """The change of location. Staying counts as going to the same location where that takes fewer conditions."""
     variable = lower.variables.get(plant)
     if variable is None:
         return []
     targets: dict[sct.Location, list[sct.Edge]] = {}
+    moving: dict[sct.Location, list[sct.Edge]] = {}
+    staying: list[sct.Edge] = []
     for edge in _all(edges):
         targets.setdefault(edge.target, []).append(edge)
-    cases: list[tuple[list[sct.Edge], Values]] = [
-        (taken, {} if {*map(origin, taken)} == {target} else {variable: lower.terms.place(plant, target)})
-        for target, taken in targets.items()
-    ]
-    if len(cases) == 1:
-        return [StepTerms([(None, values)]) for _, values in cases if values]
-    return _by_edge(plant, cases, edges, lower)
+        (staying if edge.target is origin(edge) else moving.setdefault(edge.target, [])).append(edge)
+    if not moving:
+        return []
+    places = {target: {variable: lower.terms.place(plant, target)} for target in moving}
+    if len(targets) == 1:
+        return [StepTerms([(None, values)]) for values in places.values()]
+    joined = [(taken, places.get(target, {})) for target, taken in targets.items()]
+    apart = [(taken, places[target]) for target, taken in moving.items()]
+    apart += [(staying, {})] if staying else []
+    ways = [_by_edge(plant, cases, edges, lower) for cases in (apart, joined)]
+    return min(ways, key=lambda steps: sum(_size(condition) for step in steps for condition, _ in step.cases))
+
+
+def _size(condition: Term | None) -> int:
+    return 0 if condition is None else sum(1 for _ in condition.below())
 
 
 def _all(edges: Edges) -> list[sct.Edge]:

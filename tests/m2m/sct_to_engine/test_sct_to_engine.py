@@ -183,6 +183,23 @@ def test_effects_are_simultaneous(do: dict[str, str], steps: list[str]) -> None:
     assert effect_of(transform(machine(**do)), "p.c_tau1") == steps
 
 
+@pytest.mark.parametrize(
+    ("edges", "steps"),
+    [
+        ({"x": "y", "y": "y"}, ["p := y"]),
+        ({"x": "y", "y": "y", "z": "z"}, ["p == x: p := y"]),
+        ({"x": "y", "y": "x", "z": "z"}, ["p == x: p := y", "p == y: p := x"]),
+        ({"x": "y", "y": "y", "z": "x"}, ["p != z: p := y", "else: p := x"]),
+        ({"x": "x", "y": "y", "z": "z"}, []),
+    ],
+)
+def test_staying_is_going_to_the_same_location_where_that_takes_fewer_conditions(
+    edges: dict[str, str], steps: list[str]
+) -> None:
+    p = plant("p", {place: [edge("c_tau1", to=to)] for place, to in edges.items()}, controllable=["c_tau1"])
+    assert effect_of(transform(model([p], guards={})), "p.c_tau1") == steps
+
+
 def test_a_case_does_not_say_again_what_the_cases_before_it_deny() -> None:
     p = plant(
         "p",
