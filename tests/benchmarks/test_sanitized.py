@@ -27,15 +27,24 @@ ROSCPP = LOCKS.replace("#0 rclcpp", "#0 ros::Connection::drop() <null> (libroscp
     "#1 rclcpp::Node::~Node() /src/rclcpp/node.cpp:7 (librclcpp.so+0x4)",
     "#1 ros::Connection::read() <null> (libroscpp.so.4d+0x4)",
 )
+#: rclcpp logs in its handler of signals.
+INTERRUPTED = LOCKS.replace(
+    "#0 rclcpp",
+    "#0 rclcpp_logging_output_handler /src/rclcpp/context.cpp:3 (librclcpp.so+0x6)\n"
+    "    #1 rcutils_log_internal <null> (librcutils.so+0x7)\n"
+    "    #2 CallUserSignalHandler /src/tsan_interceptors_posix.cpp:4 (libtsan.so.2+0x8)\n"
+    "    #3 rclcpp",
+)
 UNDEFINED = "/ws/x.c:3:4: runtime error: signed integer overflow\n    #0 0x1 in f /ws/x.c:3\n"
 
 
 def test_a_report_belongs_to_who_does_it() -> None:
     race = "ThreadSanitizer: data race stl_vector.h:367 in std::vector<int>::~vector()"
     assert sorted_reports([OURS, OURS]) == ({race: 2}, {})
+    order = race.replace("data race", "lock-order-inversion (potential deadlock)")
     assert sorted_reports([THEIRS]) == ({}, {race: 1})
-    assert sorted_reports([LOCKS]) == ({race.replace("data race", "lock-order-inversion (potential deadlock)"): 1}, {})
-    assert sorted_reports([ROSCPP]) == ({}, {race.replace("data race", "lock-order-inversion (potential deadlock)"): 1})
+    assert sorted_reports([LOCKS]) == ({order: 1}, {})
+    assert sorted_reports([ROSCPP, INTERRUPTED]) == ({}, {order: 2})
     assert sorted_reports([UNDEFINED, ""]) == ({"runtime error: signed integer overflow": 1}, {})
 
 
