@@ -102,9 +102,10 @@ def _plant(draw: st.DrawFn, sketch: _Sketch, sketches: Sequence[_Sketch], scope:
     dead = [location for location in rest if draw(st.integers(0, 4)) == 4]
     edges = {
         location: [
-            _edge(draw, sketch, declaring, event, scope)
+            made
             for declaring, event in (() if location in dead else own + others)
             if draw(st.integers(0, 4)) < 4
+            for made in _edges(draw, sketch, declaring, event, scope)
         ]
         for location in sketch.locations
     }
@@ -124,20 +125,31 @@ def _plant(draw: st.DrawFn, sketch: _Sketch, sketches: Sequence[_Sketch], scope:
     )
 
 
-def _edge(draw: st.DrawFn, sketch: _Sketch, declaring: _Sketch, event: str, scope: _Scope):
+def _edges(draw: st.DrawFn, sketch: _Sketch, declaring: _Sketch, event: str, scope: _Scope):
+    """One edge, or several that are tried one after the other: a robot's conditions, of which the first that holds
+    counts, and which may read the data of the event."""
     carried = declaring.uncontrollable.get(event, ())
     inputs = tuple((f"{declaring.name}.{name}", declaring.inputs[name]) for name in carried)
     with_inputs = replace(scope, values=scope.values + inputs)
-    return edge(
-        f"{declaring.name}.{event}",
-        to=draw(st.sampled_from(sketch.locations)),
-        when=_boolean(draw, scope, 2) if draw(st.integers(0, 2)) == 0 else None,
-        do={
-            name: _value(draw, kind, with_inputs, 2)
-            for name, kind in sketch.variables.items()
-            if draw(st.integers(0, 3)) < 3
-        },
-    )
+    if draw(st.integers(0, 3)):
+        guards = [_boolean(draw, scope, 2) if draw(st.integers(0, 2)) == 0 else None]
+    else:
+        conditions = [f"({_boolean(draw, with_inputs, 2)})" for _ in range(draw(st.integers(1, 2)))]
+        denials = [f"not {condition}" for condition in conditions]
+        guards = [" and ".join([*denials[:i], *conditions[i : i + 1]]) for i in range(len(conditions) + 1)]
+    return [
+        edge(
+            f"{declaring.name}.{event}",
+            to=draw(st.sampled_from(sketch.locations)),
+            when=guard,
+            do={
+                name: _value(draw, kind, with_inputs, 2)
+                for name, kind in sketch.variables.items()
+                if draw(st.integers(0, 3)) < 3
+            },
+        )
+        for guard in guards
+    ]
 
 
 def _data_plant(draw: st.DrawFn, name: str, scope: _Scope):

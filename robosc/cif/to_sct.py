@@ -63,7 +63,7 @@ class _Transformation:
         self._values = Values(names)
         self.model = sct.SupervisoryControlModel(name=name)
         self._controllable: dict[sct.Event, Declared] = {}
-        self._exclusions: dict[sct.Event, list[ex.Expression]] = {}
+        self._exclusions: dict[sct.Event, list[tuple[Any, ex.Expression]]] = {}
         self._plant_invariants: list[tuple[Any, ex.Expression]] = []
         scopes = list(_inside(names.root))
         for scope in scopes:
@@ -442,7 +442,7 @@ class _Transformation:
             event = self._event(name, scope)
             if plant:
                 own = copied(condition)
-                self._exclusions.setdefault(event, []).append(own if needs else ex.Negation(operand=own))
+                self._exclusions.setdefault(event, []).append((read, own if needs else ex.Negation(operand=own)))
                 continue
             kind = sct.RequirementKind.needs if needs else sct.RequirementKind.disables
             self.model.requirements.append(
@@ -458,7 +458,7 @@ class _Transformation:
                     overlap = [edge for own in edges[event].values() for edge in own]
                     if excluding is None or (not event.controllable and _several(overlap)):
                         raise construct(read, f"this plant invariant with `{event.name}`", "state it by guards")
-                    self._exclusions.setdefault(event, []).append(excluding)
+                    self._exclusions.setdefault(event, []).append((read, excluding))
             self.model.initialPredicates.append(condition)
 
     def _exclude(self) -> None:
@@ -475,9 +475,11 @@ class _Transformation:
         plant = sct.Plant(name=name, kind=sct.PlantKind.behaviour)
         location = sct.Location(name="L", initial=True, marked=True)
         plant.locations.append(location)
-        for event, conditions in self._exclusions.items():
+        for event, exclusions in self._exclusions.items():
             if event in used:
-                location.edges.append(sct.Edge(event=event, guard=conjunction(conditions), target=location))
+                guard = conjunction(condition for _, condition in exclusions)
+                source = located(exclusions[0][0])
+                location.edges.append(sct.Edge(event=event, guard=guard, target=location, source=source))
         if location.edges:
             self.model.plants.append(plant)
 

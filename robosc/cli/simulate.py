@@ -76,11 +76,12 @@ def command(
         supervise_models(models, report)
         if script is not None:
             answers = _played(models, script, settings, report)
+        else:
+            simulation = Simulation(models.sct, models.rosgraph)
     if script is not None:
         for answer in answers:
             put(json.dumps(answer))
         return
-    simulation = Simulation(models.sct, models.rosgraph)
     if number is not None:
         _run(simulation, number, seed)
     else:

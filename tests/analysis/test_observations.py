@@ -224,7 +224,11 @@ def check_hindrances(definitions: Definitions, observed: UnreachableState) -> No
     for hindrance in observed.hindrances:
         happens = hindrance.edge.event
         here = [s for s in oracle.controlled if s[oracle.places[component]] is hindrance.edge.eContainer()]
-        enabled = [state for state in here if oracle.enabled(happens, state)]
+        enabled = [
+            state
+            for state in here
+            if any(hindrance.edge in (oracle.edges(happens, state, inputs) or ()) for inputs in oracle.inputs(happens))
+        ]
         required = [state for state in enabled if oracle.required(happens, state)]
         assert hindrance.forbidden is (
             Forbidden.BY_SYNTHESIS

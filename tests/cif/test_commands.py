@@ -233,6 +233,17 @@ def test_what_needs_ros_or_a_control_loop_does_not_take_it(command: list[str], s
     assert "is CIF, which stands for no ROS and no control loop" in result.output
 
 
+@pytest.mark.parametrize("command", [["simulate", "--random", "1"], ["verify"], ["transform", "--to", "supervisor"]])
+def test_what_runs_a_supervisor_learns_too_late_what_an_input_is(command: list[str], tmp_path: Path) -> None:
+    path = tmp_path / "input.cif"
+    path.write_text("input bool x; plant invariant x; controllable c; plant p: location: initial; marked; edge c; end")
+    output = ["--output", str(tmp_path / "out")] if command[0] == "transform" else []
+    result = CliRunner().invoke(main, [*command, str(path), *output])
+    assert result.exit_code == 1
+    assert "input.cif:1:12: error: whether `x` can happen depends on its data" in result.output
+    assert not (tmp_path / "out").exists()
+
+
 def test_synthesize_counts_without_guards(specification: str) -> None:
     result = CliRunner().invoke(main, ["synthesize", specification, "--counts", "--json"])
     assert result.exit_code == 0

@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robosc.diagnostics import Diagnostic, ModelError, Severity
 from robosc.m2m.sct_to_engine.merge_effects import left_open
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
+from robosc.metamodel.places import place
+from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -66,7 +69,7 @@ def _possible(plant: sct.Plant, edges: Edges, lower: Lowering) -> Term:
 def _one_of(edges: Sequence[sct.Edge], lower: Lowering) -> Term:
     """That a guard of these holds, of each what those before it leave open.
 
-    Raises ValueError where it depends on the data of the event: that comes when the event is happening already.
+    Raises ModelError where it depends on the data of the event: that comes when the event is happening already.
     """
     # Each is lowered, also where nothing of it is needed: it may be what no sct model holds.
     guards = [lower(edge.guard) for edge in edges]
@@ -75,9 +78,10 @@ def _one_of(edges: Sequence[sct.Edge], lower: Lowering) -> Term:
     denied: set[Term] = set()
     whole = lower.terms.junction(engine.Or, [left_open(guard, denied, lower.terms) for guard in guards])
     if any(isinstance(read, engine.Input) for read in whole.reads()):
-        raise ValueError(
-            f"for some data of '{edges[0].event.name}' there is no edge in '{edges[0].target.eContainer().name}'"
-        )
+        name = event_name(edges[0].event)
+        message = f"whether `{name}` can happen depends on its data, which a controller learns when it happens"
+        hint = "leave it out of plant invariants, or add an edge for all other data"
+        raise ModelError([Diagnostic(*place(edges[0]), Severity.ERROR, "cif-construct", message, hint)])
     return whole
 
 

@@ -52,28 +52,61 @@ def merge_effects(edges: Mapping[sct.Plant, Edges], lower: Lowering) -> EffectTe
     """The effect of an event whose plants take these edges.
 
     Variables come first, ordered so that each is read before it is written; where that is impossible the value before
-    is to be read from a copy. Locations come last: no other step needs one after it has changed.
+    is to be read from a copy. Locations come last: no other step needs one after it has changed. Where several edges of
+    a location may be possible, which is so in models from CIF, one is taken with all that it changes.
     """
-    steps = _ordered([step for plant, taken in edges.items() for step in _updates(plant, taken, lower)])
-    moves = [step for plant, taken in edges.items() for step in _moves(plant, taken, lower)]
+    chosen = {plant: taken for plant, taken in edges.items() if not _exclusive(taken, lower)}
+    exclusive = {plant: taken for plant, taken in edges.items() if plant not in chosen}
+    steps = [step for plant, taken in exclusive.items() for step in _updates(plant, taken, lower)]
+    steps = _ordered([*steps, *(step for plant, taken in chosen.items() for step in _changes(plant, taken, lower))])
+    moves = [step for plant, taken in exclusive.items() for step in _moves(plant, taken, lower)]
     return EffectTerms([*steps, *moves], _read_late([*steps, *moves]))
+
+
+def _exclusive(edges: Edges, lower: Lowering) -> bool:
+    """Whether the guards of a location exclude each other: each says what those before it deny."""
+    for leaving in edges.values():
+        denied: set[Term] = set()
+        for edge in leaving:
+            guard = lower(edge.guard)
+            if not denied.issubset(guard.operands if guard.operator is engine.And else (guard,)):
+                return False
+            left_open(guard, denied, lower.terms)
+    return True
+
+
+def _changes(plant: sct.Plant, edges: Edges, lower: Lowering) -> list[StepTerms]:
+    """What the edges change, updates and location together."""
+    variable = lower.variables.get(plant)
+    groups: dict[tuple[tuple[engine.StateVariable, Term], ...], list[sct.Edge]] = {}
+    for edge in _all(edges):
+        values = _values(edge, lower)
+        if variable is not None and edge.target is not origin(edge):
+            values[variable] = lower.terms.place(plant, edge.target)
+        groups.setdefault(tuple(values.items()), []).append(edge)
+    return _by_edge(plant, [(taken, _in_order(dict(values))) for values, taken in groups.items()], edges, lower)
 
 
 def _updates(plant: sct.Plant, edges: Edges, lower: Lowering) -> list[StepTerms]:
     """Updates that are the same on all edges, one by one; else by location."""
     groups: dict[tuple[tuple[engine.StateVariable, Term], ...], list[sct.Edge]] = {}
     for edge in _all(edges):
-        values: Values = {}
-        for update in edge.updates:
-            variable = lower.variables[update.variable]
-            value = lower.terms.saturation(lower(update.value), Interval(variable.minimum, variable.maximum))
-            if value is not lower.terms.reference(variable):
-                values[variable] = value
-        groups.setdefault(tuple(values.items()), []).append(edge)
+        groups.setdefault(tuple(_values(edge, lower).items()), []).append(edge)
     if len(groups) == 1:
         return [StepTerms([(None, {variable: value})]) for values in groups for variable, value in values]
     cases = [(taken, _in_order(dict(values))) for values, taken in groups.items()]
     return _by_edge(plant, cases, edges, lower)
+
+
+def _values(edge: sct.Edge, lower: Lowering) -> Values:
+    """What the updates of an edge change."""
+    values: Values = {}
+    for update in edge.updates:
+        variable = lower.variables[update.variable]
+        value = lower.terms.saturation(lower(update.value), Interval(variable.minimum, variable.maximum))
+        if value is not lower.terms.reference(variable):
+            values[variable] = value
+    return values
 
 
 def _in_order(values: Values) -> Values:

@@ -216,7 +216,11 @@ class Explicit:
 
     def _ready(self, event: sct.Event, plant: sct.Plant, state: State) -> bool:
         location = state[self.oracle.places[plant]]
-        return any(edge.event is event and self.oracle.value(edge.guard, state, {}) for edge in edges_from(location))
+        return any(
+            self.oracle.value(edge.guard, state, inputs)
+            for edge in edges_from(location, event)
+            for inputs in self.oracle.inputs(event)
+        )
 
     def broken(self, requirement: sct.Requirement) -> set[State]:
         wanted = requirement.kind == sct.RequirementKind.needs

@@ -1,21 +1,26 @@
 """The meaning of sct models, read from their definition and not from what the tool makes of them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.edges import edges_from, edges_of
 from robosc.semantics.evaluation import evaluate, saturate
+from robosc.semantics.start import first_state
 
 #: The location of each plant, and the value of each variable: an integer, a boolean or a literal.
 State = dict[sct.Plant | sct.DiscreteVariable, object]
 
 
-def initial(model: sct.SupervisoryControlModel) -> State:
-    """The initial state."""
-    state: State = {plant: next(place for place in plant.locations if place.initial) for plant in model.plants}
+def started(model: sct.SupervisoryControlModel) -> State:
+    """The initial state; of several the first that the supervisor keeps."""
+    found = first_state(model)
+    state: State = {}
     for plant in model.plants:
-        state |= {variable: value(variable.initial, {}) for variable in plant.variables}
+        state[plant] = plant.locations[found[plant]]
+        for variable in plant.variables:
+            domain, number = variable.type, found[variable]
+            state[variable] = number if isinstance(domain, ex.IntegerType) else values(domain)[number]
     return state
 
 
@@ -39,7 +44,7 @@ def value(expression: ex.Expression, state: State, inputs: Mapping[sct.Input, ob
 def blocked(model: sct.SupervisoryControlModel, event: sct.Event, state: State) -> str | None:
     """What keeps an event from happening, the first of plant, requirement and synthesis; None where it can happen."""
     guard = next((guard for guard in model.supervisor.guards if guard.event is event), None)
-    if any(edge is None or not _holds(edge.guard, state) for edge in _edges(model, event, state)):
+    if without_edge(model, event, state):
         return "plant"
     if guard is not None and not _holds(guard.requirement, state):
         return "requirement"
@@ -58,34 +63,59 @@ def failing(model: sct.SupervisoryControlModel, event: sct.Event, state: State) 
 
 def without_edge(model: sct.SupervisoryControlModel, event: sct.Event, state: State) -> list[tuple[str, str]]:
     """The plants that keep an event from happening, each with its location."""
-    plants = [plant for plant in model.plants if any(edge.event is event for edge in edges_of(plant))]
-    edges = zip(plants, _edges(model, event, state), strict=True)
-    return [(plant.name, state[plant].name) for plant, edge in edges if edge is None or not _holds(edge.guard, state)]
+    # Whether there is one does not depend on the data: that comes when the event is happening already.
+    data = {declared: next(iter(values(declared.type))) for declared in event.inputs}
+    possible = _possible(model, event, state, data)
+    return [(plant.name, state[plant].name) for plant, edges in possible.items() if not edges]
 
 
 def after(
     model: sct.SupervisoryControlModel, event: sct.Event, state: State, inputs: Mapping[sct.Input, object]
-) -> State:
-    """The state after an event that can happen."""
-    changed = dict(state)
-    for edge in _edges(model, event, state):
-        changed[edge.target.eContainer()] = edge.target
-        for update in edge.updates:
-            given, kind = value(update.value, state, inputs), update.variable.type
-            if isinstance(kind, ex.IntegerType):
-                given = saturate(given, kind.minimum, kind.maximum)
-            changed[update.variable] = given
+) -> list[State]:
+    """The states in which an event that can happen may end.
+
+    There is one, but for uncontrollable events of models from CIF, of which a plant may have several possible edges.
+    """
+    states = [dict(state)]
+    for edges in _possible(model, event, state, inputs).values():
+        states = [{**changed, **_changes(edge, state, inputs)} for changed in states for edge in edges]
+    return states
+
+
+def values(kind: ex.Type) -> Sequence[object]:
+    """All values of a type."""
+    match kind:
+        case ex.BooleanType():
+            return (False, True)
+        case ex.EnumerationType(enumeration=enumeration):
+            return list(enumeration.literals)
+    assert isinstance(kind, ex.IntegerType)
+    return range(kind.minimum, kind.maximum + 1)
+
+
+def _changes(edge: sct.Edge, state: State, inputs: Mapping[sct.Input, object]) -> State:
+    changed: State = {edge.target.eContainer(): edge.target}
+    for update in edge.updates:
+        given, kind = value(update.value, state, inputs), update.variable.type
+        if isinstance(kind, ex.IntegerType):
+            given = saturate(given, kind.minimum, kind.maximum)
+        changed[update.variable] = given
     return changed
 
 
-def _edges(model: sct.SupervisoryControlModel, event: sct.Event, state: State) -> list[sct.Edge | None]:
-    """The edge that each plant with the event in its alphabet would take."""
-    return [
-        next((edge for edge in edges_from(state[plant]) if edge.event is event), None)
+def _possible(
+    model: sct.SupervisoryControlModel,
+    event: sct.Event,
+    state: State,
+    inputs: Mapping[sct.Input, object] | None = None,
+) -> dict[sct.Plant, list[sct.Edge]]:
+    """The edges that each plant with the event in its alphabet may take."""
+    return {
+        plant: [edge for edge in edges_from(state[plant]) if edge.event is event and _holds(edge.guard, state, inputs)]
         for plant in model.plants
-        if any(edge.event is event for place in plant.locations for edge in edges_from(place))
-    ]
+        if any(edge.event is event for edge in edges_of(plant))
+    }
 
 
-def _holds(condition: ex.Expression | None, state: State) -> bool:
-    return condition is None or bool(value(condition, state))
+def _holds(condition: ex.Expression | None, state: State, inputs: Mapping[sct.Input, object] | None = None) -> bool:
+    return condition is None or bool(value(condition, state, inputs))

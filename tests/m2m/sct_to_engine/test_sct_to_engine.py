@@ -2,12 +2,15 @@
 
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
+from random import Random
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import robosc
+from robosc.analysis.supervise import EmptySupervisorError, supervise
 from robosc.engine import Engine
 from robosc.m2m.remembering import remembered
 from robosc.m2m.sct_to_engine import transform
@@ -15,6 +18,8 @@ from robosc.metamodel import engine, sct, xmi
 from robosc.metamodel import expression as ex
 from robosc.metamodel.reflection import tree
 from robosc.synthesis import synthesize
+from tests.cif.comparing import reading_of
+from tests.cif.random_specifications import Specification
 from tests.m2m.sct_to_engine import oracle
 from tests.random_sct import sct_models
 from tests.sct_models import disables, edge, model, needs, plant
@@ -200,6 +205,29 @@ def test_staying_is_going_to_the_same_location_where_that_takes_fewer_conditions
     assert effect_of(transform(model([p], guards={})), "p.c_tau1") == steps
 
 
+def test_of_edges_that_may_be_taken_together_one_is_chosen() -> None:
+    p = plant(
+        "p",
+        {
+            "x": [
+                edge("u_response", to="y", when="n == 3", do={"n": "1"}),
+                edge("u_response", to="z", when="n == 0", do={"n": "2"}),
+                edge("u_response", to="y", when="n == 0", do={"n": "3"}),
+            ],
+            "y": [edge("u_response", do={"n": "1"})],
+            "z": [],
+        },
+        uncontrollable={"u_response": ()},
+        variables={"n": "0..9"},
+    )
+    assert effect_of(transform(model([p], guards={})), "p.u_response") == [
+        "(p == x) and (p.n == 3): p.n := 1; p := y",
+        "(p == x) and (p.n == 0): p.n := 2; p := z",
+        "p == x: p.n := 3; p := y",
+        "else: p.n := 1",
+    ]
+
+
 def test_a_case_does_not_say_again_what_the_cases_before_it_deny() -> None:
     p = plant(
         "p",
@@ -364,11 +392,28 @@ def _supervised(made: sct.SupervisoryControlModel) -> sct.SupervisoryControlMode
 @settings(max_examples=examples(30), deadline=None, suppress_health_check=list(HealthCheck))
 @given(sct_models(), st.randoms(use_true_random=False))
 def test_an_engine_model_means_what_its_sct_model_does(made: sct.SupervisoryControlModel, random) -> None:
-    _supervised(made)
-    events = [event for plant in made.plants for event in plant.events]
-    executed, state = Engine(made), oracle.initial(made)
+    _follow(_supervised(made), random)
+
+
+@pytest.mark.slow
+def test_of_several_edges_that_may_be_taken_one_is_with_all_that_it_changes() -> None:
+    several = 0
+    for seed in (68, 185, *range(examples(30))):
+        made = reading_of(Specification(seed)).model
+        if made is not None:
+            with suppress(EmptySupervisorError):
+                supervise(made)
+                several += _follow(made, Random(seed))  # noqa: S311 - nothing is secret
+    assert several
+
+
+def _follow(made: sct.SupervisoryControlModel, random: Random) -> int:
+    """Lets random events happen, and compares with the definition; how many could end in more than one state."""
+    events, several = [event for plant in made.plants for event in plant.events], 0
+    executed, state = Engine(made), oracle.started(made)
+    names = dict(zip(events, executed.events, strict=True))
     for _ in range(30):
-        for name, event in zip(executed.events, events, strict=True):
+        for event, name in names.items():
             reason = executed.blocked_by(name)
             assert (None if reason is None else reason.value) == oracle.blocked(made, event, state)
             assert executed.failing(name) == oracle.failing(made, event, state)
@@ -380,15 +425,21 @@ def test_an_engine_model_means_what_its_sct_model_does(made: sct.SupervisoryCont
         event = random.choice(possible)
         inputs, data = {}, {}
         for declared in event.inputs:
-            inputs[declared], data[declared.name] = _drawn(declared.type, random)
-        assert executed.perform(f"{event.eContainer().name}.{event.name}", data)
-        state = oracle.after(made, event, state, inputs)
-        for owner in made.plants:
-            assert owner.locations[executed.location(owner)] is state[owner]
-            for variable in owner.variables:
-                expected = state[variable]
-                shown = expected.name if isinstance(expected, ex.EnumerationLiteral) else expected
-                assert executed.value(variable) == shown
+            value = random.choice(oracle.values(declared.type))
+            inputs[declared], data[declared.name] = value, _shown(value)
+        assert executed.perform(names[event], data)
+        reached: dict[object, object] = {owner: owner.locations[executed.location(owner)].name for owner in made.plants}
+        reached |= {variable: executed.value(variable) for owner in made.plants for variable in owner.variables}
+        after = oracle.after(made, event, state, inputs)
+        shown = [{element: _shown(value) for element, value in state.items()} for state in after]
+        assert reached in shown
+        state = after[shown.index(reached)]
+        several += any(other != reached for other in shown)
+    return several
+
+
+def _shown(value: object) -> object:
+    return value.name if isinstance(value, ex.EnumerationLiteral | sct.Location) else value
 
 
 def _without_edge(executed: Engine, event: sct.Event) -> list[tuple[str, str]]:
@@ -401,19 +452,6 @@ def _without_edge(executed: Engine, event: sct.Event) -> list[tuple[str, str]]:
             plant, _, location = f"{reason.text}{place or ''}".rpartition(".")
             found.append((plant, location))
     return found
-
-
-def _drawn(kind: ex.Type, random) -> tuple[object, object]:
-    """A random value as the oracle takes it, and as the engine does."""
-    match kind:
-        case ex.BooleanType():
-            value = random.random() < 0.5
-        case ex.EnumerationType():
-            literal = random.choice(list(kind.enumeration.literals))
-            return literal, literal.name
-        case _:
-            value = random.randint(kind.minimum, kind.maximum)
-    return value, value
 
 
 @pytest.mark.slow
