@@ -23,9 +23,22 @@ inline int long mutable namespace new noexcept not not_eq nullptr operator or or
 register reinterpret_cast requires restrict return short signed sizeof static static_assert static_cast struct switch
 synchronized template this thread_local throw true try typedef typeid typename typeof typeof_unqual union unsigned using
 virtual void volatile wchar_t while xor xor_eq NULL offsetof int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t
-uint64_t size_t ptrdiff_t linux unix i386
+uint64_t size_t ptrdiff_t linux unix i386 _Alignas _Alignof _Atomic _Bool _Complex _Generic _Imaginary _Noreturn
+_Static_assert _Thread_local
 """
 KEYWORDS = frozenset(_KEYWORDS.split())
+#: Macros of the standard headers that could stand where a model's name stands.
+_MACROS = """
+NULL EOF assert errno stdin stdout stderr BUFSIZ RAND_MAX EXIT_SUCCESS EXIT_FAILURE SEEK_SET SEEK_CUR SEEK_END INFINITY
+NAN HUGE_VAL M_E M_LOG2E M_LOG10E M_LN2 M_LN10 M_PI M_PI_2 M_PI_4 M_1_PI M_2_PI M_2_SQRTPI M_SQRT2 M_SQRT1_2 DBL_DIG
+DBL_EPSILON DBL_MAX DBL_MIN FLT_DIG FLT_EPSILON FLT_MAX FLT_MIN CHAR_BIT CHAR_MAX CHAR_MIN SHRT_MAX SHRT_MIN INT_MAX
+INT_MIN LONG_MAX LONG_MIN LLONG_MAX LLONG_MIN UCHAR_MAX USHRT_MAX UINT_MAX ULONG_MAX ULLONG_MAX INT8_MAX INT8_MIN
+INT16_MAX INT16_MIN INT32_MAX INT32_MIN INT64_MAX INT64_MIN UINT8_MAX UINT16_MAX UINT32_MAX UINT64_MAX SIZE_MAX
+PTRDIFF_MAX PTRDIFF_MIN PATH_MAX NAME_MAX BYTE_ORDER BIG_ENDIAN LITTLE_ENDIAN F_OK R_OK W_OK X_OK SIGABRT SIGALRM SIGHUP
+SIGINT SIGKILL SIGQUIT SIGSTOP SIGTERM EACCES EAGAIN EBUSY ECANCELED EDOM EEXIST EINTR EINVAL EIO ENODATA ENODEV ENOENT
+ENOMEM ENOTSUP EPERM ERANGE ETIME ETIMEDOUT
+"""
+TAKEN = KEYWORDS.union(_MACROS.split())
 _API = """
 nothing event state inputs settings hooks set supervisor default_settings init enabled perform begin end tick event_name
 """
@@ -72,7 +85,7 @@ class CNames:
         self, model: sct.SupervisoryControlModel, elements_of: Callable[[sct.Plant], Iterable[ex.NamedElement]]
     ) -> dict[ex.NamedElement, str]:
         """The members of one struct."""
-        names = Names(KEYWORDS)
+        names = Names(TAKEN | {"EVENTS"})  # which the source defines
         return {
             element: names.fresh(identifier(plant.name if element is plant else f"{plant.name}_{element.name}"))
             for plant in model.plants

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypeVar
 
 from robosc.configuration.parameters import topic_words
-from robosc.m2t.c.names import KEYWORDS, CNames, identifier
+from robosc.m2t.c.names import TAKEN, CNames, identifier
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.semantics.naming import Names
@@ -16,9 +16,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _Element = TypeVar("_Element", bound=ex.NamedElement)
-
-#: Macros of the standard headers that could stand where a model's name stands.
-_MACROS = frozenset(["EOF", "INFINITY", "NAN", "NULL", "assert", "errno", "stderr", "stdin", "stdout"])
 
 
 class CppNames:
@@ -37,7 +34,7 @@ class CppNames:
         self.kept: dict[str, list[rosgraph.NodeVariable]] = {}
         for variable in graph.variables:
             self.kept.setdefault(variable.component or "", []).append(variable)
-        components = Names(KEYWORDS | _MACROS)
+        components = Names(TAKEN)
         self.components = {name: components.fresh(identifier(name)) for name in self.kept}
         #: What is set on the robot stands beside the components.
         self.parameters = components.fresh("parameters")
@@ -99,5 +96,5 @@ class CppNames:
 
 
 def _fresh(elements: Sequence[_Element]) -> dict[_Element, str]:
-    names = Names(KEYWORDS | _MACROS)
+    names = Names(TAKEN)
     return {element: names.fresh(identifier(element.name)) for element in elements}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import robosc
+from robosc.m2t.ros.names import CppNames
 from robosc.m2t.ros.node import Node
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
@@ -32,3 +33,16 @@ def test_what_a_trigger_changes_is_done_after_its_data_is_made() -> None:
     assert [(assignment.target, assignment.value) for assignment in reaction.assignments] == [
         ("data_.Counter.total", "Integer(7)")
     ]
+
+
+def test_no_name_is_a_macro_of_a_standard_header() -> None:
+    robot = robosc.load(
+        text="""robot R { component C {
+            parameter M_PI: double(0.0..4.0) = 3.14
+            outgoing message angle with type: double
+            behaviour { variable NAN: double initial marked state s { on response from angle do NAN := value * M_PI } }
+        } }"""
+    )
+    graph = robosc.to_rosgraph(robot)
+    names = CppNames(graph)
+    assert [names.variable(kept) for kept in (*graph.variables, *graph.parameters)] == ["C.NAN_", "parameters.M_PI_"]

@@ -131,7 +131,7 @@ def wide() -> sct.SupervisoryControlModel:
 
 
 def names() -> sct.SupervisoryControlModel:
-    """Names that are keywords of C and C++, clash with each other or with the engine's own, or are not ASCII."""
+    """Names that are keywords or macros of C and C++, clash with each other or with the engine, or are not ASCII."""
     return model(
         [
             plant("int", {"if": [edge("u_response", to="else")], "else": []}, uncontrollable=["u_response"]),
@@ -142,6 +142,7 @@ def names() -> sct.SupervisoryControlModel:
             _one("init", {"u_error": ""}),
             _one("self", {"c_trigger": ""}, variables={"state": "bool"}),
             _one("state", {"c_tau1": ""}),
+            *(_one(name, {"u_response": ""}) for name in ("EVENTS", "errno", "UINT32_MAX", "_Bool")),
         ],
         enumerations={"event": ["name", "count"], "a_b": ["c", "x"], "settings": ["hooks"]},
         guards={"self.c_trigger": "self.state or state.here"},
