@@ -111,7 +111,9 @@ On the code of 2026-11-25 without sanitizers, compiled ROS 2 nodes played all te
 which more than thirty processes shared two cores. With `ros2 launch` and `launch_test`, the four tests of launch files
 passed, and the eight of `tests/ros/test_traces.py` that are of compiled ROS 2 nodes: the line follower, the porter and
 the managed porter follow their traces. So does `courier_controller`, generated with tests, whose trace `colcon test`
-played. Of the 20 tests of `tests/ros/test_ros2_node.py`, 18 passed; the two that load 500 components were not run.
+played. Of the 20 tests of `tests/ros/test_ros2_node.py`, 18 passed, and on 2026-11-26 the two others, of 500 components
+in each container, with the four of `guard_layer` and `patience_controller` in `tests/ros/test_times.py` and
+`tests/ros/test_layer_times.py`.
 
 clang-tidy 14 has read the porter in ROS 1 and ROS 2, its managed twin, `usher_layer` in ROS 1 and `guard_layer` in
 ROS 2, and with them the shared headers that they include, by `tests/ros/.clang-tidy` (2026-11-26). It found a
