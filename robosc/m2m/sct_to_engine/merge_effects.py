@@ -76,15 +76,23 @@ def _exclusive(edges: Edges, lower: Lowering) -> bool:
 
 
 def _changes(plant: sct.Plant, edges: Edges, lower: Lowering) -> list[StepTerms]:
-    """What the edges change, updates and location together."""
+    """What the edges change, updates and location together: of those that may be taken the first in the text does."""
     variable = lower.variables.get(plant)
-    groups: dict[tuple[tuple[engine.StateVariable, Term], ...], list[sct.Edge]] = {}
+    cases: list[tuple[list[sct.Edge], Values]] = []
+    known: dict[tuple[tuple[engine.StateVariable, Term], ...], int] = {}
+    last: dict[sct.Location | None, int] = {}
     for edge in _all(edges):
-        values = _values(edge, lower)
-        if variable is not None and edge.target is not origin(edge):
+        location, values = origin(edge), _values(edge, lower)
+        if variable is not None and edge.target is not location:
             values[variable] = lower.terms.place(plant, edge.target)
-        groups.setdefault(tuple(values.items()), []).append(edge)
-    return _by_edge(plant, [(taken, _in_order(dict(values))) for values, taken in groups.items()], edges, lower)
+        case = known.get(tuple(values.items()), -1)
+        # Not before an edge of the same location that comes before it in the text.
+        if case < last.get(location, 0):
+            case = known[tuple(values.items())] = len(cases)
+            cases.append(([], _in_order(values)))
+        last[location] = case
+        cases[case][0].append(edge)
+    return _by_edge(plant, cases, edges, lower, overlapping=True)
 
 
 def _updates(plant: sct.Plant, edges: Edges, lower: Lowering) -> list[StepTerms]:
@@ -153,6 +161,7 @@ class Alternatives:
         self._lower = lower
         self._untried = {location: len(leaving) for location, leaving in edges.items()}
         self._denied: dict[sct.Location | None, set[Term]] = {location: set() for location in edges}
+        self._ruled_out: dict[sct.Location | None, list[Term]] = {location: [] for location in edges}
 
     def one_of(self, chosen: Sequence[sct.Edge]) -> Term:
         """That one of these is taken where none is that was tried before: what that says already is left out."""
@@ -161,13 +170,18 @@ class Alternatives:
         for edge in chosen:
             location = origin(edge)
             self._untried[location] -= 1
-            guard = left_open(self._lower(edge.guard), self._denied[location], terms)
-            left.setdefault(location, []).append(guard)
+            guard = terms.junction(engine.And, [self._lower(edge.guard), *self._ruled_out[location]])
+            left.setdefault(location, []).append(left_open(guard, self._denied[location], terms))
         guards = {
             location: terms.junction(engine.Or, found) if self._untried[location] else terms.true
             for location, found in left.items()
         }
         return self._lower.where(self._plant, guards, list(self._untried))
+
+    def rule_out(self, chosen: Sequence[sct.Edge]) -> None:
+        """Has those that are tried from here on not be taken where one of these may be."""
+        for edge in chosen:
+            self._ruled_out[origin(edge)].append(self._lower(edge.guard, positive=False))
 
 
 def left_open(guard: Term, denied: set[Term], terms: Terms) -> Term:
@@ -183,14 +197,23 @@ def _by_edge(
     cases: Sequence[tuple[Sequence[sct.Edge], Values]],
     edges: Edges,
     lower: Lowering,
+    *,
+    overlapping: bool = False,
 ) -> list[StepTerms]:
-    """A step with the cases that change something; the last needs no condition where all do."""
-    acting = [(chosen, values) for chosen, values in cases if values]
-    others = len(acting) == len(cases)
+    """A step with the cases that change something; the last needs no condition where all do.
+
+    Where the cases are `overlapping`, the first that holds is taken also where it changes nothing.
+    """
     alternatives = Alternatives(plant, edges, lower)
-    found: list[tuple[Term | None, Values]] = [(alternatives.one_of(chosen), values) for chosen, values in acting]
-    if others:
-        found[-1] = None, acting[-1][1]
+    found: list[tuple[Term | None, Values]] = []
+    for chosen, values in cases:
+        if values:
+            found.append((alternatives.one_of(chosen), values))
+        elif overlapping:
+            alternatives.rule_out(chosen)
+    if len(found) == len(cases):
+        found[-1] = None, cases[-1][1]
+    found = [(condition, values) for condition, values in found if condition is None or condition.constant != 0]
     return [StepTerms(found)] if found else []
 
 

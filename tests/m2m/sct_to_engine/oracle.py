@@ -72,7 +72,7 @@ def without_edge(model: sct.SupervisoryControlModel, event: sct.Event, state: St
 def after(
     model: sct.SupervisoryControlModel, event: sct.Event, state: State, inputs: Mapping[sct.Input, object]
 ) -> list[State]:
-    """The states in which an event that can happen may end.
+    """The states in which an event that can happen may end, first that of the edges that come first in the text.
 
     There is one, but for uncontrollable events of models from CIF, of which a plant may have several possible edges.
     """
