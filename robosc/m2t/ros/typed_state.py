@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import chain, count
 from typing import TYPE_CHECKING
 
-from robosc.m2t.c.names import KEYWORDS
+from robosc.m2t.c.names import TAKEN
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.semantics.component_parts import components
@@ -55,7 +55,7 @@ def fields(graph: rosgraph.RosGraph, names: CppNames) -> list[Field]:
 class _Maker:
     def __init__(self, names: CppNames) -> None:
         self._names = names
-        self._fields = _Scope({"header", *KEYWORDS, *keyword.kwlist})
+        self._fields = _Scope({"header", *TAKEN, *keyword.kwlist})
         self._constants = _Scope()
 
     def fields(self, graph: rosgraph.RosGraph) -> Iterator[Field]:

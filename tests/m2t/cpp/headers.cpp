@@ -120,6 +120,16 @@ void what_is_written_can_be_told() {
   CHECK(to_json(FieldWriter(true)) == "{}");
 }
 
+void elements_are_numbers_of_any_size_or_truth_values() {
+  std::vector<std::int8_t> bytes;
+  std::vector<bool> flags;
+  FieldWriter write(true);
+  write.set_elements("bytes", bytes, std::vector<std::uint8_t>{200, 7});
+  write.set_elements("flags", flags, std::vector<bool>{true, false});
+  CHECK(bytes == std::vector<std::int8_t>({127, 7}));
+  CHECK(to_json(write) == R"({"bytes":[127,7],"flags":[true,false]})");
+}
+
 void json_is_json() {
   CHECK(to_json(true) == "true" && to_json(Integer(-3)) == "-3" && to_json(kInfinity) == "null");
   CHECK(to_json(0.1) == "0.1" && to_json(1.0 / 3) == "0.3333333333333333" && to_json(-0.0) == "-0");
@@ -148,6 +158,7 @@ int main(int count, char** arguments) {
   elements_that_are_not_there_are_noticed();
   fields_take_what_fits();
   what_is_written_can_be_told();
+  elements_are_numbers_of_any_size_or_truth_values();
   json_is_json();
   return faults;
 }

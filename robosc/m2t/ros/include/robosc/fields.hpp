@@ -51,7 +51,8 @@ class FieldWriter {
       if constexpr (std::is_floating_point_v<Element>) {
         fill(path, *field, static_cast<double>(*value));
         list.add(number(*field));
-      } else if constexpr (std::is_same_v<Element, Integer> || (std::is_integral_v<Element> && sizeof(Element) > 1)) {
+      } else if constexpr (std::is_same_v<Element, Integer> ||
+                           (std::is_integral_v<Element> && !std::is_same_v<Element, bool>)) {
         fill(path, *field, Integer(*value));
         list.add(number(*field));
       } else {
