@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections import ChainMap
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from robosc.diagnostics import Repair
@@ -287,15 +289,32 @@ class Linker:
         component: rsc.Component | None = components.get(name.text)
         if component is None and not self._file.may_declare(name.text, Declared.COMPONENT, imported=False):
             hint = OWN_MEMBERS if name.text in self.scope.components else None
-            self._missing(name, "there is no component", components, hint)
+            self._missing(name, "there is no component", components, self._made_of(name) or hint)
         return component
 
     def components(self, element: ex.Located) -> Names:
-        """The components that can be mentioned where an element stands: in a library each mentions itself only."""
-        if not self._is_library:
-            return self.scope.components
+        """The components that can be mentioned where an element stands: in a library each mentions itself only.
+
+        A template mentions itself, too; others mention what is made of it.
+        """
         own = self.around(element, rsc.Component)
-        return {} if own is None else {own.name: own}
+        if self._is_library:
+            return {} if own is None else {own.name: own}
+        return ChainMap({own.name: own}, self._parts) if own is not None and own.parameters else self._parts
+
+    @cached_property
+    def _parts(self) -> dict[str, rsc.Component]:
+        """The components of the robot that are no templates."""
+        return {name: component for name, component in self.scope.components.items() if not component.parameters}
+
+    def _made_of(self, name: Name) -> Repair | None:
+        """What to write for the name of a template of the robot: that of a component that is made of it."""
+        template = None if self._is_library else self.scope.components.get(name.text)
+        if template is None:
+            return None
+        made = [written(part.name) for part in self._parts.values() if self.scope.origin(part) is template]
+        said, texts = _first_few(made or [f"component other is {written(template.name)}(…)"])
+        return Repair(f"`{written(template.name)}` is a template: write {said}", choices=texts if made else ())
 
     def _member(self, members: Names, name: Name, component: rsc.Component, declared: Declared) -> Any:
         found = members.get(name.text)
@@ -461,11 +480,13 @@ class Linker:
             return
         if qualifies:
             hint = (_ANY_NUMBER if own is None else OWN_MEMBERS) if name.text in self.scope.components else None
-            self._missing(name, "there is no component or variable", [*components, *members], hint)
+            self._missing(
+                name, "there is no component or variable", [*components, *members], self._made_of(name) or hint
+            )
         elif not self._file.may_declare(name.text, Declared.ENUM_VALUE, Declared.NAMED):
             named = self.scope.usable(rsc.NamedExpression)
             known = [*components, *members, *named, *self.scope.usable(rsc.EnumValue)]
-            elsewhere = self._elsewhere(name)
+            elsewhere = self._made_of(name) or self._elsewhere(name)
             instead = OWN_MEMBERS if self._is_library and elsewhere else elsewhere or CONSTRUCTS.get(name.text)
             self._missing(name, "there is no component, variable, state or enum value", known, instead, listed=False)
 
@@ -482,7 +503,7 @@ class Linker:
         """What to write for a bare name that some component has as a variable or a state."""
         having = [
             f"{written(component.name)}.{written(name.text)}"
-            for component in self.scope.components.values()
+            for component in (self.scope.components if self._is_library else self._parts).values()
             if name.text in (self.scope.members(component) or {})
         ]
         if len(having) == 1:

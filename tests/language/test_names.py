@@ -52,6 +52,11 @@ def test_a_constant_is_usable_wherever_a_literal_is(declared: str, condition: st
     assert _holds(_robot(declared, needs=condition), 5, 6) == [False, True]
 
 
+def test_a_constant_lies_in_its_range() -> None:
+    """A constant outside its range is `integer-range`."""
+    assert {rule for rule, _ in errors(_robot("constant most: integer(0..4) = 5"))} == {"integer-range"}
+
+
 def test_constants_in_bounds_initial_values_and_identifiers() -> None:
     """range bounds, initial values, arguments, parts of identifiers (`ns + "/scan"`)."""
     text = _robot('constant most: integer = 4 constant ns: string = "/left"')
@@ -251,6 +256,25 @@ def test_quantifiers_range_over_the_instances(needs: str, after: list[bool]) -> 
         engine.perform(f"message_{component}_hit.u_response")
         found.append(engine.enabled("message_move.c_trigger"))
     assert [found[0], found[1], found[3]] == after
+
+
+@pytest.mark.parametrize(
+    "mention",
+    [
+        "requirement move needs Bumper.left > 1",
+        "requirement move needs Front.left > 0 and Bumper",
+        "requirement never Bumper.clear",
+        "requirement Bumper.lamp needs Front.left > 1",
+        "provide Bumper.lamp with true",
+        "requirement move after response from Bumper.hit",
+    ],
+)
+def test_others_name_what_is_made_of_a_template(mention: str) -> None:
+    """A template is no part of the robot until made: others name what is made of it, the template also itself."""
+    (finding,) = errors(_bumpers().replace("requirement move", f"{mention} requirement move"))
+    assert finding[0] == "unresolved-reference"
+    inside = _bumpers().replace("do left := left - 1", "if Bumper.left > 0 do left := Bumper.left - 1")
+    assert errors(inside) == []
 
 
 def test_statements_outside_a_component_replace_those_in_it() -> None:
