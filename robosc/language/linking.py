@@ -46,6 +46,7 @@ _FUNCTION = (
     f"there is {enumeration(f'`{name}`' for name in sorted(FUNCTIONS))}; others are declared, such as "
     "`function half(d: double): double = d / 2`"
 )
+_OWN_TEXT = "write what it has where it is needed"
 OWN_MEMBERS = "a library's component speaks of its own members only"
 #: Of a condition or function beside the components of a library.
 _ANY_NUMBER = "a robot may have a library's component several times or not at all: write this in the component"
@@ -92,7 +93,11 @@ class Linker:
     def imports(self) -> None:
         """The components that are imported: all other names may look into them."""
         for element, names in self._file.references.items():
-            if isinstance(element, rsc.ImportedComponent):
+            if isinstance(element, rsc.ComponentType) and element.eContainer().parameters:
+                template = written(element.eContainer().name)
+                message = f"template `{template}` is made of `{names['definition'].text}`, expected its own text"
+                self._report(names["definition"], message, _OWN_TEXT, rule="argument")
+            elif isinstance(element, rsc.ImportedComponent):
                 self._import(element, names)
             elif isinstance(element, rsc.InstantiatedComponent):
                 self._instantiation(element, names["definition"])
@@ -171,7 +176,7 @@ class Linker:
             element.definition = found
         elif found is not None:
             message = f"component `{name.text}` is no template: it has no parameters"
-            self._report(name, message, "write what it has where it is needed", rule="argument")
+            self._report(name, message, _OWN_TEXT, rule="argument")
         elif not self._file.may_declare(name.text, Declared.COMPONENT, imported=False):
             templates = [component.name for component in components.values() if component.parameters]
             self._missing(name, "there is no template", templates)

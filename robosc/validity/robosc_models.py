@@ -14,17 +14,28 @@ if TYPE_CHECKING:
     from robosc.validity.model_checks import Checks, Fault, Model
 
 
-def _import(imported: robosc.ImportedComponent, _model: Model) -> Iterator[Fault]:
-    if imported.definition.eContainer() is not imported.library:
-        yield imported, f"'{imported.definition.name}' is no component of {imported.library.name}"
+def _made(made: robosc.InstantiatedComponent | robosc.ImportedComponent, _model: Model) -> Iterator[Fault]:
+    user = around(made, robosc.Component)
+    if user is not None and user.parameters:
+        yield made, f"the template '{user.name}' has no text of its own"
         return
-    seen, component = {around(imported, robosc.Component)}, imported.definition
-    while isinstance(component.type, robosc.ImportedComponent):
+    seen, component = {user}, made.definition
+    while isinstance(component.type, robosc.InstantiatedComponent | robosc.ImportedComponent):
         if component in seen:
-            yield imported, f"'{component.name}' is imported from itself"
+            yield made, f"'{component.name}' is made of itself"
             return
         seen.add(component)
         component = component.type.definition
+    if isinstance(made, robosc.ImportedComponent):
+        yield from _import(made)
+    elif not made.definition.parameters:
+        yield made, f"'{made.definition.name}' is no template"
+
+
+def _import(imported: robosc.ImportedComponent) -> Iterator[Fault]:
+    if imported.definition.eContainer() is not imported.library:
+        yield imported, f"'{imported.definition.name}' is no component of {imported.library.name}"
+        return
     own = _definitions(imported.definition)
     for remapping in imported.remappings:
         if remapping.communicationType not in own:
@@ -82,7 +93,8 @@ def _owner(reference: robosc.CommunicationReference | robosc.Access) -> robosc.C
         return component
     if component is None or component.eContainer() is not base:
         return None
-    return component if component is own or isinstance(base, robosc.Robot) else None
+    named = isinstance(base, robosc.Robot) and not component.parameters
+    return component if component is own or named else None
 
 
 def _stands_for_an_instance(component: robosc.Component, reference: Any) -> bool:
@@ -119,7 +131,7 @@ _OWN_OBJECT = demand(
 )
 
 #: Where an import is broken, the other checks are not asked: they follow imports.
-IMPORT_CHECKS: Checks = {robosc.ImportedComponent: [_import]}
+IMPORT_CHECKS: Checks = {robosc.InstantiatedComponent: [_made], robosc.ImportedComponent: [_made]}
 CHECKS: Checks = {
     robosc.Transition: [_OWN_TARGET],
     robosc.CommunicationReference: [_communication],

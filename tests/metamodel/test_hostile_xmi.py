@@ -78,7 +78,7 @@ CHANGES = {
             ' href="EmergencyStopLibrary.robosc.xmi#/"/><definition href="#//@definitions.1"/></type></definitions>'
             "</robosc:Library>"
         ),
-        "'C' is imported from itself",
+        "'C' is made of itself",
     ),
     "doubled step": (
         GRAPH,
@@ -142,6 +142,56 @@ def test_what_no_text_could_say_is_said(
         used(folder / file, None)
     assert any(message in diagnostic.message for diagnostic in error.value.diagnostics), error.value
     assert {diagnostic.rule for diagnostic in error.value.diagnostics} == {"xmi"}
+
+
+#: A change of a robot with a template (0) and what is made of it (1 and 2), and what is said about it.
+OF_TEMPLATES = {
+    "component of itself": (
+        r'(InstantiatedComponent" [^>]*definition="//@definitions)\.0"',
+        r'\1.1"',
+        "'X' is made of itself",
+    ),
+    "no template": (
+        r'(InstantiatedComponent" [^>]*definition="//@definitions)\.0"',
+        r'\1.2"',
+        "'Y' is no template",
+    ),
+    "template without text": (
+        r'name="X">',
+        r'name="X"><parameters name="m"><type xsi:type="robosc:IntegerDataType"/></parameters>',
+        "the template 'X' has no text of its own",
+    ),
+    "template in place of a component": (
+        r'(<left [^>]*component="//@definitions)\.1"',
+        r'\1.0"',
+        "it does not say whose 'v' is meant",
+    ),
+}
+
+
+@pytest.mark.parametrize("change", OF_TEMPLATES)
+def test_what_no_text_could_say_of_templates_is_said(tmp_path: Path, change: str) -> None:
+    robot = robosc.load(
+        text="""robot R {
+          component T(n: integer) {
+            incoming message k with type: none
+            behaviour { variable v: integer(0..5) = n initial marked state i { } }
+          }
+          component X is T(1)
+          component Y is T(2)
+          requirement X.k needs X.v < 1
+        }"""
+    )
+    models = Models(robosc.to_sct(robot), robosc.to_rosgraph(robot), robot)
+    robosc.synthesize(models.sct)
+    pattern, replacement, message = OF_TEMPLATES[change]
+    saved = robosc.generate("xmi", models)["R.robosc.xmi"]
+    changed, count = re.subn(pattern, replacement, saved, count=1)
+    assert count == 1
+    (tmp_path / "R.robosc.xmi").write_text(changed, encoding="utf-8")
+    with pytest.raises(ModelError) as error, time_limit(60):
+        used(tmp_path / "R.robosc.xmi", None)
+    assert any(message in diagnostic.message for diagnostic in error.value.diagnostics), error.value
 
 
 @pytest.mark.slow

@@ -308,9 +308,10 @@ def _constants(base: Meaning) -> Iterator[tuple[ex.Expression | None, rsc.DataTy
     """Every expression that becomes the value of something, with the type and the name of that."""
     for variable in variables(base):
         yield variable.initial, variable.type, variable.name
-    for kind in (rsc.Constant, rsc.Parameter):
-        for named in statements(kind, base):
-            yield named.value, named.type, named.name
+    for declared in statements(rsc.Constant, base):
+        yield declared.value, declared.type, declared.name
+    for parameter in statements(rsc.Parameter, base):
+        yield parameter.value, parameter.type, parameter.name
     for _, transition in transitions(base):
         for assignment in transition.assignments if not sends_message(transition) else ():
             assigned = assigned_variable(assignment)

@@ -265,7 +265,7 @@ def unused_template(base: rsc.Base) -> Iterator[Finding]:
     if isinstance(base, rsc.Robot):
         made = {instance.definition for instance in instances(base)}
         for component in of_kind(rsc.Component, base.definitions):
-            if component.parameters and component not in made:
+            if component.parameters and isinstance(component.type, rsc.LocalComponent) and component not in made:
                 yield Finding(
                     component,
                     f"nothing is made of the template `{component.name}`, so that it is no part of the robot",
