@@ -4,7 +4,7 @@
 
 They are marked `matrix`: nodes run from their models over ROS 1, where compiled ones do the same; the scenarios over
 the other ROS; the demands without which a second opinion objects; reports, tours and runs of more robots, and what
-MISRA C says of them.
+MISRA C says of them; what clang-tidy, which nothing installs, says of nodes.
 """
 
 import subprocess

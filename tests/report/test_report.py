@@ -30,8 +30,8 @@ Told: TypeAlias = Callable[[str], dict[str, Any]]
 Planned: TypeAlias = Callable[[str, int], TraceTest]
 ROOT = Path(__file__).parents[2]
 QUICK = "supervised_line_follower"
-#: Their reports take longest, and the warehouse's robot has all kinds of what is in them.
-LONG = ("object_finder", "sprayer")
+#: The warehouse's robot has all kinds of what is in the reports of these.
+MORE = ("maze_solver", "object_finder", "person_follower", "push_ball", "sprayer")
 #: With other robots, in a run of all tests; those of one robot look at the same report.
 EACH = [
     QUICK,
@@ -41,7 +41,7 @@ EACH = [
             marks=[
                 pytest.mark.slow,
                 pytest.mark.xdist_group(f"report {name}"),
-                *([pytest.mark.matrix] if name in LONG else []),
+                *([pytest.mark.matrix] if name in MORE else []),
             ],
         )
         for name in PAGES

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent
 
+#: `run-tests` does not install clang-tidy, which takes half a minute of a processor for each node.
+pytestmark = pytest.mark.matrix
+
 
 # Not `usher_layer`, whose end clang-tidy 14 does not reach with ROS 2: see docs/sanitizers.md.
 @pytest.mark.parametrize("package", ["porter_controller", "managed_porter", "guard_layer"])
@@ -31,7 +34,6 @@ def test_clang_tidy_is_content_with_ros_1(ros1_workspace: Workspace, package: st
 
 def said(workspace: Workspace, package: str, options: list[str], compiler: list[str]) -> str:
     """What clang-tidy has to say of a node and of the headers that come with it."""
-    # `run-tests` does not install it: each node takes half a minute of a processor.
     if shutil.which("clang-tidy") is None:
         pytest.skip("no clang-tidy (Debian: clang-tidy)")
     headers = f"--header-filter=include/({package}|robosc_?[a-z0-9]*)/.*"
