@@ -204,7 +204,9 @@ class EventRelation:
         """Where one of these edges of a plant can be taken with some data."""
         encoding = self._encoding
         enabled = encoding.diagrams.any_of(encoding.source(edge) & encoding.holds(edge.guard) for edge in edges)
-        return enabled.exists(self._inputs) if any(edge.guard is not None for edge in edges) else enabled
+        if not any(edge.guard is not None for edge in edges):
+            return enabled
+        return and_exists(enabled, encoding.whole(self.event.inputs), self._inputs)
 
     def overlapping(self) -> list[sct.Edge]:
         """The edges that can be taken where one before them in the text can, in the same plant."""
