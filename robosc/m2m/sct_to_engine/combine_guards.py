@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics import Diagnostic, ModelError, Severity
-from robosc.m2m.sct_to_engine.merge_effects import left_open
+from robosc.m2m.sct_to_engine.alternatives import left_open
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
 from robosc.metamodel.places import place

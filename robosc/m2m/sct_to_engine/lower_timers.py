@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.m2m.sct_to_engine.alternatives import Alternatives
 from robosc.m2m.sct_to_engine.build_expressions import build_expression
-from robosc.m2m.sct_to_engine.merge_effects import Alternatives
 from robosc.metamodel import engine, sct
 from robosc.semantics.roles import plant_of
 

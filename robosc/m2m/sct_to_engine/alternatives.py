@@ -1,0 +1,66 @@
+"""Edges of an event that a plant tries one after the other."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.metamodel import engine, sct
+from robosc.semantics.edges import origin
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robosc.m2m.sct_to_engine.collect_events import Edges
+    from robosc.m2m.sct_to_engine.lower_expressions import Lowering
+    from robosc.m2m.sct_to_engine.terms import Term, Terms
+
+
+class Alternatives:
+    """The edges of an event in a plant: one of them is taken, and they are tried one after the other."""
+
+    def __init__(self, plant: sct.Plant, edges: Edges, lower: Lowering) -> None:
+        self._plant = plant
+        self._lower = lower
+        self._untried = {location: len(leaving) for location, leaving in edges.items()}
+        self._denied: dict[sct.Location | None, set[Term]] = {location: set() for location in edges}
+        self._ruled_out: dict[sct.Location | None, list[Term]] = {location: [] for location in edges}
+
+    def one_of(self, chosen: Sequence[sct.Edge]) -> Term:
+        """That one of these is taken where none is that was tried before: what that says already is left out."""
+        terms = self._lower.terms
+        left: dict[sct.Location | None, list[Term]] = {}
+        for edge in chosen:
+            location = origin(edge)
+            self._untried[location] -= 1
+            guard = terms.junction(engine.And, [self._lower(edge.guard), *self._ruled_out[location]])
+            left.setdefault(location, []).append(left_open(guard, self._denied[location], terms))
+        guards = {
+            location: terms.junction(engine.Or, found) if self._untried[location] else terms.true
+            for location, found in left.items()
+        }
+        return self._lower.where(self._plant, guards, list(self._untried))
+
+    def rule_out(self, chosen: Sequence[sct.Edge]) -> None:
+        """Has those that are tried from here on not be taken where one of these may be."""
+        for edge in chosen:
+            self._ruled_out[origin(edge)].append(self._lower(edge.guard, positive=False))
+
+
+def left_open(guard: Term, denied: set[Term], terms: Terms) -> Term:
+    """What a guard asks beyond what is `denied` by those that are tried before it; its own opposite is added."""
+    parts = guard.operands if guard.operator is engine.And else (guard,)
+    left = terms.junction(engine.And, [part for part in parts if part not in denied])
+    denied |= {terms.opposite(part) for part in (left.operands if left.operator is engine.Or else (left,))}
+    return left
+
+
+def exclusive(edges: Edges, lower: Lowering) -> bool:
+    """Whether the guards of a location exclude each other: each says what those before it deny."""
+    for leaving in edges.values():
+        denied: set[Term] = set()
+        for edge in leaving:
+            guard = lower(edge.guard)
+            if not denied.issubset(guard.operands if guard.operator is engine.And else (guard,)):
+                return False
+            left_open(guard, denied, lower.terms)
+    return True
