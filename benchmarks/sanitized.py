@@ -102,9 +102,9 @@ that came while Fast DDS held locks gave 96 reports, which are of rclcpp's handl
 of rclcpp were counted here on 2026-11-25. The other 43 are of actions: `rclcpp_action` calls back while it holds a lock
 of its own; callbacks take the lock of the node's `CallbackGuard`, and may send or cancel a goal, which takes the lock
 of `rclcpp_action`. All of a node is in one callback group, of which an executor runs one callback at a time, so these
-do not wait for each other. One case was
-different: a component that was unloaded in a second thread asked again to cancel a goal that was being cancelled, and
-could do so just as the answer to the first request came. Now nobody asks again before there is an answer.
+do not wait for each other. One case was different: a component that was unloaded in a second thread asked again to
+cancel a goal that was being cancelled, and could do so just as the answer to the first request came. Now nobody asks
+again before there is an answer.
 
 On the code of 2026-11-25 without sanitizers, compiled ROS 2 nodes played all ten scenarios of
 `tests/ros/test_scenarios.py`: each of their 50 tests passed. The ball was not pushed into the goal in a first run, in
@@ -115,15 +115,14 @@ played. Of the 20 tests of `tests/ros/test_ros2_node.py`, 18 passed, and on 2026
 in each container, with the four of `guard_layer` and `patience_controller` in `tests/ros/test_times.py` and
 `tests/ros/test_layer_times.py`.
 
-clang-tidy 14 has read the porter in ROS 1 and ROS 2, its managed twin, `usher_layer` in ROS 1 and `guard_layer` in
-ROS 2, and with them the shared headers that they include, by `tests/ros/.clang-tidy` (2026-11-26). It found a
-comparison of a number with itself, a constant in a header that was not `inline`, virtual destructors that were
-protected, and two copies too many. All of that was mended; no
-behaviour was wrong. The three headers that only layers in ROS 2 include were read one by one, as templates with types
-put in. It found shared pointers that callbacks take by value, as rclcpp wants them, and nothing else. The static
-analyser says nothing of these three: it does not find a fault that is planted in one. It found nothing in the node of
-`usher_layer` in ROS 2, for which it takes 39 seconds of a processor; the other checks have not read that node to its
-end.
+clang-tidy 14 has read the porter in ROS 1 and ROS 2, its managed twin, `usher_layer` in ROS 1 and `guard_layer` in ROS
+2, and with them the shared headers that they include, by `tests/ros/.clang-tidy` (2026-11-26). It found a comparison of
+a number with itself, a constant in a header that was not `inline`, virtual destructors that were protected, and two
+copies too many. All of that was mended; no behaviour was wrong. The three headers that only layers in ROS 2 include
+were read one by one, as templates with types put in. It found shared pointers that callbacks take by value, as rclcpp
+wants them, and nothing else. The static analyser says nothing of these three: it does not find a fault that is planted
+in one. It found nothing in the node of `usher_layer` in ROS 2, for which it takes 39 seconds of a processor; the other
+checks have not read that node to its end.
 
 | | last run | packages | tests passed | failed | reports on generated code | on libraries alone |
 |---|---|---|---|---|---|---|"""
