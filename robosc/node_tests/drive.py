@@ -52,10 +52,6 @@ def _defaults(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[st
     return {parameter.name: parameter.default for parameter in controller_parameters(graph, configuration, "")}
 
 
-class MeetingTimesError(Exception):
-    """A time is up when a tick is due."""
-
-
 class _Lines(EventLog):
     """Keeps the lines of a log."""
 
@@ -119,9 +115,9 @@ class Drive:
             self._lines.kept[before] = f'{line[:-1]},"message":{json_text(sent)}}}'
 
     def _pass_period(self) -> None:
-        """As the player lets it pass: where a time is up on the way, the clock stops there.
+        """Let a period pass as the player does: the clock stops where a timer expires on the way.
 
-        Raises MeetingTimesError where that is when the node has its tick: which of them comes first, ROS does not say.
+        A tick that is due at such a stop comes after the timer, as in every node.
         """
         over = False
         while not over:
@@ -135,8 +131,6 @@ class Drive:
             else:
                 self._now = stop
                 over = self._pace.advance()
-                if not over and up is not None and up < stop * 1000:
-                    raise MeetingTimesError
             self._work()
 
     def _work(self) -> None:

@@ -10,7 +10,7 @@ from robosc.analysis.explain import NamingError, event_named
 from robosc.analysis.wording import called, words
 from robosc.engine import Blocked
 from robosc.metamodel import sct
-from robosc.node_tests.drive import Drive, DrivenController, MeetingTimesError
+from robosc.node_tests.drive import Drive, DrivenController
 from robosc.node_tests.messages import message
 from robosc.node_tests.trace_player import Incoming as Reader
 from robosc.node_tests.trace_player import Line as TraceLine
@@ -139,8 +139,6 @@ class Player(Drive):
                     findings.append(fault)
                     if isinstance(line, (Incoming, Wait)):
                         break
-        except MeetingTimesError:
-            findings.append(operations.line.fault("here a time is up at the moment of a tick: wait a little longer"))
         finally:
             self._controller.close()
         return findings

@@ -114,6 +114,19 @@ def test_a_clock_that_starts_late(tmp_path: Path) -> None:
     }
 
 
+def test_a_tick_comes_after_the_timers_that_have_expired(guard: World) -> None:
+    """A timer that has expired when a tick is due is handled before the tick, and what arrived before the timer."""
+    guard.hear("scan")
+    guard.port.time += 0.51
+    guard.controller.tick()
+    assert [name for _, name in timeouts(guard)] == ["after1"]
+    guard.hear("scan")
+    guard.port.arrived.append(lambda: guard.hear("scan"))
+    guard.port.time += 0.51
+    guard.controller.tick()
+    assert [name for _, name in timeouts(guard)] == ["after1"]
+
+
 def test_what_arrived_before_a_time_was_up_is_handled_before_it(guard: World) -> None:
     """What arrived before a time was up is handled before it."""
     guard.port.arrived.append(lambda: guard.hear("scan"))

@@ -162,7 +162,9 @@ class Controller(EventHandler):
         self._event_loop.call_later(due - self._event_loop.clock(), tick)
 
     def tick(self) -> None:
-        """One period of the control loop is over."""
+        """End a period of the control loop. Timers that have expired by now are handled first."""
+        if self._times.due:
+            self._expire()
         with self._times:
             self._control.tick()
         self._reports.publish_state(self._port.now())

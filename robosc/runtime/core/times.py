@@ -53,6 +53,12 @@ class Times:
             self._up = up
             self._alarm = self._event_loop.call_later(wait / 1000, self._ring)
 
+    @property
+    def due(self) -> bool:
+        """Whether a timer has expired by now, even if the event loop has not called for it yet."""
+        with self:
+            return self._timers.wait == 0
+
     def _ring(self) -> None:
         self._alarm = None
         self._expire()

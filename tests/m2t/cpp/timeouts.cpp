@@ -51,6 +51,18 @@ void it_looks_when_the_next_time_is_up() {
   CHECK(up == -1 && clock.asked.size() == 3);
 }
 
+void it_catches_up_with_what_has_expired() {
+  std::uint32_t left = 1;
+  int up = 2;
+  Clock clock({[](std::uint32_t) {}, [&](std::uint32_t) { return left; }, [&](std::uint32_t) { return up-- > 0; }},
+              false);
+  clock.catch_up();
+  CHECK(up == 2);
+  left = 0;
+  clock.catch_up();
+  CHECK(up == -1);
+}
+
 void a_clock_that_begins_late_starts_all_times() {
   std::vector<std::uint32_t> restarts;
   Clock clock({[&](std::uint32_t now) { restarts.push_back(now); }, [](std::uint32_t) { return kNever; },
@@ -68,6 +80,7 @@ void a_clock_that_begins_late_starts_all_times() {
 
 int main() {
   it_looks_when_the_next_time_is_up();
+  it_catches_up_with_what_has_expired();
   a_clock_that_begins_late_starts_all_times();
   return faults;
 }
