@@ -109,9 +109,10 @@ def read_models(path: str, paths: Paths, report: Report, *, cif: bool = False) -
         raise CallError(f"{path} holds a library: it has no supervisor of its own, a robot that imports it has")
     report.stop_on_errors()
     if isinstance(root, rsc.Robot):
-        return Models(robosc.to_sct(root), robosc.to_rosgraph(root, paths.interfaces), root)
+        types = RosTypes(paths.interfaces)
+        return Models(robosc.to_sct(root), robosc.to_rosgraph(root, paths.interfaces), root, types)
     if isinstance(root, rosgraph.RosGraph):
-        return Models(root.model, root)
+        return Models(root.model, root, ros_types=RosTypes(paths.interfaces))
     assert isinstance(root, sct.SupervisoryControlModel)
     return Models(root)
 

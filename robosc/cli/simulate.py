@@ -77,7 +77,7 @@ def command(
         if script is not None:
             answers = _played(models, script, settings, report)
         else:
-            simulation = Simulation(models.sct, models.rosgraph)
+            simulation = Simulation(models.sct, models.rosgraph, models.ros_types)
     if script is not None:
         for answer in answers:
             put(json.dumps(answer))
@@ -100,8 +100,8 @@ def _played(models: Models, script: str, settings: Settings | None, report: Repo
     report.add([replace(fault, rule=RULE) for fault in faults], {name: decoded.content})
     report.stop_on_errors()
     text = decoded.content
-    simulation = Simulation(models.sct, models.rosgraph)
-    looped = None if settings is None else LoopSimulation(models.sct, models.rosgraph, settings)
+    simulation = Simulation(models.sct, models.rosgraph, models.ros_types)
+    looped = None if settings is None else LoopSimulation(models.sct, models.rosgraph, settings, models.ros_types)
     if looped is None:
         steps, findings = read_script(name, text, simulation.engine.events, LoopSimulation.OWN)
     else:

@@ -106,7 +106,7 @@ def command(
         supervise_models(models, report)
         report.stop_on_errors()
         assert models.rosgraph is not None
-        distribution = RosTypes(paths.interfaces).distributions[0]
+        distribution = RosTypes(paths.interfaces).distribution(version or 2)
         player = Player(models.rosgraph, settings, distribution, expressions)
         live: LiveNode | None = None
         if version is not None:

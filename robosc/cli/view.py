@@ -94,7 +94,7 @@ def command(
             set_parameters(robot.rosgraph, given)
             settings = read_configuration(model, None, report)
             supervise_models(robot, report)
-            simulation = Simulation(robot.sct, robot.rosgraph)
+            simulation = Simulation(robot.sct, robot.rosgraph, robot.ros_types)
             if version is None:
                 record: Moments = _record(simulation, robot.rosgraph, log, node, refuted, seed, report)
             else:

@@ -176,7 +176,7 @@ class Adapter:
         launch = Launch.of(arguments)
         models, findings, texts = self._load(launch.wanted)
         self._output(as_text.render(findings, texts), "stderr")
-        simulation = Simulation(models.sct, models.rosgraph)
+        simulation = Simulation(models.sct, models.rosgraph, models.ros_types)
         steps, told = launch.steps(simulation)
         self._output(told)
         replay = Replay(simulation, steps, launch.seed)

@@ -11,15 +11,20 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from robosc.metamodel import engine, robosc, rosgraph, sct
+    from robosc.ros_types import RosTypes
 
 
 @dataclass(frozen=True)
 class Models:
-    """The models of one robot: what the supervisor sees, the ROS side of it, and the model that both came from."""
+    """The models of one robot: what the supervisor sees, the ROS side of it, and the model that both came from.
+
+    `ros_types` are the definitions of ROS types that they were read with; None: those of the environment.
+    """
 
     sct: sct.SupervisoryControlModel
     rosgraph: rosgraph.RosGraph | None = None
     robosc: robosc.Base | None = None
+    ros_types: RosTypes | None = None
 
     @property
     def engine(self) -> engine.EngineModel:

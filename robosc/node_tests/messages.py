@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
-from robosc.ros_types.wire import Basic
+from robosc.ros_types.wire import Basic, Sequence
 from robosc.semantics.messages import EACH, Read, holds_objects, parts_of, path_of
 from robosc.semantics.messages import reads as all_reads
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from robosc.ros_types import RosDistribution, Section
+    from robosc.ros_types import RosDistribution, Section, WireType
 
 
 #: Elements of an array that a walk makes at most.
@@ -28,7 +28,8 @@ Path = tuple[str, ...]
 #: Basic data; of an object that is handed on nothing is known.
 Leaf = bool | int | float | str | dict[str, None]
 
-_DEFAULTS: dict[type[ex.Type], tuple[str, Leaf]] = {
+#: The widest type of ROS, and the value of a field without a declared default.
+_ZEROS: dict[type[ex.Type], tuple[str, Leaf]] = {
     ex.BooleanType: ("bool", False),
     ex.IntegerType: ("int64", 0),
     ex.DoubleType: ("float64", 0.0),
@@ -47,17 +48,24 @@ class Record(SimpleNamespace):
 
 @dataclass(frozen=True)
 class Field:
-    """A field that the model reads or sets: its type in the model, and in ROS as far as that is known."""
+    """A field that the model reads or sets: its type in the model, and in ROS as far as that is known.
+
+    `initial`: its value in a new message of ROS; None where that is unknown. `length`: of an array of a fixed length.
+    """
 
     type: ex.Type
     wire: str | None
+    initial: Leaf | None = None
+    length: int | None = None
 
     @property
     def default(self) -> Any:
-        """What ROS holds where nobody set it."""
+        """Its value in a new message."""
         if isinstance(self.type, rosgraph.ObjectType):
             return Record(wire_types={})
-        return [] if isinstance(self.type, rosgraph.ArrayType) else _DEFAULTS[type(self.type)][1]
+        if isinstance(self.type, rosgraph.ArrayType):
+            return [self.initial] * (self.length or 0)
+        return _ZEROS[type(self.type)][1] if self.initial is None else self.initial
 
     @property
     def wire_type(self) -> str:
@@ -66,14 +74,52 @@ class Field:
             return "object"
         if isinstance(self.type, rosgraph.ArrayType):
             assert self.type.element is not None
-            return f"{self.wire or _DEFAULTS[type(self.type.element)][0]}[]"
-        return self.wire or _DEFAULTS[type(self.type)][0]
+            return f"{self.wire or _ZEROS[type(self.type.element)][0]}[{'' if self.length is None else self.length}]"
+        return self.wire or _ZEROS[type(self.type)][0]
 
 
-def wire_type(distribution: RosDistribution, interface: rosgraph.Interface, section: Section, path: Path) -> str | None:
-    """The basic ROS type at the end of a path; None where it is unknown."""
-    found = distribution.reached(interface.package, interface.type, section, path)
-    return found[0].name if found and isinstance(found[0], Basic) else None
+@dataclass(frozen=True)
+class Definition:
+    """A section of a ROS type, as one of the two ROS defines it."""
+
+    distribution: RosDistribution
+    interface: rosgraph.Interface
+    section: Section
+
+    def field(self, path: Path, kind: ex.Type) -> Field:
+        """The field at the end of a path, of a type in the model."""
+        found = self._reached(path)
+        length = found.length if isinstance(found, Sequence) else None
+        if isinstance(kind, rosgraph.ArrayType):
+            found = self._reached((*path, "0"))
+        if not isinstance(found, Basic):
+            return Field(kind, None, length=length)
+        is_double = isinstance(kind, ex.DoubleType) and isinstance(found.initial, int)
+        return Field(kind, found.name, float(found.initial) if is_double else found.initial, length)
+
+    def initial(self, fields: Mapping[Path, Field]) -> dict[Path, Leaf]:
+        """The elements of arrays in a new message: of those that have a fixed length or a default."""
+        found: dict[Path, Leaf] = {}
+        for path, field in fields.items():
+            for way in self._ways(path):
+                value = self.field(way, field.type).default
+                if any(step.isdigit() for step in way) and isinstance(value, bool | int | float | str):
+                    found[way] = value
+        return found
+
+    def _ways(self, path: Path, before: Path = ()) -> Iterator[Path]:
+        """The path, with each index that a new message has in place of each index."""
+        if not path:
+            yield before
+        elif not path[0].isdigit():
+            yield from self._ways(path[1:], (*before, path[0]))
+        elif isinstance(array := self._reached(before), Sequence):
+            for index in range(min(array.initial_length, LONGEST)):
+                yield from self._ways(path[1:], (*before, str(index)))
+
+    def _reached(self, path: Path) -> WireType | None:
+        found = self.distribution.reached(self.interface.package, self.interface.type, self.section, path)
+        return None if found is None else found[0]
 
 
 def data_read(reads: Iterable[tuple[Path, Read]], prefix: Path = ()) -> Iterator[tuple[Path, ex.Type]]:
@@ -124,6 +170,18 @@ def message(fields: Mapping[Path, Field], values: Mapping[Path, Leaf]) -> Any:
     if () in element:
         return [_whole(values.get((str(index),)), element[()]) for index in range(length)]
     return [message(element, _below(str(index), values)) for index in range(length)]
+
+
+def leaf_values(fields: Any, path: Path = ()) -> dict[Path, Leaf]:
+    """The values in nested fields by their paths; an element of an array without fields is one."""
+    if isinstance(fields, list):
+        fields = {str(index): inner for index, inner in enumerate(fields)}
+    if not isinstance(fields, dict) or (not fields and path and path[-1].isdigit()):
+        return {path: fields}
+    found: dict[Path, Leaf] = {}
+    for name, inner in fields.items():
+        found |= leaf_values(inner, (*path, name))
+    return found
 
 
 def _whole(value: Leaf | None, field: Field) -> Any:

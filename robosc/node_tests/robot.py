@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import rosgraph
-from robosc.node_tests.messages import Field, Path, fields_sent, message, wire_type
+from robosc.node_tests.messages import Definition, Field, Path, fields_sent, message
 from robosc.ros_types import Section
 from robosc.runtime.core.port import Outcome
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from robosc.metamodel import rosgraph
     from robosc.ros_types import RosDistribution
     from robosc.runtime.core.port import CallHandlers, ComponentStatus, Endpoint, GoalHandlers, Message
 
@@ -49,10 +49,10 @@ class Robot:
 
     def _note(self, interface: rosgraph.Interface, section: Section, sending: rosgraph.Sending) -> None:
         fields = self._fields.setdefault((interface, section), {})
+        definition = Definition(self._distribution, interface, section)
         for field in (field for data in sending.alternatives for field in data.fields):
             for path, kind in fields_sent(field):
-                inside = (*path, "0") if isinstance(kind, rosgraph.ArrayType) else path
-                fields[path] = Field(kind, wire_type(self._distribution, interface, section, inside))
+                fields[path] = definition.field(path, kind)
 
     # What the controller asks
 

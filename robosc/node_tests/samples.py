@@ -13,8 +13,7 @@ from robosc.engine import Engine
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.metamodel.reflection import tree
-from robosc.node_tests.messages import Field, Leaf, Path, data_read, message, wire_type
-from robosc.ros_types import Section
+from robosc.node_tests.messages import Definition, Field, Leaf, Path, data_read, message
 from robosc.ros_types.wire import INTEGER_RANGES
 from robosc.runtime.core.event_log import ReceivedData
 from robosc.runtime.core.node_data import NodeData
@@ -24,10 +23,10 @@ from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from robosc.metamodel import sct
-    from robosc.ros_types import RosDistribution
+    from robosc.ros_types import RosDistribution, Section
 
 #: So many messages are tried in vain before no more are looked for.
 _TRIALS = 500
@@ -68,6 +67,21 @@ class Incoming:
     unreadable: set[str]
     samples: dict[tuple[str, ...], list[dict[Path, Leaf]]] = field(default_factory=dict)
     classes: list[Class] = field(default_factory=list)
+    #: The elements of arrays that a new message has.
+    initial: dict[Path, Leaf] = field(default_factory=dict)
+
+    def message(self, values: Mapping[Path, Leaf]) -> Any:
+        """Data with these values, and the defaults of ROS elsewhere."""
+        return message(self.fields, {**self.initial, **values})
+
+    def defaults(self, values: Mapping[Path, Leaf]) -> dict[Path, Leaf]:
+        """Of the fields that are not among these values, those that are not zero, `false` or empty by default."""
+        found: dict[Path, Leaf] = {}
+        for path, known in self.fields.items():
+            if known.initial:
+                ways = {_along(path, given) for given in values} if any(map(str.isdigit, path)) else {path}
+                found |= {way: known.initial for way in ways if way is not None and way not in values}
+        return found
 
     @property
     def conversions(self) -> list[Read]:
@@ -128,6 +142,17 @@ def _bounds(field: Field) -> tuple[int, int]:
     return INTEGER_RANGES.get(field.wire, INTEGER_RANGES["int64"])
 
 
+def _along(path: Path, other: Path) -> Path | None:
+    """The path with the indices of another one that leads through the same arrays; None where it does not."""
+    last = max(number for number, step in enumerate(path) if step.isdigit())
+    if len(other) <= last or any(
+        ours != theirs and not (ours.isdigit() and theirs.isdigit())
+        for ours, theirs in zip(path[: last + 1], other, strict=False)
+    ):
+        return None
+    return other[: last + 1] + path[last + 1 :]
+
+
 def incoming(
     distribution: RosDistribution,
     interface: rosgraph.Interface,
@@ -135,6 +160,7 @@ def incoming(
     receptions: Sequence[tuple[str, messages.Shown, Collection[ex.Expression], Collection[tuple[Path, messages.Read]]]],
 ) -> Incoming:
     """What comes in as one message: by event its name, what is shown of it, what reads it, what is read of it later."""
+    definition = Definition(distribution, interface, part)
     fields: dict[Path, Field] = {}
     events = []
     unreadable = set()
@@ -142,7 +168,7 @@ def incoming(
         if any(map(reads_elements, values)):
             unreadable.add(event)
         for path, kind in data_read([*messages.reads(values), *later]):
-            fields.setdefault(path, Field(kind, wire_type(distribution, interface, part, path)))
+            fields.setdefault(path, definition.field(path, kind))
         found = [
             Read(path, part.conversion if isinstance(part, messages.Read) else None) for path, part in shown.items()
         ]
@@ -150,7 +176,8 @@ def incoming(
     inner = {(), *(path[:length] for path in fields for length in range(len(path)))} - {
         path for path, field in fields.items() if not isinstance(field.type, rosgraph.ObjectType)
     }
-    return Incoming(events, {path: field for path, field in fields.items() if path not in inner}, unreadable)
+    fields = {path: field for path, field in fields.items() if path not in inner}
+    return Incoming(events, fields, unreadable, initial=definition.initial(fields))
 
 
 def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dict[sct.Event, Incoming]:
@@ -158,7 +185,7 @@ def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dic
     data = NodeData(graph, Engine(graph.model))
     values, kept = Values(graph), list(messages.kept_reads(graph))
     known: dict[sct.Event, Incoming] = {}
-    for interface, part, receptions in _receptions(graph):
+    for interface, part, receptions in messages.received(graph):
         described = []
         for reception in receptions:
             read = [assigned.value for assigned in reception.inputs] + data.values_read(reception.event)
@@ -168,18 +195,6 @@ def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dic
         _find_samples(kind, values, data, receptions)
         known |= dict.fromkeys((reception.event for reception in receptions), kind)
     return known
-
-
-def _receptions(
-    graph: rosgraph.RosGraph,
-) -> Iterator[tuple[rosgraph.Interface, Section, Sequence[rosgraph.Reception]]]:
-    for topic in graph.subscriptions:
-        yield topic.interface, Section.MESSAGE, topic.receptions
-    for service in graph.serviceClients:
-        yield service.interface, Section.RESPONSE, [service.response]
-    for action in graph.actionClients:
-        yield action.interface, Section.FEEDBACK, [action.feedback]
-        yield action.interface, Section.RESULT, [action.response]
 
 
 def _find_samples(kind: Incoming, values: Values, data: NodeData, receptions: Sequence[rosgraph.Reception]) -> None:
@@ -193,7 +208,7 @@ def _find_samples(kind: Incoming, values: Values, data: NodeData, receptions: Se
     in_vain = 0
     while in_vain < _TRIALS:
         tried = _tried(choice, paths, pools, seen)
-        made = message(kind.fields, tried)
+        made = kind.message(tried)
         literals = tuple(_literal(read, made, data) for read in conversions)
         kept = [kind.samples.setdefault(literals, [])]
         events = _events(receptions, made, data)

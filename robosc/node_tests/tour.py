@@ -12,7 +12,6 @@ from robosc.engine import Settings as LoopSettings
 from robosc.engine import once
 from robosc.node_tests.coverage import Coverage, Watcher
 from robosc.node_tests.drive import Drive, DrivenController
-from robosc.node_tests.messages import message
 from robosc.node_tests.plan import Plan
 from robosc.node_tests.steps import WAIT, Place, Step, Stimulus
 from robosc.runtime.core.event_log import nested
@@ -287,14 +286,14 @@ class Tour(Drive):
             range(len(found.samples)), key=lambda sample: (self._used[id(found), sample], self._choice.random())
         )
         self._used[id(found), number] += 1
-        return message(kind.fields, found.samples[number]), nested(found.samples[number])
+        return kind.message(found.samples[number]), nested(found.samples[number])
 
     def _unreadable(self, reception: rosgraph.Reception) -> tuple[Any, dict[str, Any]] | None:
         """Data without the elements that the present state needs; None where it needs none, or had that before."""
         kind = self.incoming[reception.event]
         if event_name(reception.event) not in kind.unreadable or self._used["unreadable", reception]:
             return None
-        data = message(kind.fields, {})
+        data = kind.message({})
         if self._controller.reads([reception], data):
             return None
         self._used["unreadable", reception] += 1

@@ -53,7 +53,7 @@ def trace_test(
     ROS types are looked up as `check` does; of a type that is unknown, numbers are tried that all of its kind hold.
     The same call gives the same test.
     """
-    distribution = next(known for known in RosTypes(interface_paths).distributions if known.name == f"ROS {version}")
+    distribution = RosTypes(interface_paths).distribution(version)
     tour = tour_of(graph, configuration, distribution)
     started = tour.parameters
     files = player_files(graph, configuration, started, tour.incoming)

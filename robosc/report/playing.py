@@ -64,7 +64,7 @@ def play(models: Models, traces: Mapping[str, str]) -> Shown:
 
 
 def _play(models: Models, path: str, text: str, shown: Shown) -> None:
-    simulation = Simulation(models.sct, models.rosgraph)
+    simulation = Simulation(models.sct, models.rosgraph, models.ros_types)
     inside: Engine = simulation.engine
     transitions = Transitions(inside)
     guards = {event.name: event.guard for event in inside.executed.events}

@@ -72,7 +72,7 @@ class RosDistribution:
         found: WireType | None = Nested(package, name)
         for step in path:
             if step.isdigit():
-                found = found.element if isinstance(found, Sequence) else None
+                found = found.at(int(step)) if isinstance(found, Sequence) else None
             elif isinstance(found, Nested):
                 try:
                     fields = self.fields(found.package, found.name, section)
@@ -120,6 +120,10 @@ class RosTypes:
             RosDistribution(ros, [*(Workspace(folder, ros) for folder in given), *shares, Share(_SHIPPED)])
             for ros, shares in installed.items()
         ]
+
+    def distribution(self, ros: int) -> RosDistribution:
+        """All types as ROS 1 or ROS 2 has them."""
+        return next(known for known in self.distributions if known.name == f"ROS {ros}")
 
     def field_of_basic(self, package: str, name: str, section: Section) -> str:
         """The field in which a basic value travels: the only one of the section in one of the two ROS, else `data`."""

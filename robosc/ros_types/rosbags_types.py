@@ -6,12 +6,27 @@ Imported only where it is needed: it takes a quarter of a second to load.
 from __future__ import annotations
 
 import re
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
+from rosbags.typesys.base import make_typesdict
+from rosbags.typesys.msg import MSGParser
 
-from robosc.ros_types.wire import Basic, DefinitionError, Fields, Nested, Section, Sequence, WireType
+from robosc.ros_types.wire import (
+    PRIMITIVES,
+    Basic,
+    DefinitionError,
+    Fields,
+    Nested,
+    Section,
+    Sequence,
+    Value,
+    WireType,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 _SEPARATOR = re.compile(r"^---[ \t]*$", re.MULTILINE)
 #: ROS 2's generators fill types that have no field with one; nobody means it.
@@ -22,6 +37,11 @@ _STORES = {"ROS 1": Stores.ROS1_NOETIC, "ROS 2": Stores.ROS2_JAZZY}
 _TIMES: dict[str, Fields] = {
     "builtin_interfaces/msg/Time": {"sec": Basic("uint32"), "nsec": Basic("uint32")},
     "builtin_interfaces/msg/Duration": {"sec": Basic("int32"), "nsec": Basic("int32")},
+}
+#: The defaults in ROS 2's definitions of shipped types, which `rosbags` drops; ROS 1 has none.
+_DEFAULTS: dict[str, dict[str, Value]] = {
+    "geometry_msgs/msg/Quaternion": {"w": 1.0},
+    "sensor_msgs/msg/NavSatStatus": {"status": -2},
 }
 
 
@@ -41,7 +61,9 @@ def sections(text: str, package: str, count: int) -> list[Fields]:
 def _section(text: str, package: str) -> Fields:
     name = f"{package}/msg/Section"
     try:
-        return _fields(get_types_from_msg(f"{text}\n", name)[name][1])
+        (message,) = MSGParser(f"MSG: {name}\n{text}\n").specification()
+        defaults = [field.value for field in message.fields]
+        return _fields(make_typesdict([message])[name][1], defaults)
     except TypesysError:
         for line in text.splitlines():
             try:
@@ -51,22 +73,49 @@ def _section(text: str, package: str) -> Fields:
         raise DefinitionError("it is no list of fields") from None
 
 
-def _fields(described: list[tuple[str, Any]]) -> Fields:
-    return {name: _wire_type(description) for name, description in described if name != _PLACEHOLDER}
+def _fields(described: list[tuple[str, Any]], defaults: Iterable[Any]) -> Fields:
+    return {
+        name: _wire_type(description, default)
+        for (name, description), default in zip(described, defaults, strict=True)
+        if name != _PLACEHOLDER
+    }
 
 
-def _wire_type(description: tuple[Nodetype, Any]) -> WireType:
+def _wire_type(description: tuple[Nodetype, Any], default: Any = None) -> WireType:
     kind, details = description
     match kind:
         case Nodetype.BASE:
-            return Basic(details[0])
+            return Basic(details[0], _value(details[0], default))
         case Nodetype.NAME:
             package, *_, name = details.split("/")
             # The parser takes it for a type of the package at hand.
             return Basic(name) if name == "wstring" else Nested(package, name)
         case Nodetype.ARRAY:
-            return Sequence(_wire_type(details[0]), details[1])
-    return Sequence(_wire_type(details[0]))
+            length = details[1]
+        case _:
+            length = None
+    element = _wire_type(details[0])
+    if not isinstance(default, list) or not isinstance(element, Basic):
+        return Sequence(element, length)
+    values = [_value(element.name, value) for value in default]
+    return Sequence(element, length, tuple(element.initial if value is None else value for value in values))
+
+
+def _value(kind: str, default: Any) -> Value | None:
+    """A default as a value of its type; None where it declares none, or none that ROS takes."""
+    try:
+        match PRIMITIVES[kind].name, default:
+            case "string", str():
+                return re.sub(r"\\(['\"])", r"\1", default.partition("#")[0].strip())
+            case "boolean", bool() | 0 | 1:
+                return bool(default)
+            case "integer", int() if not isinstance(default, bool):
+                return default
+            case "double", int() | float():
+                return float(default)
+    except KeyError:
+        pass
+    return None
 
 
 class ShippedTypes:
@@ -74,6 +123,7 @@ class ShippedTypes:
 
     def __init__(self, ros: str) -> None:
         self._types: dict[str, Fields] = dict(_TIMES) if ros == "ROS 1" else {}
+        self._defaults = _DEFAULTS if ros == "ROS 2" else {}
         self._described = get_typestore(_STORES[ros]).fielddefs
 
     def fields(self, package: str, name: str, section: Section) -> Fields | None:
@@ -82,7 +132,8 @@ class ShippedTypes:
         if section is not Section.MESSAGE or key not in self._described:
             return None
         if key not in self._types:
-            self._types[key] = _fields(self._described[key][1])
+            described, defaults = self._described[key][1], self._defaults.get(key, {})
+            self._types[key] = _fields(described, [defaults.get(field) for field, _ in described])
         return self._types[key]
 
     def names(self, package: str, kind: str) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import NamedTuple, TypeAlias
 
@@ -58,11 +58,26 @@ INTEGER_RANGES = {name: primitive.range for name, primitive in PRIMITIVES.items(
 FOLDERS = {"message": "msg", "service": "srv", "action": "action"}
 
 
+#: Basic data of ROS.
+Value: TypeAlias = bool | int | float | str
+
+#: The value of a field without a declared default, by the type of RoboSC that has its values.
+_ZEROS: Mapping[str, Value] = {"boolean": False, "integer": 0, "double": 0.0, "string": ""}
+
+
 @dataclass(frozen=True)
 class Basic:
-    """A type without fields: `bool`, `float64`, `string`."""
+    """A type without fields: `bool`, `float64`, `string`. `default`: the one that the definition declares."""
 
     name: str
+    default: Value | None = field(default=None, compare=False)
+
+    @property
+    def initial(self) -> Value:
+        """The value in a new message."""
+        primitive = PRIMITIVES.get(self.name)
+        zero = _ZEROS["string" if primitive is None else primitive.name]
+        return zero if self.default is None else self.default
 
     def __str__(self) -> str:
         return self.name
@@ -70,10 +85,22 @@ class Basic:
 
 @dataclass(frozen=True)
 class Sequence:
-    """Several values of one type; `length` is None where it varies."""
+    """Several values of one type; `length` is None where it varies. `default`: that of the definition."""
 
     element: WireType
     length: int | None = None
+    default: tuple[Value, ...] | None = field(default=None, compare=False)
+
+    @property
+    def initial_length(self) -> int:
+        """The number of elements in a new message."""
+        return len(self.default) if self.default is not None else self.length or 0
+
+    def at(self, index: int) -> WireType:
+        """The type of an element, with its default."""
+        if self.default is None or index >= len(self.default) or not isinstance(self.element, Basic):
+            return self.element
+        return replace(self.element, default=self.default[index])
 
     def __str__(self) -> str:
         return f"{self.element}[{'' if self.length is None else self.length}]"

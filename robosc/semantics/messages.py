@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, TypeAlias
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.metamodel.reflection import tree
+from robosc.ros_types import Section
 from robosc.semantics.evaluation import Value, saturate
 from robosc.semantics.operators import operator_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
 #: Names of fields and positions in arrays, from the message inwards.
 Path: TypeAlias = tuple[str, ...]
@@ -48,12 +49,18 @@ Shown: TypeAlias = "dict[Path, Read | Shown]"
 
 def receptions(graph: rosgraph.RosGraph) -> list[rosgraph.Reception]:
     """All data that comes in."""
-    clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = [*graph.serviceClients, *graph.actionClients]
-    return [
-        *(reception for topic in graph.subscriptions for reception in topic.receptions),
-        *(client.response for client in clients),
-        *(action.feedback for action in graph.actionClients),
-    ]
+    return [reception for _, _, several in received(graph) for reception in several]
+
+
+def received(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Interface, Section, Sequence[rosgraph.Reception]]]:
+    """Each kind of ROS message that comes in: its type, the section of that, and what is received with it."""
+    for topic in graph.subscriptions:
+        yield topic.interface, Section.MESSAGE, topic.receptions
+    for service in graph.serviceClients:
+        yield service.interface, Section.RESPONSE, [service.response]
+    for action in graph.actionClients:
+        yield action.interface, Section.FEEDBACK, [action.feedback]
+        yield action.interface, Section.RESULT, [action.response]
 
 
 def reads_elements(expression: ex.Expression) -> bool:

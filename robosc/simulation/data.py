@@ -5,16 +5,19 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.engine.state import Domain
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.reflection import tree
+from robosc.ros_types import RosTypes, WireType
+from robosc.ros_types import wire as wire_types
+from robosc.ros_types.wire import Basic
 from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.node_data import NodeData
 from robosc.semantics.evaluation import as_double
-from robosc.semantics.messages import is_structured, receptions
+from robosc.semantics.messages import is_structured, received, receptions
 from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name
 from robosc.semantics.walks import operands
@@ -30,7 +33,7 @@ if TYPE_CHECKING:
 _ABSENT: Any = object()
 #: The index of an element has less.
 _DIGITS = 10
-#: What each basic type is called, what JSON has for it, and what ROS leaves where nothing is said.
+#: What each basic type is called, what JSON has for it, and its value in ROS without a default.
 _BASIC: Mapping[type[ex.Type], tuple[str, Any, Value | float]] = {
     ex.BooleanType: ("a boolean", bool, False),
     ex.IntegerType: ("an integer", int, 0),
@@ -74,17 +77,19 @@ class EventData:
     """Reads the data of events: `{"value": ...}`, in the shape of the event log.
 
     Basic data is the value itself, an object has fields, an array is a list or an object from index to element; in the
-    place of data that an enumeration is made of there may be the name of a literal. What is left out is as ROS leaves
-    it: 0, false, the literal of `otherwise`. What the node computes of data may stand there by its text, as in
-     `{"where": {"value.range < 0.5": true}}`. Without a ROS graph data goes to inputs by their names.
+    place of data that an enumeration is made of there may be the name of a literal. A field that is left out has its
+    default in ROS 2; an enumeration the literal of its default rule. What the node computes of data may stand there by
+    its text, as in `{"where": {"value.range < 0.5": true}}`. Without a ROS graph data goes to inputs by their names.
     """
 
-    def __init__(self, engine: Engine, graph: rosgraph.RosGraph | None) -> None:
+    def __init__(self, engine: Engine, graph: rosgraph.RosGraph | None, types: RosTypes | None = None) -> None:
+        """`types`: the definitions of ROS types; None: those of the environment."""
         self._events = {event_name(event): event for plant in engine.model.plants for event in plant.events}
+        self._defaults = None if graph is None else _Defaults(graph, types)
         self._node = None if graph is None else _JsonData(graph, engine)
-        received = [] if graph is None else receptions(graph)
-        self._assignments = {given.input: given for reception in received for given in reception.inputs}
-        self._receptions = {event_name(reception.event): reception for reception in received}
+        known = [] if graph is None else receptions(graph)
+        self._assignments = {given.input: given for reception in known for given in reception.inputs}
+        self._receptions = {event_name(reception.event): reception for reception in known}
         clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = []
         clients += [] if graph is None else [*graph.serviceClients, *graph.actionClients]
         self._errors = {event_name(client.response.event): event_name(client.error) for client in clients}
@@ -103,7 +108,7 @@ class EventData:
         for given in declared.inputs:
             domain = Domain(given.type)
             try:
-                told = computed[given.text] if given.text in computed else self._value(given, value)
+                told = computed[given.text] if given.text in computed else self._value(event, given, value)
                 found[given.name] = domain.shown(domain.internal(told))
             except ValueError as error:
                 raise DataError(f"{_label(given)}: {error}") from None
@@ -117,7 +122,7 @@ class EventData:
         for reaction in self._node.reactions(reception.event):
             guard, value = reaction.guard, data["value"]
             fault = None if guard is None else past_end([guard], value)
-            if fault is None and (guard is None or self._node.value(guard, (whole(value, guard), "value"))):
+            if fault is None and (guard is None or self._node.value(guard, self._received(event, whole(value, guard)))):
                 fault = past_end([*reaction.needs, *(assigned.value for assigned in reaction.assignments)], value)
             if fault is not None:
                 return Unreadable(str(fault), self._errors.get(event))
@@ -142,44 +147,103 @@ class EventData:
         assignment = self._assignments.get(given)
         return tuple(_words(given)) if assignment is None else tuple(map(_field, _access(assignment).steps))
 
-    def _value(self, given: sct.Input, data: Any) -> Value:
+    def _received(self, event: str, data: Any, path: tuple[str, ...] = ()) -> _Given:
+        return _Given(data, path, self._defaults, event)
+
+    def _value(self, event: str, given: sct.Input, data: Any) -> Value:
         assignment = self._assignments.get(given)
         if given.text is not None:
-            if assignment is None or self._node is None or data is _ABSENT:
+            if assignment is None or self._node is None:
                 return _default(given.type)
-            return self._node.input(assignment, (whole(data, assignment.value), "value"))  # type: ignore[no-any-return]
+            received = self._received(event, data if data is _ABSENT else whole(data, assignment.value))
+            return self._node.input(assignment, received)  # type: ignore[no-any-return]
         found = _fields(data, _words(given)) if assignment is None else _reached(data, _access(assignment))
         source = None if assignment is None else assignment.value
         if self._node is None or not isinstance(source, rosgraph.ConversionCall):
-            return _default(given.type) if found is _ABSENT else found
+            if found is not _ABSENT:
+                return found  # type: ignore[no-any-return]
+            default = 0 if assignment is None else self._received(event, found, self._path(given)).default
+            return _default(given.type, default)
         conversion = source.conversion
         if found is _ABSENT:
             return str(conversion.default.name)
         if isinstance(found, str) and found in {literal.name for literal in conversion.enumeration.literals}:
             return found
         try:
-            return str(self._node.literal(conversion, found, _label(given)))
+            return str(self._node.literal(conversion, self._received(event, found, self._path(given))))
         except DataError as error:
             literals = ", ".join(literal.name for literal in conversion.enumeration.literals)
             raise DataError(f"expected one of {literals}, or the data to tell it from: {error}") from None
 
 
-class _JsonData(NodeData):
-    """Reads JSON in the place of data from ROS: a pair of the JSON and its place in the script's data, for messages."""
+class _Defaults:
+    """The values of fields in new messages, by event and path."""
 
-    def literal(self, conversion: rosgraph.Conversion, data: Any, place: str) -> str:
+    def __init__(self, graph: rosgraph.RosGraph, types: RosTypes | None) -> None:
+        self._types = types
+        self._sections = {
+            event_name(reception.event): (interface.package, interface.type, section)
+            for interface, section, several in received(graph)
+            for reception in several
+        }
+
+    def wire_type(self, event: str, path: tuple[str, ...]) -> WireType | None:
+        """The type of a field, as ROS 2 or else ROS 1 defines it; None where it is unknown."""
+        self._types = self._types or RosTypes()
+        found = (known.reached(*self._sections[event], path) for known in self._types.distributions)
+        return next((reached[0] for reached in found if reached is not None), None)
+
+
+class _Given(NamedTuple):
+    """JSON in the place of data from ROS, and where in the data of which event that is."""
+
+    value: Any
+    path: tuple[str, ...]
+    defaults: _Defaults | None
+    event: str
+
+    def below(self, value: Any, step: str) -> _Given:
+        """A field or an element."""
+        return self._replace(value=value, path=(*self.path, step))
+
+    @property
+    def place(self) -> str:
+        """Where it is in the script's data."""
+        return "value" + "".join(f"[{step}]" if step.isdigit() else f".{step}" for step in self.path)
+
+    @property
+    def default(self) -> wire_types.Value | None:
+        """Its value where it is left out; None where that is unknown."""
+        wire = self._wire
+        return wire.initial if isinstance(wire, Basic) else None
+
+    @property
+    def length(self) -> int:
+        """The number of elements of an array that is left out."""
+        wire = self._wire
+        return wire.initial_length if isinstance(wire, wire_types.Sequence) else 0
+
+    @property
+    def _wire(self) -> WireType | None:
+        return None if self.defaults is None else self.defaults.wire_type(self.event, self.path)
+
+
+class _JsonData(NodeData):
+    """Reads JSON in the place of data from ROS."""
+
+    def literal(self, conversion: rosgraph.Conversion, data: _Given) -> str:
         """The name of the literal that a conversion makes of data. Raises DataError, also for what is not looked at."""
         for _, part in [read for rule in conversion.rules for read in tree(rule.condition)]:
             if isinstance(part, rosgraph.WireAccess) and part.quantifier is None and not operands(part):
                 with suppress(UnreadableError):
-                    self.leaf(self._reach(part, (data, place)), part.type)
-        return str(self.convert(conversion, (data, place)).name)
+                    self.leaf(self._reach(part, data), part.type)
+        return str(self.convert(conversion, data).name)
 
-    def _field(self, owner: tuple[Any, str], name: str) -> tuple[Any, str]:
-        value, place = owner
+    def _field(self, owner: _Given, name: str) -> _Given:
+        value = owner.value
         if value is not _ABSENT and not isinstance(value, dict):
-            raise DataError(f"{place} is {json.dumps(value)}, expected an object with {name}")
-        return _ABSENT if value is _ABSENT else value.get(name, _ABSENT), f"{place}.{name}"
+            raise DataError(f"{owner.place} is {json.dumps(value)}, expected an object with {name}")
+        return owner.below(_ABSENT if value is _ABSENT else value.get(name, _ABSENT), name)
 
     def _element(self, array: Any, index: int) -> Any:
         return super()._element(_list(array), index)
@@ -190,50 +254,54 @@ class _JsonData(NodeData):
     def leaf(self, value: Any, kind: ex.Type | None) -> Any:
         if isinstance(kind, rosgraph.ArrayType):
             return super().leaf(_list(value), kind)
-        if kind is None or not isinstance(value, tuple):
+        if kind is None or not isinstance(value, _Given):
             return value  # an object, or an element of an array that was read as a whole
-        return super().leaf(_basic(value[0], kind, value[1]), kind)
+        return super().leaf(_basic(value, kind), kind)
 
 
 class _Array(Sequence[Any]):
     """The elements of an array that stands in JSON, with their places; the array may be long and have few."""
 
-    def __init__(self, data: Any, place: str) -> None:
-        self._elements = _elements(data, place)
-        self._place = place
+    def __init__(self, array: _Given) -> None:
+        self._array = array
+        self._elements = _elements(array)
+        self._length = max(max(self._elements, default=-1) + 1, array.length)
 
     def __len__(self) -> int:
-        return max(self._elements, default=-1) + 1
+        return self._length
 
     def __getitem__(self, index: Any) -> Any:
         if isinstance(index, slice):
             return [self[place] for place in range(*index.indices(len(self)))]
         if index >= len(self):
             raise IndexError
-        return self._elements.get(index, _ABSENT), f"{self._place}[{index}]"
+        return self._array.below(self._elements.get(index, _ABSENT), str(index))
 
 
-def _list(array: tuple[Any, str] | list[tuple[Any, str]]) -> Sequence[tuple[Any, str]]:
+def _list(array: _Given | list[_Given]) -> Sequence[_Given]:
     """The elements of an array that stands in JSON; those of a slice as they are."""
-    return array if isinstance(array, list) else _Array(*array)
+    return _Array(array) if isinstance(array, _Given) else array
 
 
-def _elements(data: Any, place: str) -> dict[int, Any]:
+def _elements(array: _Given) -> dict[int, Any]:
+    data = array.value
     if data is _ABSENT:
         return {}
     if isinstance(data, list):
         return dict(enumerate(data))
     if isinstance(data, dict) and all(index.isdecimal() and len(index) < _DIGITS for index in data):
         return {int(index): element for index, element in data.items()}
-    raise DataError(f"{place} is {json.dumps(data)}, expected a list, or an object from index to element")
+    raise DataError(f"{array.place} is {json.dumps(data)}, expected a list, or an object from index to element")
 
 
-def _basic(data: Any, kind: ex.Type | None, place: str) -> Any:
-    name, plain, default = next((basic for known, basic in _BASIC.items() if isinstance(kind, known)), ("", object, 0))
+def _basic(given: _Given, kind: ex.Type | None) -> Any:
+    name, plain, zero = next((basic for known, basic in _BASIC.items() if isinstance(kind, known)), ("", object, 0))
+    data = given.value
     if data is _ABSENT:
-        return default
+        default = given.default
+        return zero if default is None else default
     if not isinstance(data, plain) or (isinstance(data, bool) and name in {"an integer", "a number"}):
-        raise DataError(f"{place} is {json.dumps(data)}, expected {name}")
+        raise DataError(f"{given.place} is {json.dumps(data)}, expected {name}")
     return as_double(data) if isinstance(kind, ex.DoubleType) else data
 
 
@@ -302,6 +370,6 @@ def _label(given: sct.Input) -> str:
     return ".".join(["value", *_words(given)])
 
 
-def _default(kind: ex.Type) -> Value:
+def _default(kind: ex.Type, value: Any = 0) -> Value:
     domain = Domain(kind)
-    return domain.shown(domain.clamp(0))
+    return domain.shown(domain.clamp(0 if value is None else int(value)))

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from robosc.engine.state import State, Value
     from robosc.metamodel import rosgraph
+    from robosc.ros_types import RosTypes
 
 #: What a script may say beside events: the period is over; a message from the robot with several events begins, ends;
 #: so many seconds go by.
@@ -62,9 +63,15 @@ class Happened:
 class Simulation:
     """The supervised automaton of a model: only what is asked for happens. `trace` is what has happened."""
 
-    def __init__(self, model: sct.SupervisoryControlModel, graph: rosgraph.RosGraph | None = None) -> None:
+    def __init__(
+        self,
+        model: sct.SupervisoryControlModel,
+        graph: rosgraph.RosGraph | None = None,
+        types: RosTypes | None = None,
+    ) -> None:
+        """`types`: the definitions of ROS types, for fields that data leaves out; None: those of the environment."""
         self.engine = Engine(model)
-        self.data = EventData(self.engine, graph)
+        self.data = EventData(self.engine, graph, types)
         self.trace: list[Happened] = []
         self._before: list[State] = []
         self._inputs = {event_name(event): list(event.inputs) for plant in model.plants for event in plant.events}
@@ -148,11 +155,13 @@ class LoopSimulation:
         model: sct.SupervisoryControlModel,
         graph: rosgraph.RosGraph | None = None,
         settings: Settings | None = None,
+        types: RosTypes | None = None,
     ) -> None:
+        """`types`: the definitions of ROS types, for fields that data leaves out; None: those of the environment."""
         self._happened: list[str] = []
         hooks = Hooks(after=self._happened.append, livelock=lambda: self._happened.append("livelock"))
         self._loop = ControlLoop(model, settings, hooks)
-        self.data = EventData(self._loop.engine, graph)
+        self.data = EventData(self._loop.engine, graph, types)
         self._in_batch = False
 
     @property

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.configuration.parameters import controller_parameters
 from robosc.node_tests.drive import parameters
-from robosc.node_tests.messages import message
+from robosc.node_tests.messages import leaf_values
 from robosc.node_tests.robot import Robot, RunningGoal
 from robosc.node_tests.samples import all_incoming
-from robosc.node_tests.trace_player import START, Port, cancelled, leaves
+from robosc.node_tests.trace_player import START, Port, cancelled
 from robosc.ros_types import RosTypes
 from robosc.runtime.core.controller import Controller
 from robosc.runtime.core.event_log import EventLog
@@ -27,13 +27,6 @@ if TYPE_CHECKING:
     from robosc.runtime.core.port import CallHandlers, GoalHandlers
 
 _OUTCOMES = {"succeeded": Outcome.SUCCEEDED, "aborted": Outcome.ABORTED, "canceled": Outcome.CANCELLED}
-
-
-def by_index(value: Any) -> Any:
-    """Fields in which arrays are objects from index to element."""
-    if isinstance(value, list):
-        value = {str(index): inner for index, inner in enumerate(value)}
-    return {name: by_index(inner) for name, inner in value.items()} if isinstance(value, dict) else value
 
 
 class _Goal(RunningGoal):
@@ -134,7 +127,7 @@ class InProcessNode(Port):
         return next(goal for goal in self._robot.goals.items() if goal[0].identifier == action)
 
     def _made(self, event: sct.Event, fields: dict[str, Any]) -> Any:
-        return message(self._incoming[event].fields, dict(leaves(by_index(fields))) if fields else {})
+        return self._incoming[event].message(leaf_values(fields))
 
     def _work(self) -> None:
         while self._event_loop.run_pending() == 0:

@@ -330,7 +330,7 @@ def test_samples_mean_what_they_say(case: Case) -> None:
     for kind in {id(kind): kind for kind in known.values()}.values():
         for literals, found in kind.samples.items():
             for values in found:
-                made = message(kind.fields, values)
+                made = kind.message(values)
                 for read, literal in zip(kind.conversions, literals, strict=True):
                     argument = made
                     for step in read.path:

@@ -125,3 +125,44 @@ def test_a_compiled_node_plays_scenarios(workspace: Workspace, request: pytest.F
     nodes = {1: workspace.folder / f"devel/lib/{package}/{package}", 2: workspace.node(package)[0]}
     status, said = played(workspace, runs.robosc, tmp_path, STOPS, "--node", str(nodes[version]))
     assert (status, "1 scenario, 0 failed" in said) == (0, True), said
+
+
+ROUTE = """\
+robot Route {
+  component Mission {
+    outgoing message route with identifier: "/route", type: nav_msgs/Path
+    outgoing message fix with identifier: "/fix", type: sensor_msgs/NavSatFix
+    incoming message go with identifier: "/goal", type: geometry_msgs/PoseStamped
+    incoming message lost with identifier: "/lost", type: none
+
+    behaviour {
+      variable kept: array(geometry_msgs/PoseStamped)
+
+      initial marked state waiting {
+        on response from route do kept := value.poses goto driving
+        on response from fix if value.position_covariance[8] = 0.0 and value.status.status < 0 goto blind
+      }
+      marked state driving { on request to go }
+      marked state blind { on request to lost }
+    }
+  }
+
+  provide go with Mission.kept[0]
+}
+"""
+LEFT_OUT = """\
+scenario "a pose without an orientation"
+  route with message {"poses": [{"pose": {"position": {"x": 1.0}}}, {}]}
+  expect go sent with {"pose": {"position": {"x": 1.0}, "orientation": {"w": 1.0}}}
+scenario "a fix without a status"
+  fix with message {"latitude": 51.4}
+  expect lost sent
+"""
+
+
+def test_data_that_is_left_out(run_ros2: Runner, tmp_path: Path) -> None:
+    """A field that a scenario leaves out has the default of its definition, here and in the node."""
+    model = tmp_path / "route.rscd"
+    model.write_text(ROUTE, encoding="utf-8")
+    status, said = played(run_ros2, run_ros2.ros.python, tmp_path, LEFT_OUT, model=model)
+    assert status == 0, said

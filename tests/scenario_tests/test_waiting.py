@@ -52,7 +52,7 @@ MEETING = [(100, 99, 40_000), (100, 199, 90_000), (10, 9, 3_000), (1, 1, 600), (
 
 def some(count: int) -> list[tuple[int, int, int]]:
     """Other periods, timers and waits."""
-    choice = random.Random(5)
+    choice = random.Random(5)  # noqa: S311  # the same each time
     periods = [choice.randrange(1, 400) for _ in range(count)]
     lengths = [choice.randrange(1, 8 * period + 1) for period in periods]
     return [(*both, both[1] * choice.randrange(1, 500)) for both in zip(periods, lengths, strict=True)]
