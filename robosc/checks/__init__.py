@@ -12,6 +12,7 @@ from robosc.checks import rules as _rules  # noqa: F401 - registers them
 from robosc.checks.libraries import reachable, remembering
 from robosc.checks.rule import RULES
 from robosc.diagnostics import Diagnostic, in_order
+from robosc.interruption import checkpoint
 from robosc.metamodel.places import place
 from robosc.ros_types import RosTypes
 
@@ -46,6 +47,7 @@ def check(
 
 def _findings(base: rsc.Base, skipped: Sequence[Diagnostic], interfaces: RosTypes) -> Iterator[Diagnostic]:
     for rule in RULES.values():
+        checkpoint()
         for finding in rule.check(base, interfaces):
             if not finding.can_be_false(skipped):
                 file, span = place(finding.element)

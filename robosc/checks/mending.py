@@ -146,8 +146,10 @@ class Unassigned(NamedTuple):
         if around is None or first is None or last is None:
             return ()
         content = around[0]
-        found = re.search(r"\s*\bdo\s*\Z", content[around[1] : first[1]])
-        return () if found is None else (_edit(content, around[1] + found.start(), last[2], self.text),)
+        before = content[around[1] : first[1]].rstrip()
+        if re.search(r"\bdo\Z", before) is None:
+            return ()
+        return (_edit(content, around[1] + len(before[:-2].rstrip()), last[2], self.text),)
 
 
 class Renaming(NamedTuple):

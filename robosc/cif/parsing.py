@@ -23,7 +23,7 @@ _MOST = 20
 _BLANK = re.compile(r"//[^\n]*|/\*.*?\*/|\s+", re.DOTALL)
 _TOKEN = re.compile(r'"(?:[^\\"\n]|\\.)*"|[$]?\w+(?:\.\w+)*|<=>|:=|=>|<=|>=|!=|\.\.|.', re.DOTALL)
 #: Where a statement ends, or the head of one with a body.
-_END = re.compile(r'"(?:[^\\"\n]|\\.)*"|//[^\n]*|/\*.*?\*/|;|:(?!=)|\bend\b', re.DOTALL)
+_END = re.compile(r'"(?:[^\\"\n]|\\.)*+"?|//[^\n]*|/\*.*?(?:\*/|\Z)|;|:(?!=)|\bend\b', re.DOTALL)
 _RULES = {
     "Identifier": "a name",
     "NameToken": "a name",
@@ -37,7 +37,8 @@ _RULES = {
 DEEPEST = 50
 #: Names are matched whole, so that a part of one is no keyword.
 _NESTING = re.compile(
-    r'"(?:[^\\"\n]|\\.)*"|//[^\n]*|/\*.*?\*/|@@?[\w:]+|\.\.|[.^]?\$?\w+(?:\.\$?\w+)*|[][(){};]|:(?!=)', re.DOTALL
+    r'"(?:[^\\"\n]|\\.)*+"?|//[^\n]*|/\*.*?(?:\*/|\Z)|@@?[\w:]+|\.\.|[.^]?\$?\w+(?:\.\$?\w+)*|[][(){};]|:(?!=)',
+    re.DOTALL,
 )
 _CLOSINGS = {")": "(", "]": "[", "}": "{"}
 _BRACKETS = frozenset(_CLOSINGS.values())

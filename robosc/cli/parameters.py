@@ -9,6 +9,7 @@ import click
 
 from robosc.cli import CallError
 from robosc.configuration.parameters import model_parameters
+from robosc.files.json_reading import JsonError, json_value
 from robosc.language.explaining import did_you_mean
 from robosc.runtime.core.settings import check
 from robosc.semantics.durations import set_milliseconds
@@ -35,12 +36,12 @@ def set_parameters(graph: rosgraph.RosGraph | None, given: Sequence[str]) -> Non
             raise CallError(f"--param {text}: {found}; {repair.hint}" if repair else f"--param {text}: {found}")
         place, parameter = known[name]
         try:
-            read = value if isinstance(parameter.default, str) else json.loads(value)
+            read = value if isinstance(parameter.default, str) else json_value(value)
             fitting = check(parameter, read)
             place.initial = literal(fitting)
             for duration in place.durations:
                 duration.milliseconds = set_milliseconds(float(fitting), duration.unit)
-        except json.JSONDecodeError:
+        except JsonError:
             raise CallError(
                 f"--param {text}: write {name}=VALUE, such as {name}={json.dumps(parameter.default)}"
             ) from None

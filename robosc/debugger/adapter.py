@@ -99,7 +99,10 @@ class Adapter:
         if message.get("type") == "response":
             return  # nothing is ever asked of the client
         if message.get("type") != "request" or not isinstance(command, str) or not _is_integer(sequence):
-            self.malformed("a message is no request with `seq` and `command`")
+            request = None
+            if message.get("type") == "request" and _is_integer(sequence):
+                request = sequence, command if isinstance(command, str) else ""
+            self.malformed("a message is no request with `seq` and `command`", request)
             return
         arguments = message.get("arguments")
         answer = {"request_seq": sequence, "command": command}
@@ -119,9 +122,12 @@ class Adapter:
         if after is not None:
             after()
 
-    def malformed(self, fault: str) -> None:
-        """Tells the client of a message that could not be read."""
-        self._output(f"{fault}: it is left out\n", "stderr")
+    def malformed(self, fault: str, request: tuple[int, str] | None = None) -> None:
+        """Report a message that could not be read: to the request that it seems to be, or by an event."""
+        if request is None:
+            self._output(f"{fault}: it is left out\n", "stderr")
+        else:
+            self._refuse({"request_seq": request[0], "command": request[1]}, fault)
 
     def _refuse(self, answer: Mapping[str, Any], why: str) -> None:
         # Braces would be the names of variables of the format.

@@ -66,6 +66,9 @@ class Launch:
             given = arguments.get(name)
             if given is not None and (not isinstance(given, kind) or (isinstance(given, bool) and kind is int)):
                 raise RequestError(f"launch: `{name}` is {json.dumps(given)}, expected {expected}")
+            paths = given if isinstance(given, list) else [given]
+            if any("\0" in path for path in paths if isinstance(path, str)):
+                raise RequestError(f"launch: `{name}` has a null character: no path has one")
         if not arguments.get("program"):
             raise RequestError("launch: `program` names the model")
         script, counterexample = arguments.get("script") or None, arguments.get("counterexample") or None

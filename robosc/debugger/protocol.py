@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import re
 import sys
 from contextlib import redirect_stdout
 from threading import Thread
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
 #: The most that a message, and a line of its header, may have.
 MOST_BYTES, _MOST_HEADER = 16 << 20, 4096
 _CHUNK = 1 << 16
+#: The parts of a message that can be read where the message itself is no JSON.
+_SEQUENCE = re.compile(r'"seq"\s{0,9}:\s{0,9}(\d{1,9})\b')
+_COMMAND = re.compile(r'"command"\s{0,9}:\s{0,9}"(\w{1,99})"')
 
 
 class FramingError(Exception):
@@ -27,7 +31,15 @@ class FramingError(Exception):
 
 
 class MessageError(Exception):
-    """A message that is none; the next one can be read."""
+    """A message that is none; the next one can be read.
+
+    `request` is the `seq` and the `command` of the request that it seems to be; None where it has no `seq`.
+    """
+
+    def __init__(self, fault: str, text: str = "") -> None:
+        super().__init__(fault)
+        sequence, command = _SEQUENCE.search(text), _COMMAND.search(text)
+        self.request = (int(sequence[1]), command[1] if command else "") if sequence else None
 
 
 class Handler(Protocol):
@@ -36,8 +48,8 @@ class Handler(Protocol):
     async def handle(self, message: dict[str, Any]) -> None:
         """Answers a message."""
 
-    def malformed(self, fault: str) -> None:
-        """Tells the client of a message that could not be read."""
+    def malformed(self, fault: str, request: tuple[int, str] | None = None) -> None:
+        """Report a message that could not be read: to the request that it seems to be, or by an event."""
 
     @property
     def ended(self) -> bool:
@@ -64,14 +76,14 @@ class Connection:
         if length is None:
             return None
         try:
-            text = (await self._reader.readexactly(length)).decode()
-            message = json_value(text)
+            data = await self._reader.readexactly(length)
+            message = json_value(data.decode())
         except asyncio.IncompleteReadError:
             raise FramingError("the last message is cut off") from None
         except UnicodeDecodeError:
-            raise MessageError("a message is no UTF-8") from None
+            raise MessageError("a message is no UTF-8", data.decode("utf-8", "replace")) from None
         except JsonError as error:
-            raise MessageError(f"a message is no JSON: {error}") from None
+            raise MessageError(f"a message is no JSON: {error}", data.decode()) from None
         if not isinstance(message, dict):
             raise MessageError("a message is no object")
         return message
@@ -107,7 +119,7 @@ async def converse(connection: Connection, handler: Handler) -> str | None:
         try:
             message = await connection.receive()
         except MessageError as error:
-            handler.malformed(str(error))
+            handler.malformed(str(error), error.request)
             continue
         except FramingError as error:
             return str(error)

@@ -44,6 +44,13 @@ def published(snapshot: Snapshot, analyses: Iterable[Analysis]) -> dict[Path, li
     }
 
 
+def abandoned(why: str) -> types.Diagnostic:
+    """Return the finding of a text whose findings were abandoned."""
+    place = types.Range(types.Position(0, 0), types.Position(0, 1))
+    message = f"{why}: the findings of this text are missing\nhint: run `robosc check` on it"
+    return types.Diagnostic(place, message, severity=types.DiagnosticSeverity.Warning, source="robosc")
+
+
 def quickly(snapshot: Snapshot, path: Path) -> list[types.Diagnostic] | None:
     """What can be said of a large text before it is read in whole; None: nothing."""
     found = snapshot.quick_findings(path)

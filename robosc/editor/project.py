@@ -8,6 +8,9 @@ from __future__ import annotations
 import gc
 import os
 import re
+import threading
+from collections import defaultdict
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -20,6 +23,7 @@ from robosc.checks import check
 from robosc.diagnostics import in_order
 from robosc.editor.slices import LARGE, Slices
 from robosc.files.finding import files_below
+from robosc.interruption import checkpoint
 from robosc.language import Documents, Text, read
 from robosc.language.libraries import declared_name
 from robosc.language.text import decode
@@ -37,6 +41,8 @@ if TYPE_CHECKING:
 _BREAK = re.compile(r"\r\n|\r|\n")
 #: So many analyses leave their models to the collector of circles before it is called.
 _COLLECTED = 16
+#: Seconds between two checkpoints of a thread that waits for the analysis of another one.
+_WAIT = 0.05
 
 
 @dataclass(frozen=True)
@@ -61,12 +67,15 @@ class Project:
         self._ros_types: RosTypes | None = None
 
     def path(self, uri: str) -> Path:
-        """The path of a document; one that has no file, such as an unsaved text, stands in the first folder."""
+        """The path of a document. One that can have no file, such as an unsaved text, is in the first folder."""
         name = to_fs_path(uri)
         if name is not None:
-            return Path(name).resolve()
+            try:
+                return Path(name).resolve()
+            except (ValueError, RuntimeError):  # A character that no path has, or links in a circle.
+                pass
         folder = self.folders[0] if self.folders else Path.cwd()
-        return folder / quote(uri, safe="")
+        return folder / quote(uri, safe="", errors="surrogatepass")
 
     def put(self, uri: str, version: int | None, content: str) -> Path:
         """Puts a text in place of a file, or what it is now in place of what it was."""
@@ -189,6 +198,18 @@ class _Memory:
 
     analyses: dict[Path, tuple[Analysis, Mapping[Path, str], Mapping[Path, str | None]]] = field(default_factory=dict)
     made: int = 0
+    locks: defaultdict[Path, threading.Lock] = field(default_factory=lambda: defaultdict(threading.Lock))
+
+    @contextmanager
+    def only_one(self, path: Path) -> Iterator[None]:
+        """Let one thread analyze a text: another one waits for its result, unless its own check interrupts it."""
+        lock = self.locks[path]
+        while not lock.acquire(timeout=_WAIT):
+            checkpoint()
+        try:
+            yield
+        finally:
+            lock.release()
 
     def forget(self) -> None:
         self.analyses = {}
@@ -217,6 +238,10 @@ class Snapshot:
 
     def analysis(self, path: Path) -> Analysis | None:
         """What is in the text at a path; None where there is no such text that can be read."""
+        with self.memory.only_one(path):
+            return self._analysis(path)
+
+    def _analysis(self, path: Path) -> Analysis | None:
         memory = self.memory.analyses
         known = memory.get(path)
         if known is not None:

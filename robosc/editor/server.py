@@ -1,8 +1,9 @@
 """The server: messages of the protocol in, answers and findings out.
 
-Messages are taken as they come, on the one thread of the event loop; answers are computed one after the other on
-another thread, so that typing never waits. A request that is cancelled before its turn is never computed, and one whose
-text has changed by then is answered with "content modified".
+The thread of the event loop takes messages as they come. A second thread computes answers one after the other, a third
+one looks for findings, so that neither typing nor an answer waits for them. The server abandons work whose result
+nobody needs: of a request that the editor canceled, on texts that have changed (the answer is "content modified"), and
+work that takes too long (the answer is "request failed").
 """
 
 from __future__ import annotations
@@ -11,6 +12,8 @@ import asyncio
 import gc
 import logging
 import sys
+import threading
+import time
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -25,11 +28,12 @@ from robosc.editor.answers import Verdict
 from robosc.editor.changes import incoming_calls, inlay_hints, outgoing_calls, prepare_call_hierarchy
 from robosc.editor.colours import LEGEND, semantic_tokens
 from robosc.editor.completion import OPTIONS, SIGNATURE_OPTIONS, completion, signature_help
-from robosc.editor.findings import ADD_LIBRARY_FOLDER, CODE_ACTION_OPTIONS, code_actions, published, quickly
+from robosc.editor.findings import ADD_LIBRARY_FOLDER, CODE_ACTION_OPTIONS, abandoned, code_actions, published, quickly
 from robosc.editor.places import to_offset
 from robosc.editor.project import Project
 from robosc.editor.renaming import prepare_rename, rename
 from robosc.editor.synthesis import COMMAND, Verdicts, communication_at, lenses, question
+from robosc.interruption import checking
 from robosc.language.grammar import language
 
 if TYPE_CHECKING:
@@ -71,7 +75,11 @@ _OPTIONS: Mapping[str, Any] = {
     types.TEXT_DOCUMENT_CODE_ACTION: CODE_ACTION_OPTIONS,
     types.TEXT_DOCUMENT_RENAME: types.RenameOptions(prepare_provider=True),
 }
+#: The processor time in seconds after which an answer, or the findings of one text, are abandoned.
+_LONGEST = 30.0
 _CONTENT_MODIFIED = int(types.LSPErrorCodes.ContentModified)
+_REQUEST_FAILED = int(types.LSPErrorCodes.RequestFailed)
+_TOO_LONG = f"this took more than {_LONGEST:.0f} seconds of processor time"
 
 
 class _Protocol(LanguageServerProtocol):
@@ -91,6 +99,15 @@ class _Protocol(LanguageServerProtocol):
 
         super()._execute_handler(msg_id, handler, done, *rest, **options)
 
+    def structure_message(self, data: dict[str, Any]) -> Any:
+        """Answer a request whose parameters are no parameters of its method: pygls 2.1 only logs it."""
+        try:
+            return super().structure_message(data)
+        except JsonRpcException as error:
+            if "method" in data and isinstance(data.get("id"), int | str):
+                self._send_response(data["id"], error=error.to_response_error())
+            raise
+
 
 class Server(LanguageServer):
     """A language server for one editor."""
@@ -99,10 +116,12 @@ class Server(LanguageServer):
         """`version` is robosc's; `libraries` and `interfaces` are the folders that its call names."""
         super().__init__("robosc", version, protocol_cls=_Protocol)
         self.project = Project(libraries, interfaces)
-        self._worker = ThreadPoolExecutor(1, "analysis")
+        self._worker = ThreadPoolExecutor(1, "answers")
+        self._finder = ThreadPoolExecutor(1, "findings")
         #: What is typed into a large text is looked at beside the questions about the whole.
         self._quick = ThreadPoolExecutor(1, "slices")
         self._pause = _PAUSE
+        self._ended = False
         #: Whether the editor has the commands that lenses and quick fixes name.
         self.has_commands = False
         self._waiting: asyncio.Task[None] | None = None
@@ -112,8 +131,9 @@ class Server(LanguageServer):
 
     def shutdown(self) -> None:
         """Ends the server."""
+        self._ended = True
         self.verdicts.cancel()
-        for worker in (self._worker, self._quick):
+        for worker in (self._worker, self._finder, self._quick):
             worker.shutdown(wait=False, cancel_futures=True)
         super().shutdown()  # type: ignore[no-untyped-call]
 
@@ -156,14 +176,31 @@ class Server(LanguageServer):
 
     async def answer_project(self, job: Callable[[Snapshot], _Answer]) -> _Answer:
         """What a job says of the whole project."""
-        snapshot, project = self.project.snapshot(), self.project
+        snapshot, canceled = self.project.snapshot(), threading.Event()
 
         def in_turn() -> _Answer:
-            if not project.is_current(snapshot):
-                raise JsonRpcException("the text has changed", _CONTENT_MODIFIED)
-            return job(snapshot)
+            check = self._check(snapshot, canceled)
+            check()
+            with checking(check):
+                return job(snapshot)
 
-        return await asyncio.get_running_loop().run_in_executor(self._worker, in_turn)
+        try:
+            return await asyncio.get_running_loop().run_in_executor(self._worker, in_turn)
+        except asyncio.CancelledError:
+            canceled.set()
+            raise
+
+    def _check(self, snapshot: Snapshot, canceled: threading.Event | None = None) -> Callable[[], None]:
+        """Return what raises JsonRpcException as soon as nobody needs the work of this thread, or it takes too long."""
+        project, end = self.project, time.thread_time() + _LONGEST
+
+        def check() -> None:
+            if self._ended or not project.is_current(snapshot) or (canceled is not None and canceled.is_set()):
+                raise JsonRpcException("the text has changed", _CONTENT_MODIFIED)
+            if time.thread_time() > end:
+                raise JsonRpcException(_TOO_LONG, _REQUEST_FAILED)
+
+        return check
 
     def changed(self, typed: Path | None = None) -> None:
         """Looks for findings after a pause, unless something changes before; `typed` is a text that was typed into."""
@@ -188,37 +225,48 @@ class Server(LanguageServer):
 
     async def _find(self, typed: Path | None) -> None:
         await asyncio.sleep(self._pause)
-        snapshot, project = self.project.snapshot(), self.project
+        snapshot = self.project.snapshot()
         if typed is not None and await self._find_quickly(snapshot, typed):
             await asyncio.sleep(_REST)
 
-        def findings() -> dict[Path, list[types.Diagnostic]] | None:
-            analyses = []
-            for path in snapshot.documents:
-                if not project.is_current(snapshot):
-                    return None
-                analysis = snapshot.analysis(path)
-                if analysis is not None:
-                    analyses.append(analysis)
-            told = published(snapshot, analyses)
-            for analysis in analyses:
-                if analysis.is_large:
-                    analysis.slices.prepare()
-            return told
-
         try:
-            found = await asyncio.get_running_loop().run_in_executor(self._worker, findings)
-        except RuntimeError:
-            return  # The server ends.
-        if found is not None and self.project.is_current(snapshot):
+            found = await asyncio.get_running_loop().run_in_executor(self._finder, self._findings, snapshot)
+        except (RuntimeError, JsonRpcException):
+            return  # The server ends, or a text has changed.
+        if self.project.is_current(snapshot):
             self._publish(snapshot, found)
+
+    def _findings(self, snapshot: Snapshot) -> dict[Path, list[types.Diagnostic]]:
+        """Return what to publish of all texts. Raises JsonRpcException where one of them has changed."""
+        analyses, told = [], {}
+        for path in snapshot.documents:
+            try:
+                with checking(self._check(snapshot)):
+                    analysis = snapshot.analysis(path)
+            except JsonRpcException as error:
+                if error.code != _REQUEST_FAILED:
+                    raise
+                told[path] = [abandoned(_TOO_LONG)]
+                continue
+            if analysis is not None:
+                analyses.append(analysis)
+        told |= {path: found for path, found in published(snapshot, analyses).items() if path not in told}
+        for analysis in analyses:
+            if analysis.is_large:
+                analysis.slices.prepare()
+        return told
 
     async def _find_quickly(self, snapshot: Snapshot, path: Path) -> bool:
         """Tells what is found in the definition in which was typed; whether that can be told."""
+
+        def in_turn() -> list[types.Diagnostic] | None:
+            with checking(self._check(snapshot)):
+                return quickly(snapshot, path)
+
         try:
-            found = await asyncio.get_running_loop().run_in_executor(self._quick, quickly, snapshot, path)
-        except RuntimeError:
-            return False  # The server ends.
+            found = await asyncio.get_running_loop().run_in_executor(self._quick, in_turn)
+        except (RuntimeError, JsonRpcException):
+            return False  # The server ends, a text has changed, or it took too long.
         if found is not None and self.project.is_current(snapshot):
             version = snapshot.documents[path].version
             self._published[path] = version, found

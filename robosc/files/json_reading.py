@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from itertools import accumulate
 from typing import Any, NoReturn
 
 _DEEPEST = 100
 _BRACKETS = {"{": 1, "[": 1, "]": -1, "}": -1}
+#: A string, which may have no end, or a bracket.
+_STRING_OR_BRACKET = re.compile(r'"(?:[^"\\]|\\.)*"?|[][{}]', re.DOTALL)
 #: No number has more; Python itself refuses to read some thousand.
 _DIGITS = 1000
 
@@ -24,7 +27,8 @@ class JsonError(ValueError):
 def json_value(text: str) -> Any:
     """The value of a JSON text. Raises JsonError, also where it nests too deeply or a number is too large."""
     # `json` follows any number of brackets, until the process ends.
-    if max(accumulate((_BRACKETS.get(character, 0) for character in text), initial=0)) > _DEEPEST:
+    opened = (_BRACKETS.get(found[0], 0) for found in _STRING_OR_BRACKET.finditer(text))
+    if max(accumulate(opened, initial=0)) > _DEEPEST:
         raise JsonError("nested too deeply")
     try:
         return json.loads(text, parse_constant=_refuse, parse_int=_integer, parse_float=_number)

@@ -99,15 +99,15 @@ def rules() -> Iterator[Rule]:
     blank, number = r"(\s+)", r"[0-9]+(?:\.[0-9]+)?"
     unit, name = _any(UNITS), f"({_NAME})"
     yield Rule(r"//[^\n]*", (Kind.COMMENT,))
-    yield Rule(r'"(?:[^"\\\n]|\\.)*"', (Kind.STRING,))
-    yield Rule(r"'(?:[^'\\\n]|\\.)*'", (Kind.STRING,))
+    yield Rule(r'"(?:[^"\\\n]|\\.)*"?', (Kind.STRING,))
+    yield Rule(r"'(?:[^'\\\n]|\\.)*'?", (Kind.STRING,))
     # Times
-    yield Rule(rf"({number}){blank}{unit}\b", (Kind.FLOAT, Kind.BLANK, Kind.UNIT))
+    yield Rule(rf"(?<![0-9])({number}){blank}{unit}\b", (Kind.FLOAT, Kind.BLANK, Kind.UNIT))
     yield Rule(rf"(\)){blank}{unit}\b", (Kind.PUNCTUATION, Kind.BLANK, Kind.UNIT))
     after = (Kind.CONTROL, Kind.BLANK, Kind.NAME, Kind.BLANK, Kind.UNIT)
     yield Rule(rf"(?<![\w^])(after){blank}({_NAME}(?:\.{_NAME})?){blank}{unit}\b", after)
     # A number before the dots of a range is no double.
-    yield Rule(r"[0-9]+\.[0-9]+\b", (Kind.FLOAT,))
+    yield Rule(r"(?<![0-9])[0-9]+\.[0-9]+\b", (Kind.FLOAT,))
     yield Rule(r"[0-9]+\b", (Kind.INTEGER,))
     # Where only a name can stand, words are names, too.
     yield Rule(r"\.\.", (Kind.OPERATOR,))

@@ -8,6 +8,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from robosc.diagnostics import Repair
+from robosc.interruption import checkpoint
 from robosc.language.grammar import attribute
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
@@ -77,6 +78,7 @@ class Builder:
         return self._build(next(part for part in node if part.rule_name))
 
     def _element(self, node: Node, made: Any) -> Any:
+        checkpoint()
         element = made(source=self._source(node.position, node.position_end))
         for child in node if isinstance(node, list) else ():
             feature = attribute(child)

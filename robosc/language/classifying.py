@@ -43,7 +43,7 @@ _READONLY = (rsc.Constant, rsc.Condition, rsc.FormalParameter, rsc.EnumValue)
 _TYPES = first_words("BasicDataType", "Array")
 _KINDS = {Kind.NUMBER: "number", Kind.STRING: "string", Kind.OPEN_STRING: "string", Kind.OPEN_COMMENT: "comment"}
 _BRACKETS = set("{}()[],.:;")
-_STRING_OR_COMMENT = re.compile(rf"{pattern('String')}|(?P<comment>{pattern('Comment')})")
+_STRING_OR_COMMENT = re.compile(rf"{pattern('String')}|(?P<comment>{pattern('Comment')})|/\*[\s\S]*|[\"'][^\n]*")
 
 
 class Word(NamedTuple):

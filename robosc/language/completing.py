@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from robosc.ros_types import RosTypes
 
 _NAME = "robosc_completes_here"
-_WORD = re.compile(r"\^?\w*\Z")
+#: The word before a place, from its end.
+_WORD = re.compile(r"\w*\^?")
 _STRING_OR_COMMENT = re.compile(rf"{pattern('Comment')}|{pattern('String')}|/\*[\s\S]*|[\"'][^\n]*")
 #: Where the name of a topic begins: of a communication, or of one that is imported.
 _TOPIC = re.compile(r"""(?:\bidentifier|\bimport\b.*\bwith\s*\{[^}]*)\s*:\s*(["'])([^"']*)\Z""")
@@ -75,7 +76,7 @@ def proposals(
 
     `read` reads the file with another text, `libraries` gives the names of those that it could import from.
     """
-    start = offset - len(_WORD.search(content[:offset])[0])  # type: ignore[index]
+    start = offset - len(_WORD.match(content[:offset][::-1])[0])  # type: ignore[index]
     end = offset + len(re.match(r"\w*", content[offset:])[0])  # type: ignore[index]
     if any(found.start() < start < _end(found) for found in _STRING_OR_COMMENT.finditer(content)):
         return start, end, []

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cache
+from itertools import count
 from typing import TYPE_CHECKING, Any
 
 import arpeggio
 import textx
 
 from robosc.files.resources import locate
+from robosc.interruption import current_check
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 #: A node of a parse tree: `rule_name`, `position`, `position_end`; a list of nodes, or a word with its `value`.
 Node = Any
+#: Failed alternatives from one checkpoint of the parser to the next.
+_FAILURES = 100
 
 
 @dataclass(frozen=True)
@@ -33,13 +37,14 @@ def language() -> Any:
 
 
 def parse(text: str, rule: str) -> Node | Failure:
-    """The parse tree of a whole text by a rule of the grammar, or where the text fails."""
+    """The parse tree of a whole text by a rule of the grammar, or where the text fails. A checkpoint is in it."""
     parser = language()._parser_blueprint.clone()  # noqa: SLF001 - what model_from_str does before it links
     parser.parser_model = arpeggio.Sequence(
         nodes=[_peg(rule), arpeggio.EOF()],
         rule_name="Model",
         root=True,
     )
+    _check_on_failures(parser)
     try:
         return parser.parse(text)[0]
     except textx.TextXSyntaxError as fault:
@@ -48,6 +53,21 @@ def parse(text: str, rule: str) -> Node | Failure:
         return Failure(
             failed.position, tuple(dict.fromkeys(word for word in map(_wanted, failed.rules) if word != "Comment"))
         )
+
+
+def _check_on_failures(parser: Any) -> None:
+    """Make the parser call the check of the caller now and then: at each hundredth alternative that fails."""
+    check = current_check()
+    if check is None:
+        return
+    fail, failures = parser._nm_raise, count(1)  # noqa: SLF001
+
+    def checked(*place: Any) -> None:
+        if next(failures) % _FAILURES == 0:
+            check()
+        fail(*place)
+
+    parser._nm_raise = checked  # noqa: SLF001
 
 
 def first(rule: str) -> frozenset[str]:

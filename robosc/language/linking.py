@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from robosc.diagnostics import Repair
+from robosc.interruption import checkpoint
 from robosc.language.explaining import BASIC_TYPES, CONSTRUCTS, did_you_mean
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
 from robosc.language.scopes import Declared, File, Names, Scope, by_name
@@ -114,6 +115,7 @@ class Linker:
                     if isinstance(definition, rsc.CommunicationType) and not linked:
                         link_interface(definition)
         for element, names in list(self._file.references.items()):
+            checkpoint()
             self._use(element, names)
         for declared in self._file.bounded:
             low, high = constant_value(declared.lower), constant_value(declared.upper)
@@ -333,8 +335,8 @@ class Linker:
     def _value_of_enum(self, name: Name, value: rsc.EnumValue) -> Repair:
         enum = value.eContainer().eContainer()
         said = f"`{written(name.text)}` is a value of `{written(enum.name)}`: write it without a component"
-        qualifier = re.search(r"\^?\w+\s*\.\s*\Z", self._file.text.content[: name.start])
-        return Repair(said, elsewhere=((qualifier.start(), name.start, ""),) if qualifier else ())
+        qualifier = re.match(r"\s*\.\s*\w+\^?", self._file.text.content[: name.start][::-1])
+        return Repair(said, elsewhere=((name.start - qualifier.end(), name.start, ""),) if qualifier else ())
 
     def _target(self, transition: rsc.Transition | rsc.RequirementTransition, name: Name) -> None:
         if isinstance(transition, rsc.RequirementTransition):

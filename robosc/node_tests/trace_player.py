@@ -13,6 +13,7 @@ from __future__ import annotations
 import json
 import math
 import queue
+import re
 import time
 from array import array
 from collections.abc import Callable, Sequence
@@ -40,6 +41,8 @@ AFTER_TICK = 0.0003
 UNSENDABLE = (ArithmeticError, AssertionError, AttributeError, LookupError, TypeError, ValueError)
 DEEPEST = 100
 BRACKETS = {"{": 1, "[": 1, "]": -1, "}": -1}
+#: A string, which may have no end, or a bracket.
+STRING_OR_BRACKET = re.compile(r'"(?:[^"\\]|\\.)*"?|[][{}]', re.DOTALL)
 #: No clock shows more, in seconds: that of ROS counts nanoseconds in 64 bits.
 LATEST = 2.0**63 / 1e9
 
@@ -66,7 +69,8 @@ class Line:
 def parse(text: str, number: int) -> Line:
     """A line of a log. Raises TraceError."""
     # `json` may follow any number of brackets, until the process ends.
-    if max(accumulate((BRACKETS.get(character, 0) for character in text), initial=0)) > DEEPEST:
+    opened = (BRACKETS.get(found.group(), 0) for found in STRING_OR_BRACKET.finditer(text))
+    if max(accumulate(opened, initial=0)) > DEEPEST:
         raise TraceError(f"line {number} is no line of an event log: nested too deeply")
     try:
         values = json.loads(text)

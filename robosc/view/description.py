@@ -161,7 +161,7 @@ class _Describer:
         """The text of a transition, as short as a picture needs it, and whole."""
         written = self._written(edge)
         whole = " ".join(written.split()) if written else words(edge.event).replace("`", "")
-        short = re.sub(r"\s*\bgoto\s+\S+\s*$", "", re.sub(r"^transition\s+(?=\S)", "", whole))
+        short = re.sub(r"(?<!\s)\s*\bgoto\s+\S+\s*$", "", re.sub(r"^transition\s+(?=\S)", "", whole))
         return {"label": short if len(short) <= _LONGEST else f"{short[: _LONGEST - 1]}…", "whole": whole}
 
     def _written(self, edge: sct.Edge) -> str:

@@ -38,8 +38,16 @@ BODIES = [
     b'{"seq": 1e999}',
     b'{"type": "request"}',
     b'{"seq": "1", "type": "request", "command": "threads"}',
-    b'{"seq": 1, "type": "request", "command": ["threads"]}',
     b'{"seq": 1, "type": "event", "event": "x"}',
+]
+#: Requests that are malformed, each with the number and the command by which the answer names it.
+MALFORMED = [
+    (b'{"seq": 7, "type": "request", "command": "evaluate", "arguments": {"expression": ' + b"[" * 200, 7, "evaluate"),
+    (b'{"seq":8,"command":"threads"', 8, "threads"),
+    (b'{"command": "next", "seq" : 9, "a": 1e999}', 9, "next"),
+    (b'{"seq": 10, "command": "next", "a": "\xff"}', 10, "next"),
+    (b'{"seq": 11, "type": "request", "command": ["threads"]}', 11, ""),
+    (b'{"seq": 12, "type": "request"}', 12, ""),
 ]
 HEADERS = [
     b"Content-Length: many\r\n\r\n{}",
@@ -107,6 +115,17 @@ def test_a_stream_that_is_no_protocol_ends_the_session(tmp_path: Path) -> None:
     assert done.stderr == b"Error: this is no Debug Adapter Protocol: a header has no Content-Length\n"
 
 
+def test_malformed_requests_are_answered(program: Program) -> None:
+    for body, number, command in MALFORMED:
+        program.send(body)
+        answer = program.read()
+        assert answer is not None
+        assert (answer["type"], answer["request_seq"], answer["command"]) == ("response", number, command)
+        assert not answer["success"]
+        assert answer["message"].startswith("a message is no ")
+    program.do("disconnect")
+
+
 def test_requests_out_of_order(session: Client, door: Path) -> None:
     for command in ("next", "continue", "stackTrace", "configurationDone", "pause", "stepBack", "evaluate"):
         assert session.refused(command) == "nothing is launched yet"
@@ -144,6 +163,10 @@ def test_what_can_not_be_launched(program: Program, tmp_path: Path) -> None:
         ({"program": 7}, "launch: `program` is 7, expected the path of a model"),
         ({"program": "missing.rscd"}, "missing.rscd: No such file or directory"),
         ({"program": str(tmp_path)}, "Is a directory"),
+        ({"program": "door\0.rscd"}, "launch: `program` has a null character: no path has one"),
+        ({"program": "door.rscd", "script": "\0"}, "launch: `script` has a null character"),
+        ({"program": "door.rscd", "libraries": ["\0"]}, "launch: `libraries` has a null character"),
+        ({"program": "door.rscd", "interfaces": ["a", "\0"]}, "launch: `interfaces` has a null character"),
         ({"program": "door.rscd", "seed": True}, "launch: `seed` is true, expected a whole number"),
         ({"program": "door.rscd", "script": "x", "counterexample": True}, "exclude each other"),
         ({"program": "door.rscd", "script": "missing.script"}, "missing.script: No such file or directory"),

@@ -57,6 +57,24 @@ def test_what_can_not_be_read_is_said(text: str, why: str) -> None:
         json_value(text)
 
 
+#: Brackets in strings nest nothing, whatever stands before them.
+BRACKETS = ["[" * 200, "{" * 200, '"' + "[" * 200, "\\" + "[" * 200, '\\"' + "[" * 200, "]" * 200 + "[" * 101]
+
+
+@pytest.mark.parametrize("text", BRACKETS, ids=lambda text: text[:5])
+def test_brackets_in_strings_are_text(tmp_path: Path, text: str) -> None:
+    value = {"value": text, text: [text]}
+    assert json_value(json.dumps(value)) == value
+    (tmp_path / "log").write_text(json.dumps(LINE | {"data": value}) + "\n")
+    assert [line.data for line in read_trace(str(tmp_path / "log"))] == [value]
+
+
+@pytest.mark.parametrize("before", ["", '"\\\\",', '"",', '"\\"",'])
+def test_brackets_behind_strings_nest(before: str) -> None:
+    with pytest.raises(JsonError, match="nested too deeply"):
+        json_value("[" + before + "[" * 101)
+
+
 @each_unreadable
 def test_scripts_say_where(text: str, why: str) -> None:
     _, findings = read_script("script", f"e {{}}\ne {text}\n", ["e"])

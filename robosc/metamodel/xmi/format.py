@@ -18,7 +18,7 @@ UNWRITABLE = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 #: More digits than the number of states has of any robot that can be synthesized.
 _INTEGER = re.compile("[+-]?[0-9]{1,1000000}")
 _LONG = range(-(2**63), 2**63)
-_DOUBLE = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,4})?")
+_DOUBLE = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]{1,4})?")
 
 
 def to_text(value: object) -> str:

@@ -11,7 +11,7 @@ from robosc.diagnostics import Diagnostic, ModelError, Severity, Span
 from robosc.metamodel.xmi.format import DEEPEST, XSI
 
 _NAME = re.compile(r"<[^\s/>]*")
-_ATTRIBUTE_OR_END = re.compile(r"""([^\s=<>"'/]+)\s*=\s*(?:"[^"]*"|'[^']*')|>""")
+_ATTRIBUTE_OR_END = re.compile(r"""(?<![^\s=<>"'/])([^\s=<>"'/]++)\s*=\s*(?:"[^"]*"|'[^']*')|>""")
 _LINE_END = re.compile("\r\n|\r|\n")
 
 

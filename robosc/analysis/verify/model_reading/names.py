@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _Definition = TypeVar("_Definition")
 _LITERALS = (ex.BooleanLiteral, ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLiteral)
-_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|\d+(?:\.\d+)?|\w+|\.\.|=>|!=|<=|>=|[^\s()^]')
+_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*+"?|\d+(?:\.\d+)?|\w+|\.\.|=>|!=|<=|>=|[^\s()^]')
 #: Requirements that follow events: they have states of their own.
 OBSERVERS = (robosc.OrderRequirement, robosc.CountRequirement, robosc.AutomatonRequirement)
 

@@ -1,0 +1,38 @@
+"""Long work that its caller may interrupt: `checkpoint` in the work calls the check of the caller.
+
+A check returns where the work is to go on, and raises an exception where its result is no longer needed or it has
+taken too long. Between two checkpoints no state is left half changed.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from contextvars import ContextVar
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+_CHECK: ContextVar[Callable[[], None] | None] = ContextVar("robosc_interruption", default=None)
+
+
+@contextmanager
+def checking(check: Callable[[], None]) -> Iterator[None]:
+    """Call `check` at every checkpoint of this thread within the `with` block."""
+    token = _CHECK.set(check)
+    try:
+        yield
+    finally:
+        _CHECK.reset(token)
+
+
+def current_check() -> Callable[[], None] | None:
+    """The check of the innermost `checking` block of this thread, or None."""
+    return _CHECK.get()
+
+
+def checkpoint() -> None:
+    """Let the caller interrupt the work. Raises the exception of its check."""
+    check = _CHECK.get()
+    if check is not None:
+        check()
