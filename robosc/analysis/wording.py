@@ -26,6 +26,7 @@ _EVENTS = {
     sct.EventKind.error: "error from {}",
     sct.EventKind.feedback: "feedback from {}",
     sct.EventKind.cancel: "cancel of {}",
+    sct.EventKind.canceled: "canceled from {}",
     sct.EventKind.reset: "reset of {}",
     sct.EventKind.tau: "transition of {}",
     sct.EventKind.timeout: "timeout of {}",

@@ -123,6 +123,7 @@ def rules() -> Iterator[Rule]:
     yield Rule(rf"(?<![\w^])(in){blank}(value)\b", (Kind.CONTROL, Kind.BLANK, Kind.DATA))
     yield Rule(r"(send)(\s*:\s*)(change)\b", (Kind.CONTROL, Kind.PUNCTUATION, Kind.CONTROL))
     yield Rule(rf"(?<![\w^])(at){blank}(most)\b", (Kind.CONTROL, Kind.BLANK, Kind.CONTROL))
+    yield Rule(r"(?<![\w^])(canceled)(?=\s+(?:from|to)\b)", (Kind.CONTROL,))
     reserved = [word for words in RESERVED.values() for word in words]
     yield Rule(rf"{_any([word for word in reserved if word not in _KEYS])}(?=\s*:(?!=))", (Kind.NAME,))
     # Words that need more behind them

@@ -10,7 +10,7 @@ from robosc.m2m.kept_types import KeptTypes
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.ros_types import RosTypes
-from robosc.semantics.communication import data_type, event_of, events
+from robosc.semantics.communication import CONTROLLABLE, data_type, event_of, events
 from robosc.semantics.cone_of_influence import guard_of
 from robosc.semantics.durations import set_on_robot
 from robosc.semantics.expansion import constant_value
@@ -162,8 +162,10 @@ class _Transformation:
         client.source = port.communication.source
         for event in events(port.communication):
             made: rosgraph.Sending | rosgraph.Reception | sct.Event = self.trace.event(port, event.kind)
-            if event.feature:
-                made = self.sending(port, event) if event.is_sent else self.reception(port, event)
+            if event.is_sent:
+                made = self.sending(port, event)
+            elif event.kind not in CONTROLLABLE:
+                made = self.reception(port, event)
             setattr(client, event.name or event.kind.name, made)
         clients: list[ex.Located] = self.graph.actionClients if is_action else self.graph.serviceClients  # type: ignore[assignment]
         clients.append(client)
@@ -240,8 +242,9 @@ class _Transformation:
             event=self.trace.event(port, event.kind),
             source=port.communication.source,
         )
+        if event.section is None:
+            return reception
         value = self.value_of(port, event)
-        assert event.section is not None
         self.carriers[reception] = self.interface(port.communication), event.section
         for carried, declared in self.inputs.get((port, event), ()):
             read: ex.Expression

@@ -10,7 +10,16 @@ from robosc.m2m.requirement_automata import RequirementAutomaton
 from robosc.m2m.trace import Trace
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
-from robosc.semantics.communication import CONTROLLABLE, ERROR, EXECUTING, IDLE, READY, WAITING, events
+from robosc.semantics.communication import (
+    CANCELING,
+    CONTROLLABLE,
+    ERROR,
+    EXECUTING,
+    IDLE,
+    READY,
+    WAITING,
+    events,
+)
 from robosc.semantics.cone_of_influence import cone_of_influence, guard_of
 from robosc.semantics.durations import UNITS, bounds, milliseconds, set_milliseconds, set_on_robot
 from robosc.semantics.expansion import constant_value
@@ -28,7 +37,13 @@ if TYPE_CHECKING:
 _Stated = TypeVar("_Stated", bound=robosc.StatedDefinition)
 
 #: What comes from outside, or must always be possible: a component elsewhere than in the right state ignores it.
-_NEVER_BLOCKED = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.cancel)
+_NEVER_BLOCKED = (
+    sct.EventKind.response,
+    sct.EventKind.error,
+    sct.EventKind.feedback,
+    sct.EventKind.cancel,
+    sct.EventKind.canceled,
+)
 
 _SERVICE = (
     (IDLE, sct.EventKind.trigger, WAITING),
@@ -42,7 +57,11 @@ _ACTION = (
     (EXECUTING, sct.EventKind.feedback, EXECUTING),
     (EXECUTING, sct.EventKind.response, READY),
     (EXECUTING, sct.EventKind.error, ERROR),
-    (EXECUTING, sct.EventKind.cancel, IDLE),
+    (EXECUTING, sct.EventKind.cancel, CANCELING),
+    (CANCELING, sct.EventKind.feedback, CANCELING),
+    (CANCELING, sct.EventKind.response, READY),
+    (CANCELING, sct.EventKind.error, ERROR),
+    (CANCELING, sct.EventKind.canceled, IDLE),
     (READY, sct.EventKind.reset, IDLE),
     (ERROR, sct.EventKind.reset, IDLE),
 )
@@ -52,7 +71,8 @@ _OWN_EVENTS = (
     (robosc.TauTransition, sct.EventKind.tau, "tau"),
     (robosc.TimedTransition, sct.EventKind.timeout, "after"),
 )
-#: Listings 5.1 to 5.3: the edges of the plant of each communication; it begins, and may end, where the first one does.
+#: The edges of the plant of each communication (thesis, listings 5.1 and 5.2; in place of 5.3 an action ends when its
+#: server says so). The first location is the initial and the marked one.
 _PLANTS = {robosc.Message: _MESSAGE, robosc.Service: _SERVICE, robosc.Action: _ACTION}
 
 

@@ -210,6 +210,7 @@ class ResultType:
     error: ClassVar[ResultType]
     feedback: ClassVar[ResultType]
     cancel: ClassVar[ResultType]
+    canceled: ClassVar[ResultType]
 
 class TauTransition(GuardedTransition):
     """Happens silently, as soon as its guard holds."""

@@ -117,9 +117,9 @@ class ServiceClient(expression.Located):
     interface: Interface
     request: Sending
     response: Reception
-    error: sct.Event
+    error: Reception
     reset: sct.Event
-    def __init__(self, *, identifier: str | None = ..., interface: Interface | None = ..., request: Sending | None = ..., response: Reception | None = ..., error: sct.Event | None = ..., reset: sct.Event | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, identifier: str | None = ..., interface: Interface | None = ..., request: Sending | None = ..., response: Reception | None = ..., error: Reception | None = ..., reset: sct.Event | None = ..., source: Place | None = ...) -> None: ...
 
 class ActionClient(expression.Located):
     """An action that the node starts."""
@@ -128,10 +128,11 @@ class ActionClient(expression.Located):
     request: Sending
     feedback: Reception
     response: Reception
-    error: sct.Event
+    error: Reception
     cancel: sct.Event
+    canceled: Reception
     reset: sct.Event
-    def __init__(self, *, identifier: str | None = ..., interface: Interface | None = ..., request: Sending | None = ..., feedback: Reception | None = ..., response: Reception | None = ..., error: sct.Event | None = ..., cancel: sct.Event | None = ..., reset: sct.Event | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, identifier: str | None = ..., interface: Interface | None = ..., request: Sending | None = ..., feedback: Reception | None = ..., response: Reception | None = ..., error: Reception | None = ..., cancel: sct.Event | None = ..., canceled: Reception | None = ..., reset: sct.Event | None = ..., source: Place | None = ...) -> None: ...
 
 class Reaction(expression.Located):
     """What an event reads and changes in the node, when a component is in one of the locations and the guard holds. Values are read as they were before the event."""

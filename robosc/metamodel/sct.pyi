@@ -50,7 +50,7 @@ class Event(expression.NamedElement):
     def __init__(self, *, controllable: bool | None = ..., kind: EventKind | None = ..., inputs: Iterable[Input] = ..., timer: Timer | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class EventKind:
-    """trigger, cancel: sent by the controller; response, error, feedback: come from the robot; reset, tau: silent; data: which provided data goes out; timeout: a time is up; plain: an event of a model from CIF, which stands for no communication; input: the environment gives an input variable of CIF another value."""
+    """trigger, cancel: sent by the controller; response, error, feedback, canceled: come from the robot; reset, tau: silent; data: which provided data goes out; timeout: a time is up; plain: an event of a model from CIF, which stands for no communication; input: the environment gives an input variable of CIF another value."""
     name: str
     trigger: ClassVar[EventKind]
     response: ClassVar[EventKind]
@@ -63,6 +63,7 @@ class EventKind:
     timeout: ClassVar[EventKind]
     plain: ClassVar[EventKind]
     input: ClassVar[EventKind]
+    canceled: ClassVar[EventKind]
 
 class Timer(expression.Located):
     """A time that runs while a component is in a location, or always, and what starts it anew. When it is up, its event happens once. To synthesis the event is possible at any time."""

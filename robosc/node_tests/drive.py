@@ -121,7 +121,6 @@ class Drive:
         """
         over = False
         while not over:
-            self._robot.end_cancelled()
             self._work()
             up = self._controller.up
             stop = self._pace.next if up is None else self._pace.before((up + _MARGIN) / 1000)

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from robosc.node_tests.messages import Definition, Field, Path, fields_sent, message
 from robosc.ros_types import Section
-from robosc.runtime.core.port import Outcome
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -19,14 +18,12 @@ if TYPE_CHECKING:
 
 @dataclass
 class RunningGoal:
-    """A goal that the robot works on, until it is asked to cancel it."""
+    """A goal that the robot works on. It goes on where it is to be canceled, until its end is played."""
 
     handlers: GoalHandlers
-    cancelled: bool = False
 
     def cancel(self) -> None:
-        """The controller wants it to end."""
-        self.cancelled = True
+        """Accept the request; the goal has not ended."""
 
 
 class Robot:
@@ -94,13 +91,6 @@ class Robot:
         self.goals[client] = RunningGoal(handlers)
         handlers.accepted()
         return self.goals[client]
-
-    def end_cancelled(self) -> None:
-        """Ends the goals that the controller has given up."""
-        for client, goal in list(self.goals.items()):
-            if goal.cancelled:
-                del self.goals[client]
-                goal.handlers.ended(Outcome.CANCELLED, None, "")
 
     def publish_report(self, name: str, text: str) -> None:
         """Nobody listens to reports."""

@@ -219,13 +219,15 @@ class Tour(Drive):
             acts |= self._classes(topic.topic, topic.receptions, partial(self._publish, topic))
         for service in self._graph.serviceClients:
             acts |= self._classes(service.identifier, [service.response], partial(self._answer, service))
-            failure = Stimulus(f"{service.identifier} fails", ((event_name(service.error), ()),), fails=True)
+            failure = Stimulus(f"{service.identifier} fails", ((event_name(service.error.event), ()),), fails=True)
             acts[failure] = partial(self._fail, service)
         for action in self._graph.actionClients:
             acts |= self._classes(action.identifier, [action.feedback], partial(self._feed_back, action))
             acts |= self._classes(action.identifier, [action.response], partial(self._succeed, action))
-            failure = Stimulus(f"{action.identifier} fails", ((event_name(action.error), ()),), fails=True)
+            failure = Stimulus(f"{action.identifier} fails", ((event_name(action.error.event), ()),), fails=True)
             acts[failure] = partial(self._abort, action)
+            canceled = Stimulus(f"{action.identifier} is canceled", ((event_name(action.canceled.event), ()),))
+            acts[canceled] = partial(self._end_canceled, action)
         return acts
 
     def _classes(
@@ -279,6 +281,9 @@ class Tour(Drive):
             return None
         handlers.ended(Outcome.SUCCEEDED, unreadable[0], "")
         return unreadable[1]
+
+    def _end_canceled(self, client: rosgraph.ActionClient) -> None:
+        self._robot.goals.pop(client).handlers.ended(Outcome.CANCELLED, None, "")
 
     def _message(self, kind: Incoming, found: Class) -> tuple[Any, dict[str, Any]]:
         """Data of a class that came in least often until now."""

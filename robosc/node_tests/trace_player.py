@@ -384,15 +384,13 @@ class Player:
             self._add(action["feedback"], partial(port.feed_back, action["name"]))
             answer = self._add(action["response"], partial(port.end, action["name"], "succeeded"))
             self._answers[action["error"]] = partial(self._abort, action["name"], answer)
+            self._answers[action["canceled"]] = partial(self._end_canceled, action["name"])
         self._clients = connections["services"] + connections["actions"]
-        self._cancels = {action["cancel"]: action["name"] for action in connections["actions"]}
-        self._goals = {action["trigger"]: action["name"] for action in connections["actions"]}
         self._outlets = {
             event: publisher["topic"] for publisher in connections["publishers"] for event in publisher["events"]
         }
         self._outlets.update((client["trigger"], client["name"]) for client in self._clients)
-        self._outlets.update((event, cancelled(name)) for event, name in self._cancels.items())
-        self._cancelled: set[str] = set()
+        self._outlets.update((action["cancel"], cancelled(action["name"])) for action in connections["actions"])
         self._sent_until = 0
         #: When a call that nobody answers has failed, and when a client is ready again after a failure.
         self._due: dict[str, float] = {}
@@ -465,12 +463,10 @@ class Player:
         for topic, incoming in self._topics.items():
             if line.event in incoming.events:
                 batch = self._batch(lines, position, incoming)
-                self._end_cancelled(lines, position + len(batch))
                 self._port.publish(topic, incoming.message(batch))
                 return len(batch)
         if line.event not in self._answers:
             raise TraceError(f"line {line.number}: the node of this package knows no {line.event}")
-        self._end_cancelled(lines, position + 1)
         self._answers[line.event](line)
         return 1
 
@@ -496,6 +492,9 @@ class Player:
             answer(line)
         else:
             self._port.end(action, "aborted", {})
+
+    def _end_canceled(self, action: str, _: Line) -> None:
+        self._port.end(action, "canceled", {})
 
     def _batch(self, lines: list[Line], position: int, incoming: Incoming) -> list[Line]:
         """The lines that one message made: all events of its topic, in their order, but those that can't be read."""
@@ -542,7 +541,6 @@ class Player:
         at_once = position > 0 and line.time - previous.time < self._period / 20
         done = self._log.wait(SETTLED if at_once else 0)
         if done is None and self._timed:
-            self._end_cancelled(lines, position)
             self._pass_until(self._now + line.time - previous.time)
             done = self._log.peek()
         if done is None:
@@ -551,7 +549,6 @@ class Player:
         for _ in range(math.ceil((line.time - previous.time) / self._period) + 3):
             if done is not None:
                 break
-            self._end_cancelled(lines, position)
             self._pass_period()
             done = self._log.peek()
         return done
@@ -586,25 +583,12 @@ class Player:
             if event == client["error"]:
                 self._due[client["reset"]] = self._now + client["retry"]
 
-    def _end_cancelled(self, lines: list[Line], position: int) -> None:
-        """A cancelled goal is over when the trace has a new one at once, or in the next tick."""
-        for line in lines[position:]:
-            if line.direction == "in" or line.time - lines[position].time > self._period / 2:
-                return
-            name = self._goals.get(line.event)
-            if name in self._cancelled:
-                self._cancelled.discard(name)
-                self._port.end(name, "canceled", {})
-                time.sleep(ANSWER / 4)
-
     def _receive(self, line: Line) -> None:
         """What the node says that it sent has to arrive."""
         try:
             message = self._port.sent[self._outlets[line.event]].get(timeout=PATIENCE)
         except queue.Empty:
             raise TraceError(f"line {line.number}: the node logs {line}, but nothing arrives") from None
-        if line.event in self._cancels:
-            self._cancelled.add(self._cancels[line.event])
         if line.data is None:
             return
         value = line.data["value"]

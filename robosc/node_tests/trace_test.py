@@ -120,6 +120,7 @@ def _connections(
             {
                 **_client(action, started),
                 "cancel": event_name(action.cancel),
+                "canceled": event_name(action.canceled.event),
                 "feedback": described(incoming[action.feedback.event]),
                 "response": described(incoming[action.response.event]),
             }
@@ -133,7 +134,7 @@ def _client(client: Client, started: Mapping[str, bool | int]) -> dict[str, Any]
         "name": client.identifier,
         "type": _type(client.interface),
         "trigger": event_name(client.request.event),
-        "error": event_name(client.error),
+        "error": event_name(client.error.event),
         "reset": event_name(client.reset),
         "retry": started["retry_ms"] / 1000,
     }

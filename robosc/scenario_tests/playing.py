@@ -68,7 +68,7 @@ class _Controller(DrivenController):
 
 
 #: The kinds of events that a step may name.
-_FROM_THE_ROBOT = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback)
+_FROM_THE_ROBOT = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.canceled)
 
 
 def unknown_events(model: sct.SupervisoryControlModel, scenarios: Iterable[Scenario]) -> Iterator[Diagnostic]:
@@ -114,11 +114,12 @@ class Player(Drive):
                 self._acts[reception.event] = (reception.event, self._published(topic))
         for service in graph.serviceClients:
             self._acts[service.response.event] = (service.response.event, self._answered(service))
-            self._acts[service.error] = (service.response.event, self._failed(service))
+            self._acts[service.error.event] = (service.response.event, self._failed(service))
         for action in graph.actionClients:
             self._acts[action.feedback.event] = (action.feedback.event, self._fed_back(action))
             self._acts[action.response.event] = (action.response.event, self._ended(action, Outcome.SUCCEEDED))
-            self._acts[action.error] = (action.response.event, self._ended(action, Outcome.ABORTED))
+            self._acts[action.error.event] = (action.response.event, self._ended(action, Outcome.ABORTED))
+            self._acts[action.canceled.event] = (action.response.event, self._ended(action, Outcome.CANCELLED))
 
     @property
     def trace(self) -> list[str]:

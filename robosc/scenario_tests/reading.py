@@ -19,7 +19,8 @@ _WAIT = re.compile(r"wait\s+(\d+(?:\.\d+)?)\s*(ms|s|min)")
 _SECONDS = {"ms": 0.001, "s": 1.0, "min": 60.0}
 #: A day: what is longer is a mistake.
 _LONGEST = 86_400
-_EVENT = r"(?:(?P<kind>request|response|error|feedback|cancel)\s+(?:to|from)\s+)?(?P<name>\^?[A-Za-z_]\w*(?:\.\^?\w+)*)"
+_KIND = r"(?P<kind>request|response|error|feedback|canceled|cancel)"
+_EVENT = rf"(?:{_KIND}\s+(?:to|from)\s+)?(?P<name>\^?[A-Za-z_]\w*(?:\.\^?\w+)*)"
 _STEP = re.compile(_EVENT + r"(?:\s+with\s+(?P<message>message\s+)?(?P<data>.+))?")
 _EXPECTED = re.compile(
     _EVENT + r"\s+(?:(?P<verdict>allowed)|(?P<forbidden>forbidden)(?:\s+by\s+(?P<by>.+))?"

@@ -32,6 +32,7 @@ class PortEvent(NamedTuple):
 _RESET = PortEvent(sct.EventKind.reset, "")
 _CANCEL = PortEvent(sct.EventKind.cancel, "cancel")
 _ERROR = PortEvent(sct.EventKind.error, "error")
+_CANCELED = PortEvent(sct.EventKind.canceled, "canceled")
 
 #: The events of each kind of communication, in the order of its plant; of a message only one of the two happens.
 EVENTS: Mapping[type[robosc.CommunicationType], tuple[PortEvent, ...]] = {
@@ -52,12 +53,15 @@ EVENTS: Mapping[type[robosc.CommunicationType], tuple[PortEvent, ...]] = {
         PortEvent(sct.EventKind.feedback, "feedback", Section.FEEDBACK, "feedbackType"),
         PortEvent(sct.EventKind.response, "response", Section.RESULT, "responseType"),
         _ERROR,
+        _CANCELED,
     ),
 }
 #: The locations of the plants of services and actions (thesis, listings 5.2 and 5.3); that of a message is READY.
 IDLE, WAITING, EXECUTING, READY, ERROR = "idle", "wait_for_response", "executing", "ready", "error"
+#: The controller has asked the server to cancel the goal, which has not ended yet.
+CANCELING = "canceling"
 #: In the order in which the language lists them.
-_NAMES = ("request", "response", "error", "feedback", "cancel")
+_NAMES = ("request", "response", "error", "feedback", "cancel", "canceled")
 #: The kinds of the events that the controller decides on: all but what comes from the robot.
 CONTROLLABLE = (
     sct.EventKind.trigger,

@@ -102,6 +102,7 @@ class Roles:
             sct.EventKind.response,
             sct.EventKind.error,
             sct.EventKind.feedback,
+            sct.EventKind.canceled,
             sct.EventKind.plain,
             sct.EventKind.input,
         )

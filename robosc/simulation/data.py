@@ -92,7 +92,7 @@ class EventData:
         self._receptions = {event_name(reception.event): reception for reception in known}
         clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = []
         clients += [] if graph is None else [*graph.serviceClients, *graph.actionClients]
-        self._errors = {event_name(client.response.event): event_name(client.error) for client in clients}
+        self._errors = {event_name(client.response.event): event_name(client.error.event) for client in clients}
 
     def inputs(self, event: str, data: Mapping[str, Any]) -> dict[str, Value]:
         """Values of the event's inputs by their names. Raises DataError, KeyError for an unknown event."""

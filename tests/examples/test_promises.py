@@ -125,6 +125,13 @@ class Robot(ControlLoop):
         self.end()
         return self.said()
 
+    def happens(self, event: str, data: dict[str, int] | None = None) -> list[str]:
+        """What the robot sends after an event of a service or action."""
+        self.begin()
+        assert self.perform(event, data or {})
+        self.end()
+        return self.said()
+
     def ticks(self) -> list[str]:
         self.tick()
         return self.said()
@@ -197,7 +204,8 @@ def test_a_new_point_ends_the_way_to_the_old_one() -> None:
     robot.hears(initial_pose=None)
     assert robot.hears(clicked_point=None) == ["navigate"]
     assert robot.hears(clicked_point=None)[0] == "navigate.c_cancel"
-    assert robot.ticks() == ["navigate"]
+    assert robot.ticks() == [], "the goal has not ended"
+    assert robot.happens("action_navigate.u_canceled") == ["navigate"]
 
 
 def test_releasing_the_button_sets_nobody_off() -> None:
@@ -214,11 +222,10 @@ def test_too_many_recoveries_end_the_journey_but_not_the_next() -> None:
     robot.hears(initial_pose=None)
     robot.hears(clicked_point=None)
     for number in range(1, 7):
-        robot.begin()
-        assert robot.perform("action_navigate.u_feedback", {"i_feedback_number_of_recoveries": number})
-        robot.end()
-        assert robot.said() == (["navigate.c_cancel"] if number == 6 else [])
-    assert robot.ticks() == []
+        recoveries = {"i_feedback_number_of_recoveries": number}
+        cancels = ["navigate.c_cancel"] if number == 6 else []
+        assert robot.happens("action_navigate.u_feedback", recoveries) == cancels
+    assert robot.happens("action_navigate.u_canceled") + robot.ticks() == []
     assert robot.hears(clicked_point=None) + robot.ticks() == ["navigate"]
 
 

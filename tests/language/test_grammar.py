@@ -33,6 +33,7 @@ UNRESERVED = {
     "always",
     "at",
     "automaton",
+    "canceled",
     "condition",
     "constant",
     "each",

@@ -224,7 +224,7 @@ def test_services_and_actions_have_their_events(robot):
         ("e", "Empty"),
     ]
     service, (action,) = graph.serviceClients[0], graph.actionClients
-    assert [service.request.event.name, service.response.event.name, service.error.name, service.reset.name] == [
+    assert [service.request.event.name, service.response.event.name, service.error.event.name, service.reset.name] == [
         "c_trigger",
         "u_response",
         "u_error",

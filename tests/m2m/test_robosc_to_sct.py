@@ -107,14 +107,18 @@ def test_requests_get_no_self_loop(to_sct):
     }
 
 
-def test_an_action_is_listing_5_3(to_sct):
+def test_an_action_ends_when_its_server_says_so(to_sct):
     model, _ = to_sct(ACTION.replace("REQUIREMENTS", ""))
     assert edges(model, "action_grab") == {
         ("idle", "c_trigger", "executing"),
         ("executing", "u_feedback", "executing"),
         ("executing", "u_response", "ready"),
         ("executing", "u_error", "error"),
-        ("executing", "c_cancel", "idle"),
+        ("executing", "c_cancel", "canceling"),
+        ("canceling", "u_feedback", "canceling"),
+        ("canceling", "u_response", "ready"),
+        ("canceling", "u_error", "error"),
+        ("canceling", "u_canceled", "idle"),
         ("ready", "c_reset", "idle"),
         ("error", "c_reset", "idle"),
     }

@@ -107,9 +107,17 @@ def test_a_goal_is_cancelled_when_its_requirement_falls(bench: Bench) -> None:
     bench.hear("/stop")
     assert bench.cancelled == 1
     assert bench.directions()[-2:] == [("in", "message_stop.u_response"), ("out", "action_go_to.c_cancel")]
-    # What the cancelled goal comes to is no event any more.
+    # The goal may have succeeded before the cancel arrived.
     bench.layer.respond(bench.action, Record())
-    assert bench.directions()[-1] == ("out", "action_go_to.c_cancel")
+    assert bench.directions()[-2:] == [("in", "action_go_to.u_response"), ("internal", "action_go_to.c_reset")]
+
+
+def test_a_canceled_goal_has_ended_when_the_robot_says_so(bench: Bench) -> None:
+    assert bench.passes("go_to")
+    bench.hear("/stop")
+    assert not bench.passes("go_to"), "it has not ended"
+    bench.layer.cancel_ended(bench.action)
+    assert bench.directions()[-1] == ("in", "action_go_to.u_canceled")
 
 
 def test_answers_and_failures_move_the_supervisor_and_it_settles(bench: Bench) -> None:

@@ -66,6 +66,7 @@ scenario "another slot, an error and a pause"
 scenario "not while the bumper is pressed"
   hit with true
   wait 0.2 s
+  canceled from dock
   expect dock forbidden by SR1
   expect dock forbidden by "nobody is run over"
 """.replace(" and not_pressed", " and !Bumper.pressed")

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 #: The event that a communication's bare name means: what it is there for.
 _MEANT = (sct.EventKind.trigger, sct.EventKind.response)
 #: An event as a model and an answer name it.
-_IN_WORDS = re.compile(r"(request|response|error|feedback|cancel) +(?:to|from|of) +(\S+)")
+_IN_WORDS = re.compile(r"(request|response|error|feedback|canceled|cancel) +(?:to|from|of) +(\S+)")
 
 
 class NamingError(ValueError):

@@ -10,7 +10,7 @@ from robosc.analysis.paths import Path, trace
 from robosc.analysis.wording import in_words, listed, name, what_is, words
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.semantics.communication import ERROR, EXECUTING, IDLE, READY, WAITING
+from robosc.semantics.communication import CANCELING, ERROR, EXECUTING, IDLE, READY, WAITING
 from robosc.semantics.edges import edges_from
 from robosc.semantics.printing import RobotPrinter, disjunction
 from robosc.semantics.walks import copied
@@ -31,6 +31,7 @@ _PHASES = {
     IDLE: "is not under way",
     WAITING: "still waits for its answer",
     EXECUTING: "is still under way",
+    CANCELING: "is being canceled, and has not ended",
     READY: "has ended, and is reset before it can start again",
     ERROR: "has failed, and is reset after a while before it can start again",
 }
@@ -40,6 +41,7 @@ _WAITING = {
     sct.EventKind.error: "`on error from {}`",
     sct.EventKind.feedback: "`on feedback from {}`",
     sct.EventKind.cancel: "`on cancel from {}`",
+    sct.EventKind.canceled: "`on canceled from {}`",
 }
 
 

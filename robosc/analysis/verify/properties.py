@@ -38,7 +38,13 @@ if TYPE_CHECKING:
 #: An action that is restricted by nothing that changes is never cancelled, and data may always be at hand: of cancels
 #: and data events, which no user wrote, some are dead on purpose.
 _LIVE = (sct.EventKind.trigger, sct.EventKind.reset, sct.EventKind.tau)
-_INPUTS = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.cancel)
+_INPUTS = (
+    sct.EventKind.response,
+    sct.EventKind.error,
+    sct.EventKind.feedback,
+    sct.EventKind.cancel,
+    sct.EventKind.canceled,
+)
 _NEVER_QUIESCENT = "the control loop never again rests in a state in which all components are marked"
 
 

@@ -27,7 +27,8 @@ _OF_KIND = {
 }
 _SENTENCES = {
     sct.EventKind.trigger: "{what}: {name}.",
-    sct.EventKind.cancel: "{what} is cancelled{on}.",
+    sct.EventKind.cancel: "{what} is asked to cancel{on}.",
+    sct.EventKind.canceled: "{what} is canceled{on}.",
     sct.EventKind.response: "{what} is done{on}.",
     sct.EventKind.error: "{what} failed{on}.",
     sct.EventKind.feedback: "{what} is under way{on}.",

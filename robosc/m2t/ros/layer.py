@@ -37,7 +37,8 @@ class LayerNode:
         """What comes from the robot."""
         messages = [topic.receptions[0] for topic in self.node.subscriptions]
         clients = self.node.clients
-        return [*messages, *(end for call in clients for end in (call.feedback, call.response, call.error) if end)]
+        ends = (end for call in clients for end in (call.feedback, call.response, call.error, call.canceled))
+        return [*messages, *filter(None, ends)]
 
     def remapped(self, parts_of_actions: Sequence[str]) -> list[str]:
         """The robot's names that a controller is started with others for; an action is re-mapped part by part."""

@@ -137,7 +137,7 @@ class Publisher:
 
 @dataclass(frozen=True)
 class Client:
-    """A service that the node calls, or an action that it starts: only these have feedback and are cancelled."""
+    """A service that the node calls, or an action that it starts: only actions have feedback and can be canceled."""
 
     word: str
     name: str
@@ -146,6 +146,7 @@ class Client:
     response: EventHandler
     error: EventHandler
     feedback: EventHandler | None
+    canceled: EventHandler | None
     cancel: str | None
     cancel_requirements: Sequence[str]
     reset: str
@@ -269,16 +270,17 @@ class Node:
         ]
         self.subscriptions = [self._subscription(subscription) for subscription in graph.subscriptions]
         self.publishers = [self._publisher(publisher) for publisher in graph.publishers]
-        self.services = [self._client(client, None, None) for client in graph.serviceClients]
-        self.actions = [self._client(client, client.feedback, client.cancel) for client in graph.actionClients]
+        self.services = [self._client(client) for client in graph.serviceClients]
+        self.actions = [self._client(client) for client in graph.actionClients]
         self.shutdown = [self._last(name) for name in on_shutdown]
         self.instead = [self._last(name) for name in on_withheld]
         outside = {reception.event for topic in graph.subscriptions for reception in topic.receptions}
         outside |= {sending.event for topic in graph.publishers for sending in topic.sendings}
         for service in graph.serviceClients:
-            outside |= {service.request.event, service.response.event, service.error}
+            outside |= {service.request.event, service.response.event, service.error.event}
         for action in graph.actionClients:
-            outside |= {action.request.event, action.feedback.event, action.response.event, action.error}
+            outside |= {action.request.event, action.feedback.event, action.response.event}
+            outside |= {action.error.event, action.canceled.event}
         self.internal = [self._handler(event) for event in self._reactions if event not in outside]
         shown = reported(graph)
         self.reported = [
@@ -474,23 +476,20 @@ class Node:
             [self._message(sending) for sending in publisher.sendings],
         )
 
-    def _client(
-        self,
-        client: rosgraph.ServiceClient | rosgraph.ActionClient,
-        feedback: rosgraph.Reception | None,
-        cancel: sct.Event | None,
-    ) -> Client:
+    def _client(self, client: rosgraph.ServiceClient | rosgraph.ActionClient) -> Client:
         request = self._message(client.request)
+        action = client if isinstance(client, rosgraph.ActionClient) else None
         return Client(
             request.word,
             client.identifier,
             client.interface,
             request,
             self._reception(client.response),
-            self._handler(client.error),
-            self._reception(feedback) if feedback else None,
-            self._names.c.enumerator(cancel) if cancel else None,
-            self._events[cancel].remarks if cancel else [],
+            self._handler(client.error.event),
+            self._reception(action.feedback) if action else None,
+            self._handler(action.canceled.event) if action else None,
+            self._names.c.enumerator(action.cancel) if action else None,
+            self._events[action.cancel].remarks if action else [],
             self._names.c.enumerator(client.reset),
         )
 

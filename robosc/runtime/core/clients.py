@@ -256,8 +256,7 @@ class ActionClient:
 
     def _feedback(self, feedback: Message) -> None:
         self._accept()  # feedback may overtake the acceptance
-        if not self._cancelling:
-            self._answers.feedback(feedback)
+        self._answers.feedback(feedback)
 
     def _await_result(self) -> None:
         self._phase = _Phase.OVER
@@ -282,10 +281,12 @@ class ActionClient:
 
     def _finish(self, outcome: Outcome, result: Message, text: str) -> None:
         said = f": {text}" if text else ""
-        if outcome is Outcome.SUCCEEDED and not self._cancelling:
+        if outcome is Outcome.SUCCEEDED:
             self._reset()
             self._answers.response(result)
             return
+        if self._cancelling and outcome is not Outcome.CANCELLED:
+            self._cancelling = False
         own = outcome is Outcome.CANCELLED and self._asked
         self._end(f"{_OWN if own else _UNASKED[outcome]}{said}")
 

@@ -109,7 +109,7 @@ class Controller(EventHandler):
             caller = ServiceClient(port, event_loop, service, timeout, answers)
             self._add_sender(service, service.identifier, service.request, Section.REQUEST, caller.call)
         for action in graph.actionClients:
-            answers = Answers(*self._ends(action), partial(self.feed_back, action), self._react)
+            answers = Answers(*self._ends(action), partial(self.feed_back, action), partial(self.cancel_ended, action))
             starter = ActionClient(port, event_loop, action, settings.seconds("action_timeout_ms"), answers)
             self._add_sender(action, action.identifier, action.request, Section.GOAL, starter.start)
             self._senders[action.request.event].client = starter

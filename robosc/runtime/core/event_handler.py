@@ -161,10 +161,11 @@ class EventHandler:
             fault = self._perform(response, client.response.inputs, message)
             if fault is not None:
                 self._note_failure(client, str(fault))
-                if self._control.enabled(event_name(client.error)):
+                error = client.error.event
+                if self._control.enabled(event_name(error)):
                     # The log shows what can be read of the message.
-                    self._changes(client.error)
-                    self._run(client.error, (response, message))
+                    self._changes(error)
+                    self._run(error, (response, message))
             else:
                 self._note_success(client)
 
@@ -172,11 +173,20 @@ class EventHandler:
         """A call or goal has failed."""
         self._note_failure(client, why)
         with self._batch():
-            fault = self._perform(client.error)
-            if fault is not None:
-                # A failure that nobody heard of would leave the component waiting.
-                self._warn(client.error, f"{event_name(client.error)}: {fault}")
-                self._run(client.error, (client.error, None))
+            self._end_goal(client.error.event)
+
+    def cancel_ended(self, client: rosgraph.ActionClient) -> None:
+        """The goal has ended because the controller asked the server to cancel it."""
+        self._note_success(client)
+        with self._batch():
+            self._end_goal(client.canceled.event)
+
+    def _end_goal(self, event: sct.Event) -> None:
+        """Lets an end without data happen; it happens in any case, or the component would wait forever."""
+        fault = self._perform(event)
+        if fault is not None:
+            self._warn(event, f"{event_name(event)}: {fault}")
+            self._run(event, (event, None))
 
     def _note_success(self, client: Client) -> None:
         """A call or goal has come to a response that can be read."""

@@ -145,23 +145,27 @@ class ActionProxy(ABC, Generic[_Goal]):
     def _receive_feedback(self, identifier: Any, feedback: Message) -> bool:
         """Feedback of the robot's; whether it is forwarded."""
         goal = self._at_hand(identifier)
-        if goal is not None and not goal.cancelled:
+        if goal is not None:
             self._layer.feed_back(self._action, feedback)
         return goal is not None
 
     def _receive_end(self, goal: _Goal, result: Message, failure: str | None) -> None:
         """The robot has ended the goal at hand: it has failed, for a reason, or succeeded with a result."""
-        if not goal.cancelled:
-            if failure is None:
-                self._layer.respond(self._action, result)
-            else:
-                self._layer.fail(self._action, failure)
+        if failure is None:
+            self._layer.respond(self._action, result)
+        else:
+            self._fail(goal, failure)
         self._goal = None
+
+    def _fail(self, goal: _Goal, why: str) -> None:
+        if goal.cancelled and why.startswith("cancelled"):
+            self._layer.cancel_ended(self._action)
+        else:
+            self._layer.fail(self._action, why)
 
     def _give_up(self, goal: _Goal, why: str) -> None:
         """Nobody waits for the goal any more."""
-        if not goal.cancelled:
-            self._layer.fail(self._action, why)
+        self._fail(goal, why)
         self._goal = None
         self._end(goal, why)
 

@@ -14,7 +14,7 @@ inline constexpr char kDefinition[] = R"json({"robot": "Porter",
   {"name": "Desk.stop", "kind": "message", "topic": "/stop", "events": ["message_stop.u_response"]},
   {"name": "Gripper.grip", "kind": "service", "topic": "/gripper/grip", "events": ["service_grip.c_trigger", "service_grip.c_reset", "service_grip.u_response", "service_grip.u_error"]},
   {"name": "Gripper.release", "kind": "service", "topic": "release", "events": ["service_release.c_trigger", "service_release.c_reset", "service_release.u_response", "service_release.u_error"]},
-  {"name": "Base.travel", "kind": "action", "topic": "/travel", "events": ["action_travel.c_trigger", "action_travel.c_reset", "action_travel.c_cancel", "action_travel.u_feedback", "action_travel.u_response", "action_travel.u_error"]},
+  {"name": "Base.travel", "kind": "action", "topic": "/travel", "events": ["action_travel.c_trigger", "action_travel.c_reset", "action_travel.c_cancel", "action_travel.u_feedback", "action_travel.u_response", "action_travel.u_error", "action_travel.u_canceled"]},
   {"name": "Base.crawl", "kind": "message", "topic": "cmd_vel", "events": ["message_crawl.c_trigger"]},
   {"name": "Base.halt", "kind": "message", "topic": "cmd_vel", "events": ["message_halt.c_trigger"]}],
 "requirements": [

@@ -18,7 +18,7 @@ inline constexpr char kDefinition[] = R"json({"robot": "Usher",
   {"name": "Drive.speed", "kind": "message", "topic": "/speed", "events": ["message_speed.c_trigger"]},
   {"name": "Drive.label", "kind": "message", "topic": "label", "events": ["message_label.c_trigger"]},
   {"name": "Lamp.light", "kind": "service", "topic": "/lamp/light", "events": ["service_light.c_trigger", "service_light.c_reset", "service_light.u_response", "service_light.u_error"]},
-  {"name": "Navigation.go_to", "kind": "action", "topic": "/go_to", "events": ["action_go_to.c_trigger", "action_go_to.c_reset", "action_go_to.c_cancel", "action_go_to.u_feedback", "action_go_to.u_response", "action_go_to.u_error"]}],
+  {"name": "Navigation.go_to", "kind": "action", "topic": "/go_to", "events": ["action_go_to.c_trigger", "action_go_to.c_reset", "action_go_to.c_cancel", "action_go_to.u_feedback", "action_go_to.u_response", "action_go_to.u_error", "action_go_to.u_canceled"]}],
 "requirements": [
   {"event": "message_speed.c_trigger", "text": "requirement speed needs Guard.clear"},
   {"event": "message_speed.c_trigger", "text": "requirement speed needs Guard.charge > 20"},

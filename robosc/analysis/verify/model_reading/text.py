@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     #: A transition of a requirement automaton: its condition, where it goes, where it stands.
     _Way = tuple[Condition | None, str, ex.Located]
 
-#: Thesis listings 5.1 to 5.3: what a service and an action go through, from where and to where.
+#: The phases of a service (thesis listing 5.2) and of an action, which ends when its server says so.
 _SERVICE = {
     "c_trigger": {"idle": "wait_for_response"},
     "u_response": {"wait_for_response": "ready"},
@@ -55,10 +55,11 @@ _SERVICE = {
 }
 _ACTION = {
     "c_trigger": {"idle": "executing"},
-    "u_feedback": {"executing": "executing"},
-    "u_response": {"executing": "ready"},
-    "u_error": {"executing": "error"},
-    "c_cancel": {"executing": "idle"},
+    "u_feedback": {"executing": "executing", "canceling": "canceling"},
+    "u_response": {"executing": "ready", "canceling": "ready"},
+    "u_error": {"executing": "error", "canceling": "error"},
+    "c_cancel": {"executing": "canceling"},
+    "u_canceled": {"canceling": "idle"},
     "c_reset": {"ready": "idle", "error": "idle"},
 }
 #: How a transition names an event (thesis table 5.1).
@@ -68,6 +69,7 @@ _NAMED = {
     robosc.ResultType.error: "u_error",
     robosc.ResultType.feedback: "u_feedback",
     robosc.ResultType.cancel: "c_cancel",
+    robosc.ResultType.canceled: "u_canceled",
 }
 _UNITS = {robosc.TimeUnit.ms: 1, robosc.TimeUnit.s: 1000, robosc.TimeUnit.min: 60_000}
 

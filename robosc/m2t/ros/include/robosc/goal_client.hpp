@@ -124,16 +124,20 @@ class GoalClient {
   }
 
   void succeed(const ResultType& result) {
+    dropped_ = false;
     finish([this, &result] { handlers_.response(result); });
   }
 
   /// The goal has ended as cancelled. `more`: what the server says about it.
   void cancelled(const std::string& more = "") {
-    fail((ending_ ? "cancelled by the controller itself, an error to the model" : "cancelled by someone else") + more);
+    const std::string why =
+        (ending_ ? "cancelled by the controller itself, an error to the model" : "cancelled by someone else") + more;
+    finish([this, why] { handlers_.error(why); });
   }
 
   /// The goal has ended, not as it should have.
   void fail(const std::string& why) {
+    dropped_ = false;
     finish([this, why] { handlers_.error(why); });
   }
 

@@ -16,13 +16,14 @@ inline namespace ROBOSC_VERSION {
 template <typename Goal, typename Feedback, typename Result>
 class GoalProxy {
  public:
-  /// What the supervisor has to say and to hear. After `cancel` it hears no more of that goal.
+  /// What the supervisor has to say and to hear.
   struct Handlers {
     std::function<bool(const Goal&)> goal;            ///< Whether a goal goes on.
     std::function<void()> busy;                       ///< A goal is rejected because another one has not ended.
     std::function<void(const Feedback&)> feedback;    ///< The goal at hand goes on.
     std::function<void(const Result&)> response;      ///< It has succeeded.
     std::function<void(const std::string&)> error;    ///< It has not, and why.
+    std::function<void()> canceled;                   ///< It has ended because of a cancel of the supervisor's.
     std::function<void(const std::string&)> refused;  ///< The robot does not cancel it.
   };
 
@@ -102,17 +103,17 @@ class GoalProxy {
     if (cancelled_) send_cancel();
   }
 
-  void hear(const Feedback& feedback) {
-    if (!cancelled_) handlers_.feedback(feedback);
-  }
+  void hear(const Feedback& feedback) { handlers_.feedback(feedback); }
 
-  /// The robot's goal has ended. The supervisor counts one that it has cancelled as over already.
-  void succeed(const Result& result) {
-    if (!cancelled_) handlers_.response(result);
-  }
+  /// The robot's goal has ended.
+  void succeed(const Result& result) { handlers_.response(result); }
 
   void end(const std::string& why) {
-    if (!cancelled_) handlers_.error(why);
+    if (cancelled_ && why.compare(0, 9, "cancelled") == 0) {
+      handlers_.canceled();
+    } else {
+      handlers_.error(why);
+    }
   }
 
   void fail(const std::string& why) {

@@ -110,7 +110,7 @@ class ActionClient : public GoalClient<Countdown, typename Type::_action_feedbac
   void receive(const GoalHandle& goal, const Feedback& feedback) {
     if (!this->busy() || goal != goal_) return;
     this->accept();  // feedback may overtake the status
-    if (!this->dropped()) this->handlers().feedback(feedback);
+    this->handlers().feedback(feedback);
   }
 
   void finish() {

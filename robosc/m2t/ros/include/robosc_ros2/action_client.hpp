@@ -107,7 +107,7 @@ class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typen
     if (this->phase() == Phase::sent) {
       early_.push_back(message);
       if (early_.size() > kEarly) early_.pop_front();
-    } else if (handle_ && !this->dropped() && message.goal_id.uuid == handle_->get_goal_id()) {
+    } else if (handle_ && message.goal_id.uuid == handle_->get_goal_id()) {
       this->handlers().feedback(message.feedback);
     }
   }

@@ -133,6 +133,7 @@ class Layer {
     go_to_handlers.feedback = [this](const auto& message) { on_go_to_feedback(message); };
     go_to_handlers.response = [this](const auto& message) { on_go_to_response(message); };
     go_to_handlers.error = [this](const std::string& why) { on_go_to_error(why); };
+    go_to_handlers.canceled = [this] { on_go_to_canceled(); };
     go_to_handlers.refused = [](const std::string& why) {
       ROS_WARN("%s: %s", "/go_to", why.c_str());
     };
@@ -220,6 +221,11 @@ class Layer {
     usher_settle(&supervisor_);
   }
 
+  void on_go_to_canceled() {
+    usher_perform(&supervisor_, usher_action_go_to_u_canceled);
+    usher_settle(&supervisor_);
+  }
+
   // What the controller sends: whether it goes on, and if not, why.
 
   // requirement speed needs Guard.clear (usher.rscd)
@@ -301,6 +307,7 @@ class Layer {
       case usher_action_go_to_u_feedback:
       case usher_action_go_to_u_response:
       case usher_action_go_to_u_error:
+      case usher_action_go_to_u_canceled:
         direction = "in";
         break;
       default:

@@ -136,6 +136,7 @@ class Layer : public GuardedNode<rclcpp::Node> {
     go_to_handlers.feedback = [this](const auto& message) { on_go_to_feedback(message); };
     go_to_handlers.response = [this](const auto& message) { on_go_to_response(message); };
     go_to_handlers.error = [this](const std::string& why) { on_go_to_error(why); };
+    go_to_handlers.canceled = [this] { on_go_to_canceled(); };
     go_to_handlers.refused = [this](const std::string& why) {
       RCLCPP_WARN(get_logger(), "%s: %s", "/go_to", why.c_str());
     };
@@ -224,6 +225,11 @@ class Layer : public GuardedNode<rclcpp::Node> {
     usher_settle(&supervisor_);
   }
 
+  void on_go_to_canceled() {
+    usher_perform(&supervisor_, usher_action_go_to_u_canceled);
+    usher_settle(&supervisor_);
+  }
+
   // What the controller sends: whether it goes on, and if not, why.
 
   // requirement speed needs Guard.clear (usher.rscd)
@@ -305,6 +311,7 @@ class Layer : public GuardedNode<rclcpp::Node> {
       case usher_action_go_to_u_feedback:
       case usher_action_go_to_u_response:
       case usher_action_go_to_u_error:
+      case usher_action_go_to_u_canceled:
         direction = "in";
         break;
       default:

@@ -118,7 +118,7 @@ class Controller : public ControllerNode {
         [this](const auto& feedback) { on_travel_feedback(feedback); },
         [this](const auto& response) { on_travel_response(response); },
         [this](const std::string& why) { on_travel_error(why); },
-        [this] { wake(); }});
+        [this] { on_travel_canceled(); }});
     watchdog_stops_ =
         parameter<bool>(private_, "watchdog_stops", true,
         "Whether a silent topic holds commands back, cancels actions and sends halt.");
@@ -219,6 +219,12 @@ class Controller : public ControllerNode {
     travel_retry_->start();
     porter_begin(&supervisor_);
     porter_perform(&supervisor_, porter_action_travel_u_error);
+    porter_end(&supervisor_);
+  }
+
+  void on_travel_canceled() {
+    porter_begin(&supervisor_);
+    porter_perform(&supervisor_, porter_action_travel_u_canceled);
     porter_end(&supervisor_);
   }
 
@@ -376,6 +382,7 @@ class Controller : public ControllerNode {
       case porter_action_travel_u_feedback:
       case porter_action_travel_u_response:
       case porter_action_travel_u_error:
+      case porter_action_travel_u_canceled:
         direction = "in";
         break;
       default:

@@ -151,6 +151,12 @@ class Controller : public ControllerNode<rclcpp::Node> {
     porter_end(&supervisor_);
   }
 
+  void on_travel_canceled() {
+    porter_begin(&supervisor_);
+    porter_perform(&supervisor_, porter_action_travel_u_canceled);
+    porter_end(&supervisor_);
+  }
+
   // What was withheld for some time may happen now.
   void wake() {
     porter_begin(&supervisor_);
@@ -305,6 +311,7 @@ class Controller : public ControllerNode<rclcpp::Node> {
       case porter_action_travel_u_feedback:
       case porter_action_travel_u_response:
       case porter_action_travel_u_error:
+      case porter_action_travel_u_canceled:
         direction = "in";
         break;
       default:
@@ -554,7 +561,7 @@ class Controller : public ControllerNode<rclcpp::Node> {
         [this](const auto& feedback) { on_travel_feedback(feedback); },
         [this](const auto& response) { on_travel_response(response); },
         [this](const std::string& why) { on_travel_error(why); },
-        [this] { wake(); }});
+        [this] { on_travel_canceled(); }});
 
     state_report_.open(*this, "~/state");
     definition_report_.open_lasting(*this, "~/definition");
