@@ -48,7 +48,7 @@ def test_nothing_is_said_of_it(name: str, command: str) -> None:
 def test_the_page_shows_each_model() -> None:
     shown = re.findall(r"^```robosc\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
     assert sorted(shown) == sorted((PATTERNS / f"{name}.rscd").read_text(encoding="utf-8") for name in NAMES)
-    assert len(NAMES) == 12
+    assert len(NAMES) == 13
 
 
 def test_the_spindle_turns_behind_the_closed_guard() -> None:
@@ -123,3 +123,16 @@ def test_nothing_moves_before_the_test_has_passed() -> None:
     assert play("start_up", *begin, answered("test", REFUSED), "wait 60", heard("start"))[2:] == [[], [], ["test"]]
     assert play("start_up", "tick", answered("test", PASSED), heard("scan"))[1:] == [[], ["enable"]]
     assert play("start_up", "tick", "wait 10", heard("start"), answered("test"))[1:] == [[], [], ["test"]]
+
+
+def test_the_courier_sounds_its_horn_three_times() -> None:
+    wide, narrow = heard("gap", 1.5), heard("gap", 0.3)
+    lines = (heard("open"), wide, narrow, "wait 2", "wait 2", "wait 2", "wait 2", wide)
+    warned = [["horn", "stay"]] * 3
+    assert play("courier", *lines) == [["stay"], ["go"], ["stay"], *warned, ["stay"], []]
+
+
+def test_the_courier_stops_for_a_call_on_its_way_to_desk_1() -> None:
+    wide = heard("gap", 1.5)
+    lines = (heard("open"), wide, heard("call"), heard("arrived", 2), wide, heard("call"), wide)
+    assert play("courier", *lines) == [["stay"], *[["go"]] * 4, ["stay", "go"], ["go"]]
