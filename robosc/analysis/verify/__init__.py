@@ -6,7 +6,7 @@
 comes to are found in `loop`. `c_validation` and `cif_validation` are translation validation: they do not ask how a text
 was made, but read it anew, the C with a compiler, the CIF with a grammar of its own, and compare it with the model
 (Pnueli, Siegel, Singerman: Translation validation, TACAS 1998). `model_reading` does so the other way: it reads the
-text of the robot anew, and holds the plants that were made of it against that.
+text of the robot anew, and holds the plants and the engine model that were made of it against that.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from robosc.analysis.verify import c_validation, cif_validation
 from robosc.analysis.verify.c_exploration import Effort
 from robosc.analysis.verify.c_validation import validate_c, validate_generated_c, validate_loop
 from robosc.analysis.verify.cif_validation import validate_cif
+from robosc.analysis.verify.controller_reading import validate_controller
 from robosc.analysis.verify.loop_exploration import LoopEffort
 from robosc.analysis.verify.model_reading import validate_model
 from robosc.analysis.verify.properties import properties
@@ -42,6 +43,7 @@ __all__ = [
     "validate",
     "validate_c",
     "validate_cif",
+    "validate_controller",
     "validate_loop",
     "validate_model",
     "verify",
@@ -52,12 +54,13 @@ __all__ = [
 def verify(models: Models, configuration: Configuration) -> list[Verdict]:
     """Examines a supervised model, and gives a verdict for each property.
 
-    Examined are the model's properties (`verify_system`), its plants against the robot's text (skipped where
-    `models.robosc` is None), and the C and CIF that are generated with this configuration (`validate`). Raises
-    ValueError without a supervisor, MemoryError where decision diagrams take more than 4 GB.
+    Examined are the model's properties (`verify_system`), its plants and its controller against the robot's text
+    (skipped where `models.robosc` is None), and the C and CIF that are generated with this configuration (`validate`).
+    Raises ValueError without a supervisor, MemoryError where decision diagrams take more than 4 GB.
     """
     read = timed(validate_model, models.robosc, models.sct)
-    return [*verify_system(models.sct), read, *validate(models, configuration)]
+    controllers = [] if is_from_cif(models.sct) else [timed(validate_controller, models)]
+    return [*verify_system(models.sct), read, *controllers, *validate(models, configuration)]
 
 
 def verify_system(model: sct.SupervisoryControlModel, *, memory: int = MEMORY) -> list[Verdict]:

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 FINITE, BOUNDED, CONFLUENCE = "finite response", "bounded response", "confluence"
 _GIVEN_UP = "silent events take so many steps to come to rest that counting them was given up"
+#: What following all silent events together may cost, in nodes looked at.
+_EFFORT = 20_000_000
 #: How many resets of what has failed may be among internal events that depend on each other: all ways to hold them back
 #: are looked at.
 _HELD = 6
@@ -61,18 +63,31 @@ def bounded_response(system: GuardedSystem) -> Verdict:
     if found.bound is None:
         return Verdict(BOUNDED, Outcome.SKIPPED, system.size, _GIVEN_UP)
     said = system.supervisor.settlingBound
-    if said is not None and said < found.bound:
-        # What was found is the bound of groups of events taken together: no run need be that long.
-        for length, states in enumerate(runs(system.diagrams, system.internal, system.controlled), 1):
-            if length > said and states.satisfiable():
-                path = system.path_to(states)
-                run = _run(system, path.states[-1], length)
-                explanation = f"the supervisor says that at most {counted(said, 'silent event')} happen in a row"
-                return Verdict(BOUNDED, Outcome.REFUTED, system.size, explanation, system.trace(path), run)
-            if not states.satisfiable():
-                break
-    bound = found.bound if said is None else min(said, found.bound)
+    most = found.bound if said is None else said
+    longer = _longer(system, most)
+    if longer is not None and longer.satisfiable():
+        path = system.path_to(longer)
+        run = _run(system, path.states[-1], most + 1)
+        explanation = f"the supervisor says that at most {counted(most, 'silent event')} happen in a row"
+        return Verdict(BOUNDED, Outcome.REFUTED, system.size, explanation, system.trace(path), run)
+    bound = min(most, found.bound)
     return Verdict(BOUNDED, Outcome.PROVED, f"{system.size}, at most {counted(bound, 'silent event')} in a row")
+
+
+def _longer(system: GuardedSystem, most: int) -> Diagram | None:
+    """The states from which more than so many silent events can happen in a row; None where that costs too much.
+
+    All silent events are followed together, also where `completion`, which synthesis has the bound from, adds up the
+    bounds of groups of them: no run need be as long as these together.
+    """
+    effort = _EFFORT
+    for length, states in enumerate(runs(system.diagrams, system.internal, system.controlled), 1):
+        effort -= len(system.internal) * (states.node_count() + 1)
+        if length > most or not states.satisfiable():
+            return states
+        if effort < 0:
+            return None
+    raise AssertionError("there is no end to longer and longer runs")
 
 
 def _lasso(system: GuardedSystem, divergent: Diagram) -> tuple[tuple[TraceStep, ...], tuple[TraceStep, ...]]:

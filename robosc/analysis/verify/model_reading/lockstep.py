@@ -39,12 +39,13 @@ _TOGETHER = 1000
 
 
 class DifferenceError(Exception):
-    """The readings differ: how, and the events that lead there."""
+    """The readings differ: how, the events that lead there, and those that show it from there on."""
 
-    def __init__(self, explanation: str, trace: Sequence[TraceStep] = ()) -> None:
+    def __init__(self, explanation: str, trace: Sequence[TraceStep] = (), onwards: Sequence[TraceStep] = ()) -> None:
         super().__init__(explanation)
         self.explanation = explanation
         self.trace = tuple(trace)
+        self.onwards = tuple(onwards)
 
 
 @dataclass(frozen=True)
@@ -315,7 +316,7 @@ class Lockstep:
         try:
             theirs = pair.plants.happen(held, inputs)
         except AmbiguousError as error:
-            said = f"{error} for {words(pair.plants.element)}{_line(error.source)}"
+            said = f"{error} for {words(pair.plants.element)}{line(error.source)}"
             raise self._difference(said, held, inputs, way) from error
         said = _unlike(ours, theirs, held, pair)
         if said:
@@ -332,8 +333,8 @@ class Lockstep:
                 held = self._state(reads, state)
                 ours = _holds(claim, held)
                 if ours is not _holds(other, held):
-                    said = f"{claim.what}{_line(claim.source)} {'holds' if ours else 'does not hold'} by the text"
-                    said += f" and {'does not' if ours else 'does'} in the model{_where(held)}"
+                    said = f"{claim.what}{line(claim.source)} {'holds' if ours else 'does not hold'} by the text"
+                    said += f" and {'does not' if ours else 'does'} in the model{where(held)}"
                     raise DifferenceError(said, self._way(way))
 
     def _difference(
@@ -344,7 +345,7 @@ class Lockstep:
         way: int | Sequence[TraceStep],
     ) -> DifferenceError:
         data = f" with {', '.join(f'{name} = {_text(value)}' for name, value in inputs.items())}" if inputs else ""
-        return DifferenceError(f"{said}{_where(held)}{data}", self._way(way))
+        return DifferenceError(f"{said}{where(held)}{data}", self._way(way))
 
     def _way(self, way: int | Sequence[TraceStep]) -> list[TraceStep]:
         """The events that lead to a state, by the fewest."""
@@ -387,7 +388,7 @@ def _same_things(text: Machine, plants: Machine) -> None:
 
 def _same_slot(slot: Slot, text: Machine, plants: Machine) -> None:
     here, there = text.domains.get(slot), plants.domains.get(slot)
-    said = f"{_called(slot)}{_line(text.sources.get(slot))}"
+    said = f"{_called(slot)}{line(text.sources.get(slot))}"
     if here is None or there is None:
         raise DifferenceError(f"{said} is only in {'the model' if here is None else 'the text'}")
     if _kind(here) != _kind(there):
@@ -402,16 +403,16 @@ def _same_slot(slot: Slot, text: Machine, plants: Machine) -> None:
 
 def _same_event(ours: Event, theirs: Event) -> None:
     said = words(theirs.element)
-    line = "" if " in line " in said else _line(ours.element)
+    place = "" if " in line " in said else line(ours.element)
     if (ours.controllable, ours.kind) != (theirs.controllable, theirs.kind):
         other = f"{'' if theirs.controllable else 'un'}controllable in the model, of kind {theirs.kind}"
-        raise DifferenceError(f"{said}{line} is {other}")
+        raise DifferenceError(f"{said}{place} is {other}")
     if ours.timer != theirs.timer:
-        raise DifferenceError(f"{said}{line} has another time or place in the model")
+        raise DifferenceError(f"{said}{place} has another time or place in the model")
     for name, domain in ours.inputs.items():
         if theirs.inputs[name] != domain:
             there = _values(theirs.inputs[name])
-            raise DifferenceError(f"`{name}` of {said}{line} has {_values(domain)} by the text, {there} in the model")
+            raise DifferenceError(f"`{name}` of {said}{place} has {_values(domain)} by the text, {there} in the model")
 
 
 def _unlike(ours: Outcome, theirs: Outcome, held: Mapping[Slot, Value], pair: _Pair) -> str:
@@ -422,17 +423,17 @@ def _unlike(ours: Outcome, theirs: Outcome, held: Mapping[Slot, Value], pair: _P
     said = words(pair.plants.element)
     if bool(ours.refused) != bool(theirs.refused):
         if ours.refused:
-            return f"{said} can happen in the plants, and not by the text{_line(ours.refused.source)}"
-        lines = _lines(taken.source for taken in ours.taken) or _line(pair.text.element)
+            return f"{said} can happen in the plants, and not by the text{line(ours.refused.source)}"
+        lines = _lines(taken.source for taken in ours.taken) or line(pair.text.element)
         return f"{said} can happen by the text{lines}, and not in the plants"
     if bool(ours.forbidden) != bool(theirs.forbidden):
         found: Restriction | None = ours.forbidden or theirs.forbidden
         assert found is not None
         who = ("the text", "the model") if ours.forbidden else ("the model", "the text")
-        return f"{said} is forbidden by {who[0]}{_line(found.source)}, and not by {who[1]}"
+        return f"{said} is forbidden by {who[0]}{line(found.source)}, and not by {who[1]}"
     for slot in dict.fromkeys([*mine, *other]):
         if mine.get(slot) != other.get(slot):
-            lines = _lines(taken.source for taken in ours.taken if slot in taken.writes) or _line(pair.text.element)
+            lines = _lines(taken.source for taken in ours.taken if slot in taken.writes) or line(pair.text.element)
             told = f"{_becomes(slot, mine)} by the text{lines}, and {_becomes(slot, other)} in the plants"
             return f"after {said}, {_called(slot)} {told}"
     raise AssertionError("they do not differ")
@@ -485,7 +486,8 @@ def _called(slot: Slot) -> str:
     return f"the data of {owner}" if kind == "data" else owner
 
 
-def _where(held: Mapping[Slot, Value]) -> str:
+def where(held: Mapping[Slot, Value]) -> str:
+    """The values of slots as a condition of the language; those of requirement automata have no name there."""
     said = [
         f"{slot.plant.origin}.{slot.variable} = {_text(value)}" if slot.variable else f"{slot.plant.origin}.{value}"
         for slot, value in held.items()
@@ -494,7 +496,8 @@ def _where(held: Mapping[Slot, Value]) -> str:
     return f" where `{' and '.join(said)}`" if said else ""
 
 
-def _line(source: ex.Located | None) -> str:
+def line(source: ex.Located | None) -> str:
+    """The line of an element, in parentheses."""
     return f" (line {source.source.span.line})" if source is not None and source.source is not None else ""
 
 

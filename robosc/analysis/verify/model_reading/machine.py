@@ -79,11 +79,15 @@ class Taken(NamedTuple):
 
 @dataclass
 class Participant:
-    """What takes part in an event: for a state and inputs what it changes; None where it does not let it happen."""
+    """What takes part in an event: for a state and inputs what it changes; None where it does not let it happen.
+
+    `component` is the plant of the component whose transitions these are, None where they are no component's.
+    """
 
     step: Callable[[Mapping[Slot, Value], Mapping[str, Value]], Taken | None]
     reads: frozenset[Slot]
     source: ex.Located | None
+    component: Plant | None = None
 
 
 class Restriction(NamedTuple):
@@ -94,13 +98,23 @@ class Restriction(NamedTuple):
     source: ex.Located | None
 
 
-class Timer(NamedTuple):
-    """A time, the location in which it runs, if in one, and the messages that start it anew.
+class Length(NamedTuple):
+    """How long a time lasts, in milliseconds.
 
-    Its length is in milliseconds, or a parameter and how many milliseconds one of it is.
+    Where a parameter of the robot sets it: its name, how many milliseconds one of it is, the least and the greatest.
     """
 
-    length: int | tuple[str, int]
+    milliseconds: int
+    parameter: str = ""
+    unit: int = 1
+    shortest: int | None = None
+    longest: int | None = None
+
+
+class Timer(NamedTuple):
+    """A time, the location in which it runs, if in one, and the messages that start it anew."""
+
+    length: Length
     location: str | None
     without: frozenset[EventName]
 
@@ -154,7 +168,9 @@ class Event:
 class Machine:
     """A reading of a robot: its slots with their values and the first one, what is marked, events, conditions.
 
-    `conditions` are those of invariants and properties, by what they are called.
+    `conditions` are those of invariants and properties, by what they are called. Only the reading of the text has
+    `topics`, the ROS name of each communication, and `order`, the plants of communications and components in the order
+    of the text.
     """
 
     domains: dict[Slot, Domain] = field(default_factory=dict)
@@ -163,6 +179,8 @@ class Machine:
     events: dict[EventName, Event] = field(default_factory=dict)
     conditions: list[Claim] = field(default_factory=list)
     sources: dict[Slot, ex.Located] = field(default_factory=dict)
+    topics: dict[Plant, str] = field(default_factory=dict)
+    order: list[Plant] = field(default_factory=list)
 
 
 class Claim(NamedTuple):

@@ -40,6 +40,7 @@ class Instance:
     name: str
     text: robosc.Component
     arguments: Mapping[robosc.FormalParameter, tuple[ex.Expression, Environment]] = field(default_factory=dict)
+    remapped: Mapping[robosc.CommunicationType, robosc.TopicRemapping] = field(default_factory=dict)
 
     def of(self, kind: type[_Definition]) -> list[_Definition]:
         """Its definitions of a kind, in the order of the text."""
@@ -138,6 +139,29 @@ class Names:
             return None
         owner = f"{self._meant(expression.component, place).name}." if _is_member(expression.item) else ""
         return f"{owner}{expression.item.name}"
+
+    def settings(self, expression: ex.Expression, place: Environment) -> tuple[float, float, float]:
+        """The values of the parameter that an expression is: where nothing is set, the least and the greatest."""
+        assert isinstance(expression, robosc.Access)
+        parameter = expression.item
+        assert isinstance(parameter, robosc.Parameter)
+        inside = Environment()
+        if _is_member(parameter):
+            inside = self._inside(parameter, self._meant(expression.component, place))
+        whole = self.domain(parameter.type, inside)
+        first = self.constant(parameter.value, inside)
+        if isinstance(whole, range):
+            return first, whole[0], whole[-1]
+        assert parameter.lowest is not None
+        assert parameter.highest is not None
+        return first, self.constant(parameter.lowest, inside), self.constant(parameter.highest, inside)
+
+    def topic(self, instance: Instance, communication: robosc.CommunicationType) -> str:
+        """The ROS name of a communication: where it is imported `with`, as its text says, else its own name."""
+        named: Any = instance.remapped.get(communication, communication)
+        place = Environment() if communication in instance.remapped else Environment(instance, instance.arguments)
+        topic = named.identifier if named.computedIdentifier is None else self.constant(named.computedIdentifier, place)
+        return str(topic or communication.name)
 
     def domain(self, declared: robosc.DataType, place: Environment) -> Domain | None:
         """The values of a type; None where there is no end of them."""
@@ -311,6 +335,7 @@ def _is_member(item: Any) -> bool:
 def _instance(component: robosc.Component) -> Instance:
     """Follows `is` and `import` to the text; what is a parameter there is what was given on the way."""
     arguments: dict[robosc.FormalParameter, tuple[ex.Expression, Environment]] = {}
+    remapped: dict[robosc.CommunicationType, robosc.TopicRemapping] = {}
     text = component
     while not isinstance(text.type, robosc.LocalComponent):
         made = text.type
@@ -322,4 +347,6 @@ def _instance(component: robosc.Component) -> Instance:
         for parameter in text.parameters:
             if parameter.default is not None and parameter not in arguments:
                 arguments[parameter] = parameter.default, Environment()
-    return Instance(component.name, text, arguments)
+        for remapping in made.remappings if isinstance(made, robosc.ImportedComponent) else ():
+            remapped.setdefault(remapping.communicationType, remapping)
+    return Instance(component.name, text, arguments, remapped)

@@ -11,6 +11,7 @@ from robosc.analysis.verify.model_reading.machine import (
     Condition,
     Event,
     EventName,
+    Length,
     Literal,
     Machine,
     Meaning,
@@ -98,8 +99,11 @@ class _Reading:
         if timer is None:
             return None
         without = frozenset(map(self.name, timer.without))
-        duration = timer.duration
-        length = timer.milliseconds or 0 if duration is None else (duration.parameter, duration.unit)
+        length, duration = Length(timer.milliseconds or 0), timer.duration
+        if duration is not None:
+            length = Length(
+                duration.milliseconds, duration.parameter, duration.unit, duration.shortest, duration.longest
+            )
         return Timer(length, None if timer.location is None else timer.location.name, without)
 
     def meaning(self, reference: ex.Expression) -> Meaning:

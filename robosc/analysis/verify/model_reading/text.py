@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import partial
+from math import floor
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.verify.model_reading.machine import (
@@ -12,6 +13,7 @@ from robosc.analysis.verify.model_reading.machine import (
     Condition,
     Event,
     EventName,
+    Length,
     Machine,
     Meaning,
     Participant,
@@ -102,6 +104,7 @@ class _Reading:
         for instance in self.names:
             for communication in instance.of(robosc.CommunicationType):
                 self.communication(instance, communication)
+            self.machine.order.append(instance.plant)
         for instance in self.names:
             self.slots(instance)
         self.observer_slots()
@@ -120,6 +123,8 @@ class _Reading:
     def communication(self, instance: Instance, communication: robosc.CommunicationType) -> None:
         plant = _plant(instance, communication)
         self.ports[plant] = instance, communication
+        self.machine.topics[plant] = self.names.topic(instance, communication)
+        self.machine.order.append(plant)
         if isinstance(communication, robosc.Message):
             comes = communication.direction == robosc.MessageDirection.outgoing
             steps = {"u_response" if comes else "c_trigger": {"ready": "ready"}}
@@ -220,9 +225,12 @@ class _Reading:
         environment, unit = Environment(instance, instance.arguments), _UNITS[transition.unit]
         parameter = self.names.parameter(transition.duration, environment)
         if parameter is not None:
-            return Timer((parameter, unit), where, without)
+            # The node rounds what is set as doubles are rounded, halves up.
+            values = self.names.settings(transition.duration, environment)
+            first, shortest, longest = (floor(value * unit + 0.5) for value in values)
+            return Timer(Length(first, parameter, unit, shortest, longest), where, without)
         exact = Fraction(self.names.constant(transition.duration, environment)) * unit
-        return Timer(int(exact + Fraction(1, 2)), where, without)
+        return Timer(Length(int(exact + Fraction(1, 2))), where, without)
 
     def reaction(
         self,
@@ -256,7 +264,7 @@ class _Reading:
             return nothing if ignored else None
 
         source = next(iter(tried.values()))[0]
-        return Participant(step, frozenset(reads), source)
+        return Participant(step, frozenset(reads), source, instance.plant)
 
     def way(
         self, transition: robosc.Transition, name: EventName, instance: Instance

@@ -1,0 +1,55 @@
+"""The topics and servers of a ROS node, held against the text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.analysis.verify.controller_reading.loop import event_names
+from robosc.analysis.verify.model_reading.lockstep import DifferenceError
+from robosc.analysis.verify.model_reading.machine import EventName
+
+if TYPE_CHECKING:
+    from robosc.analysis.verify.model_reading.controller import ControllerText
+    from robosc.analysis.verify.model_reading.machine import Machine, Plant
+    from robosc.metamodel import rosgraph
+
+
+def compare_topics(controller: ControllerText, plants: Machine, graph: rosgraph.RosGraph) -> None:
+    """Raises DifferenceError where the node has not one subscription, or publisher, for each topic of the text.
+
+    Also where messages of a topic are in another order, and where a server has another name.
+    """
+    names = event_names(plants)
+    text = controller.text
+    heard = [(end.topic, end.interface, [names[part.event] for part in end.receptions]) for end in graph.subscriptions]
+    sent = [(end.topic, end.interface, [names[part.event] for part in end.sendings]) for end in graph.publishers]
+    for event, ends in (("u_response", heard), ("c_trigger", sent)):
+        ours = [EventName(plant, event) for plant in text.order if plant.kind == "message"]
+        ours = [name for name in ours if name in text.events]
+        theirs = [name for _, _, events in ends for name in events]
+        if sorted(ours) != sorted(theirs):
+            missing = ", ".join(f"`{name.plant.origin}`" for name in sorted({*ours} ^ {*theirs}))
+            raise DifferenceError(f"the text and the node do not have the same messages: {missing}")
+        seen: set[tuple[str, object]] = set()
+        for topic, interface, events in ends:
+            key = topic.removeprefix("/"), interface
+            if key in seen:
+                raise DifferenceError(f"topic `{topic}` is one in the text, and has two ends in the node")
+            seen.add(key)
+            for name in events:
+                _compare(name.plant, text, topic, is_same=controller.topic(name.plant) == key[0])
+            if events != sorted(events, key=ours.index):
+                said = f"the messages on topic `{topic}`"
+                raise DifferenceError(f"{said} are in another order in the node than in the text")
+    for service in graph.serviceClients:
+        plant = names[service.request.event].plant
+        _compare(plant, text, service.identifier, is_same=service.identifier == text.topics[plant])
+    for action in graph.actionClients:
+        plant = names[action.request.event].plant
+        _compare(plant, text, action.identifier, is_same=action.identifier == text.topics[plant])
+
+
+def _compare(plant: Plant, text: Machine, shown: str, *, is_same: bool) -> None:
+    if not is_same:
+        ours = f"`{plant.origin}` is `{text.topics[plant]}` in ROS by the text"
+        raise DifferenceError(f"{ours}, and `{shown}` in the node")
