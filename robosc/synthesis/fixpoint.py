@@ -35,6 +35,8 @@ _PAIR = 2
 _SMALL = 40
 #: How many times as large as several relations together may be the one of all of them.
 _LARGER = 8
+#: The nodes of a relation above which it stays a step of its own: there, following it costs more than calling it.
+_LARGE = 256
 #: The level of what depends on no variable: no states, or all.
 _TERMINAL = sys.maxsize
 
@@ -180,10 +182,10 @@ def _halves(part: Part, own: int, bound: int) -> tuple[Part, Part]:
 
 
 def _merged(steps: Sequence[Step]) -> list[Step]:
-    """The steps, some of one level as one: most of what is fired leads nowhere new.
+    """The steps, some of those with one level joined: most images and preimages add no state.
 
-    They are those that change the element at that level: after one of them the others start from another place. Of
-    those that leave it alone, many can happen beside each other, and each is fired best where the one before has led.
+    Only steps that change the element at that level are joined: after one of them the others start from another place.
+    Steps that leave it alone can mostly happen beside each other, and each is followed best from where the last led.
     """
     found: list[Step] = []
     by_level: dict[tuple[int, bool], list[Step]] = {}
@@ -191,12 +193,26 @@ def _merged(steps: Sequence[Step]) -> list[Step]:
         by_level.setdefault((step.level, step.present.node_level() == step.level), []).append(step)
     for (_, at_level), group in by_level.items():
         # Wide integers are accelerated by single events.
-        found += _as_one(group) if at_level and not group[0].encoding.layout.wide else group
+        found += _joined_where_it_pays(group) if at_level and not group[0].encoding.layout.wide else group
     return found
 
 
+def _joined_where_it_pays(steps: Sequence[Step]) -> Sequence[Step]:
+    """The steps, those with a small relation joined if one of them needs next values.
+
+    Steps that are `apart` need none, their join does: each of its images costs more than theirs together.
+    """
+    small: list[Step] = []
+    large: list[Step] = []
+    for step in steps:
+        (small if step.relation.node_count() <= _LARGE else large).append(step)
+    if all(step.apart is not None for step in small):
+        return steps
+    return [*_as_one(small), *large]
+
+
 def _as_one(steps: Sequence[Step]) -> Sequence[Step]:
-    """Steps as a single one, or as they are where its relation gets large: it keeps what only others change."""
+    """Steps as a single one, or as they are if its relation gets large: it keeps what only others change."""
     most = _LARGER * sum(step.relation.node_count() for step in steps)
     parts = steps
     # By halves, so that what is in between is small, too.

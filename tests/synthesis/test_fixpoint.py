@@ -38,6 +38,20 @@ def test_events_that_change_the_same_first_element_are_one_step():
     assert changed(warehouse("taken")) == [["Aisle", "R0"], ["Aisle", "R1"], ["Aisle", "R2", "R3"]]
 
 
+def test_events_that_need_no_next_values_stay_apart():
+    aisle = {"free": [edge(f"enter{i}", to="taken") for i in ROBOTS], "taken": []}
+    robots = [
+        plant(f"R{i}", {"out": [edge(f"enter{i}", to="in")], "in": []}, controllable=[f"enter{i}"]) for i in ROBOTS
+    ]
+    single = changed(model([plant("Aisle", aisle), *robots]))
+    assert single == [["Aisle", f"R{i}"] for i in ROBOTS]
+
+
+def test_events_with_a_large_relation_stay_apart(monkeypatch):
+    monkeypatch.setattr(fixpoint, "_LARGE", 1)
+    assert ["Aisle", "R2", "R3"] not in changed(warehouse("taken"))
+
+
 def test_events_that_only_read_it_stay_apart():
     assert changed(warehouse("free"))[-2:] == [["R2"], ["R3"]]
 
