@@ -17,13 +17,14 @@ import argparse
 import json
 import os
 import re
+import resource
 import shutil
 import subprocess
 import sys
 import tempfile
+from functools import partial
+from math import ceil
 from pathlib import Path
-from threading import Timer
-from time import perf_counter
 from typing import Any
 
 ROOT = Path(__file__).parent.parent
@@ -77,22 +78,25 @@ def robots(folder: Path) -> dict[str, Path]:
 
 
 def run(command: list[str], seconds: float, given: str = "") -> tuple[Results, str] | None:
-    """What a process takes (seconds that go by, those of the processor, megabytes), and what it says.
+    """Run a command: its costs (processor seconds, megabytes) and its output, or None.
 
-    None where it takes too long; `given` is what it reads.
+    `seconds` limits its processor time, `given` is its input. None: it took longer, or failed.
     """
     with tempfile.TemporaryFile("w+") as said, tempfile.TemporaryFile("w+") as asked:
         asked.write(given)
         asked.seek(0)
-        began = perf_counter()
-        process = subprocess.Popen(command, cwd=ROOT, stdin=asked, stdout=said, stderr=subprocess.STDOUT, text=True)
-        timer = Timer(seconds, process.kill)
-        timer.start()
+        process = subprocess.Popen(
+            command,
+            cwd=ROOT,
+            stdin=asked,
+            stdout=said,
+            stderr=subprocess.STDOUT,
+            text=True,
+            preexec_fn=partial(resource.setrlimit, resource.RLIMIT_CPU, (ceil(seconds), ceil(seconds))),  # noqa: PLW1509  # it forks on one thread
+        )
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
-        took = {"elapsed": perf_counter() - began, "cold": usage.ru_utime + usage.ru_stime}
-        took["memory"] = usage.ru_maxrss / 1000
-        timer.cancel()
+        took = {"cold": usage.ru_utime + usage.ru_stime, "memory": usage.ru_maxrss / 1000}
         said.seek(0)
         output = said.read()
     if process.returncode < 0:
@@ -142,10 +146,7 @@ class Cif:
         cold = run(command, self._seconds, f"{call}\n")
         if cold is not None:
             found |= cold[0]
-            timer = Timer(rounds * self._seconds, self._tools.kill)
-            timer.start()
             calls = [self._tools.call(SYNTHESIS, str(path), *_OPTIONS, "-o", self._output) for _ in range(rounds)]
-            timer.cancel()
             found["seconds"] = min(_synthesis(call.output) * call.processor for call in calls)
             text = re.search(r"Controlled system: (?:exactly )?([\d,.\u00a0]+) state", calls[0].output)
             assert text is not None or "Empty supervisor" in calls[0].output, calls[0].output
@@ -173,7 +174,7 @@ def main() -> int:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--more", type=Path, nargs="*", default=[])
     parser.add_argument("--rounds", type=int, default=3, help="of synthesis in one process")
-    parser.add_argument("--seconds", type=float, default=300, help="for each model and tool")
+    parser.add_argument("--seconds", type=float, default=300, help="of the processor, for each command")
     parser.add_argument("--machine", default=f"{os.cpu_count()} cores", help="where it runs, for the page")
     parser.add_argument("--output", type=Path)
     options = parser.parse_args()

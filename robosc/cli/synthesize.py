@@ -112,6 +112,7 @@ def _counts(
         "empty": counted.controlled_states == 0,
         **more,
         "seconds": round(sum(statistics.seconds.values()), 3),
+        "processor_seconds": round(sum(statistics.processor_seconds.values()), 3),
         "bdd_nodes": counted.bdd_nodes,
         **_cost(statistics),
     }

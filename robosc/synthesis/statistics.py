@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from enum import StrEnum
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -35,15 +35,16 @@ class Statistics:
     synthesize(model, statistics=statistics)
     print(statistics.seconds[Phase.FIXPOINT], statistics.peak_nodes)
 
-    `phase` is what it is at, `seconds` how long each phase took that has ended. `rounds` counts the rounds of the
-    fixpoint, `operations` the images and preimages of an event, `states` those that the last ended search of a round
-    has found. `peak_nodes` is the most nodes that were there at once, garbage included. Where more memory is needed
-    synthesis begins again (`attempts`): the seconds add up, all else begins anew. But for the seconds all of it is the
-    same on every run.
+    `phase` is what it is at. `seconds` and `processor_seconds` are the costs of each phase that has ended: wall-clock
+    time, and the processor time of the whole process. `rounds` counts the rounds of the fixpoint, `operations` the
+    images and preimages of an event, `states` those that the last ended search of a round has found. `peak_nodes` is
+    the most nodes that were there at once, garbage included. Where more memory is needed synthesis begins again
+    (`attempts`): the seconds add up, all else begins anew. But for the seconds all of it is the same on every run.
     """
 
     phase: Phase | None = None
     seconds: dict[Phase, float] = field(default_factory=dict)
+    processor_seconds: dict[Phase, float] = field(default_factory=dict)
     attempts: int = 0
     rounds: int = 0
     operations: int = 0
@@ -52,13 +53,15 @@ class Statistics:
 
     @contextmanager
     def during(self, phase: Phase) -> Iterator[None]:
-        """Says what the `with` block does, and takes its time."""
-        began = perf_counter()
+        """Set the phase and measure the time of the `with` block."""
+        began, processor_began = perf_counter(), process_time()
         self.phase = phase
         try:
             yield
         finally:
             self.seconds[phase] = self.seconds.get(phase, 0.0) + perf_counter() - began
+            processor = process_time() - processor_began
+            self.processor_seconds[phase] = self.processor_seconds.get(phase, 0.0) + processor
 
     def begin_again(self) -> None:
         """A new attempt."""

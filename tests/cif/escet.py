@@ -63,10 +63,6 @@ class Tools:
     def __exit__(self, *_: object) -> None:
         self._java.communicate()
 
-    def kill(self) -> None:
-        """Ends it at once: a call that goes on raises AssertionError."""
-        self._java.kill()
-
     def call(self, tool: str, *arguments: str) -> Call:
         """Calls a tool."""
         assert self._java.stdin is not None

@@ -4,13 +4,14 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from time import sleep
 
 import pytest
 
 from robosc.diagnostics import ModelError
 from robosc.metamodel.places import Place
 from robosc.semantics.printing import SctPrinter
-from robosc.synthesis import bdd, count, solve, synthesize
+from robosc.synthesis import Phase, Statistics, bdd, count, solve, synthesize
 from tests.sct_models import edge, model, needs, plant
 from tests.synthesis.classics import philosophers
 
@@ -28,8 +29,15 @@ for made in philosophers(6), counters:
     synthesis = synthesize(made)
     print(synthesis.bdd_nodes, synthesis.controlled_states)
     print([guard.synthesis and SctPrinter()(guard.synthesis) for guard in synthesis.supervisor.guards])
-    print({**vars(synthesis.statistics), "seconds": None})
+    print({**vars(synthesis.statistics), "seconds": None, "processor_seconds": None})
 """
+
+
+def test_time_asleep_is_no_time_of_the_processor():
+    statistics = Statistics()
+    with statistics.during(Phase.ORDER):
+        sleep(0.05)
+    assert 0 <= statistics.processor_seconds[Phase.ORDER] < statistics.seconds[Phase.ORDER]
 
 
 @pytest.mark.slow
