@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.checks.definitions import communication_of, of_kind, statements
-from robosc.checks.mending import Choice, Insertion, Removal, Replacement, Rewriting
+from robosc.checks.mending import Choice, Insertion, Removal, part_of
 from robosc.checks.rule import Finding, on_line
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import tree
@@ -38,9 +38,11 @@ def unknown_events(base: rsc.Base) -> Iterator[Finding]:
                 named,
                 f"{type(communication).__name__.lower()} `{communication.name}` has no {named.resultType}, expected"
                 f" {enumeration(f'`{name}`' for name in allowed)}",
-                Replacement(f"write `{written(communication.name)}` alone", written(communication.name), named)
-                if named.communicationType.component is None
-                else Rewriting(f"write `{written(communication.name)}` alone", r"\A\w+\s+(?:to|from)\s+", "", named),
+                Removal(
+                    f"write `{written(communication.name)}` alone",
+                    part_of(named).until(part_of(named.communicationType)),
+                    is_choice=False,
+                ),
             )
 
 
@@ -66,7 +68,7 @@ def start_of(hint: str, states: Iterable[rsc.State | rsc.RequirementState]) -> C
 
 def one_initial(hint: str, *states: rsc.State | rsc.RequirementState) -> Choice:
     """The states of which one is not to be initial."""
-    ways = (Rewriting(f"leave `initial` out before `{state.name}`", r"\binitial\s+", "", state) for state in states)
+    ways = (Removal(f"leave `initial` out before `{state.name}`", part_of(state).find("initial")) for state in states)
     return Choice(hint, tuple(ways))
 
 

@@ -1,159 +1,163 @@
-"""Hints that say what to write, and the edits that write it."""
+"""Hints that name an edit, and the edits.
+
+An edit takes tokens away, replaces them or writes beside them. It never looks for words in comments or strings.
+"""
 
 from __future__ import annotations
 
-import re
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-from robosc.checks.definitions import unit_of
-from robosc.checks.facts import fact
-from robosc.diagnostics import Edit, Span
-from robosc.diagnostics.lines import lines
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc as rsc
+from robosc.diagnostics import Edit
 from robosc.metamodel.places import place
-from robosc.metamodel.reflection import tree
+from robosc.semantics.naming import written
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.diagnostics import Repair
+    from robosc.language import File, Text
+    from robosc.language.tokens import Token
+    from robosc.metamodel import expression as ex
+
+_BLANKS = (" ", "\t")
+
+
+@dataclass(frozen=True)
+class Part:
+    """The tokens of a text from one index to another, both included.
+
+    Without a `text` it is nowhere, and so is every part found from it: no edit follows.
+    """
+
+    text: Text | None = None
+    first: int = 0
+    last: int = -1
+
+    def find(self, *words: str) -> Part:
+        """The first place in it where these keywords or symbols follow each other."""
+        starts = range(self.first, self.last - len(words) + 2)
+        return next((self._at(start, len(words)) for start in starts if self._stand(words, start)), NOWHERE)
+
+    def preceded_by(self, *words: str) -> Part:
+        """It together with these words right before it."""
+        start = self.first - len(words)
+        return Part(self.text, start, self.last) if self._stand(words, start) else NOWHERE
+
+    def followed_by(self, *words: str) -> Part:
+        """It together with these words right behind it."""
+        return Part(self.text, self.first, self.last + len(words)) if self._stand(words, self.last + 1) else NOWHERE
+
+    def to(self, last: Part) -> Part:
+        """From its beginning to the end of another part."""
+        return NOWHERE if NOWHERE in (self, last) else Part(self.text, self.first, last.last)
+
+    def until(self, other: Part) -> Part:
+        """From its beginning to where another part begins."""
+        return NOWHERE if NOWHERE in (self, other) else Part(self.text, self.first, other.first - 1)
+
+    def behind(self) -> Part:
+        """The token behind it."""
+        return self._at(self.last + 1, 1)
+
+    def end(self) -> Part:
+        """Its last token."""
+        return self._at(self.last, 1)
+
+    def token(self, index: int) -> Token:
+        """A token of its text."""
+        assert self.text is not None
+        return self.text.tokens[index]
+
+    def _at(self, start: int, count: int) -> Part:
+        return Part(self.text, start, start + count - 1)
+
+    def _stand(self, words: tuple[str, ...], start: int) -> bool:
+        """Whether these words stand from an index on."""
+        if self.text is None or start < 0:
+            return False
+        return all(self.token(start + index).is_keyword(word) for index, word in enumerate(words))
+
+
+NOWHERE = Part()
+
+
+def file_of(element: ex.Located | None) -> File | None:
+    """The file in whose text an element stands; None where the text was not read."""
+    around = element
+    while around is not None and around.source is None:
+        around = around.eContainer()
+    source = around.source if around is not None else None
+    file: File | None = source.file.parsed if source is not None and source.file is not None else None
+    return file
+
+
+def part_of(element: ex.Located | None) -> Part:
+    """The tokens of an element; of None nowhere."""
+    file = file_of(element)
+    if file is None:
+        return NOWHERE
+    text, span = file.text, place(element)[1]
+    start, end = text.offset(span.line, span.column), text.offset(span.end_line, span.end_column)
+    return Part(text, text.tokens.index_at(start), text.tokens.index_at(max(end - 1, start)))
+
+
+def _part(where: ex.Located | Part) -> Part:
+    return where if isinstance(where, Part) else part_of(where)
 
 
 class Insertion(NamedTuple):
-    """A hint, and the text that does what it says, to be written before an element, or `behind` it.
+    """A hint, and a text to write before a part of the text, or `behind` it.
 
     With `is_choice` it is one way of several: a person chooses.
     """
 
     hint: str
     text: str
-    element: ex.Located
+    where: ex.Located | Part
     behind: bool = False
     is_choice: bool = False
 
     def edits(self) -> tuple[Edit, ...]:
-        """What does it, in the file of the element."""
-        span = place(self.element)[1]
-        return (Edit(_end_of(span) if self.behind else _start_of(span), self.text),)
+        """The edits, in the file of the part."""
+        part = _part(self.where)
+        if part.text is None:
+            return ()
+        at = part.token(part.last).end if self.behind else part.token(part.first).start
+        return (Edit(part.text.span(at, at), self.text),)
 
 
 class Replacement(NamedTuple):
-    """A hint, and the text that does what it says in place of an element, or of what is before `until` in it."""
+    """A hint, and a text to write in place of a part of the text."""
 
     hint: str
     text: str
-    element: ex.Located
-    is_choice: bool = False
-    until: ex.Located | None = None
-
-    def edits(self) -> tuple[Edit, ...]:
-        """What does it, in the file of the element."""
-        span = place(self.element)[1]
-        if self.until is not None:
-            end = place(self.until)[1]
-            span = Span(span.line, span.column, end.line, end.column)
-        return (Edit(span, self.text),)
-
-
-class Wrapping(NamedTuple):
-    """A hint, and the texts that do what it says, before an element and behind it."""
-
-    hint: str
-    before: str
-    behind: str
-    element: ex.Located
+    where: ex.Located | Part
     is_choice: bool = False
 
     def edits(self) -> tuple[Edit, ...]:
-        """What does it, in the file of the element."""
-        span = place(self.element)[1]
-        return tuple(
-            Edit(at, text) for at, text in ((_start_of(span), self.before), (_end_of(span), self.behind)) if text
-        )
-
-
-class Rewriting(NamedTuple):
-    """A hint, and the text that takes the place of what a pattern finds first in an element, or of its group."""
-
-    hint: str
-    pattern: str
-    text: str
-    element: ex.Located
-    is_choice: bool = False
-
-    def edits(self) -> tuple[Edit, ...]:
-        """What does it, in the file of the element; nothing where that has no text."""
-        return tuple(_rewritten(self.element, self.pattern, self.text))
+        """The edits, in the file of the part."""
+        part = _part(self.where)
+        if part.text is None:
+            return ()
+        return part.text.replaced(part.token(part.first).start, part.token(part.last).end, self.text)
 
 
 class Removal(NamedTuple):
-    """A hint that an element is to be left out, with the comma beside it, or with its line where it has one."""
+    """A hint that a part of the text is to be left out, an element with the comma beside it."""
 
     hint: str
-    element: ex.Located
+    where: ex.Located | Part
     is_choice: bool = True
 
     def edits(self) -> tuple[Edit, ...]:
-        """What does it, in the file of the element; nothing where that has no text."""
-        found = _offsets(self.element)
-        if found is None:
-            return ()
-        content, start, end = found
-        before, behind = content[:start].rstrip(), content[end:].lstrip()
-        if before.endswith(","):
-            start = len(before) - 1
-        elif behind.startswith(","):
-            end = len(content) - len(behind[1:].lstrip())
-        else:
-            line = content.rfind("\n", 0, start) + 1
-            next_line = content.find("\n", end) + 1 or len(content)
-            alone = not content[line:start].strip() and not content[end:next_line].strip()
-            start, end = (line, next_line) if alone else (start, end + (content[end : end + 1] == " "))
-        return (_edit(content, start, end, ""),)
-
-
-class Cut(NamedTuple):
-    """A hint that what stands behind one element up to the end of another one, and a `closing`, is to be left out."""
-
-    hint: str
-    behind: ex.Located
-    last: ex.Located
-    closing: str = ""
-    is_choice: bool = False
-
-    def edits(self) -> tuple[Edit, ...]:
-        """What does it, in the file of the elements; nothing where that has no text."""
-        first, second = _offsets(self.behind), _offsets(self.last)
-        if first is None or second is None:
-            return ()
-        end = first[0].find(self.closing, second[2])
-        return () if end < 0 else (_edit(first[0], first[2], end + len(self.closing), ""),)
-
-
-class Unassigned(NamedTuple):
-    """A hint that a transition is to assign nothing, and what stands in place of that."""
-
-    hint: str
-    transition: rsc.Transition
-    text: str = ""
-    is_choice: bool = True
-
-    def edits(self) -> tuple[Edit, ...]:
-        """What does it, in the file of the transition; nothing where that has no text."""
-        around, first = _offsets(self.transition), _offsets(self.transition.assignments[0])
-        last = _offsets(self.transition.assignments[-1])
-        if around is None or first is None or last is None:
-            return ()
-        content = around[0]
-        before = content[around[1] : first[1]].rstrip()
-        if re.search(r"\bdo\Z", before) is None:
-            return ()
-        return (_edit(content, around[1] + len(before[:-2].rstrip()), last[2], self.text),)
+        """The edits, in the file of the part."""
+        part = self.where if isinstance(self.where, Part) else _with_comma(part_of(self.where))
+        return () if part.text is None else tuple(_removed(part.text, part))
 
 
 class Renaming(NamedTuple):
-    """A hint that gives an element another name, wherever the text of its robot or library names it."""
+    """A hint that gives an element another name, wherever its file names it."""
 
     hint: str
     element: ex.NamedElement
@@ -161,33 +165,28 @@ class Renaming(NamedTuple):
     is_choice: bool = True
 
     def edits(self) -> tuple[Edit, ...]:
-        """What does it, in the file of the element; nothing where that has no text."""
-        word = rf"(\^?{re.escape(self.element.name)})\b"
-        declared = _rewritten(self.element, rf"\b(?:{_DECLARING})\s+{word}", self.name)
-        found = list(declared) or list(_rewritten(self.element, rf"\A{word}", self.name))
-        for part in fact(_named, unit_of(self.element)).get(self.element, ()) if found else ():
-            found += _rewritten(part, _naming(part, self.element).replace("NAME", word), self.name)
-        return tuple(dict.fromkeys(found))
+        """The edits, in the file of the element; none where the text does not declare it."""
+        file = file_of(self.element)
+        names = file.occurrences(self.element) if file is not None else []
+        if file is None or not any(name.is_declaration for name in names):
+            return ()
+        return tuple(Edit(file.text.span(name.start, name.end), written(self.name)) for name in names)
 
 
 class Together(NamedTuple):
-    """A hint, and all that is to be done at once."""
+    """A hint, and all that is to be done at once, in one file."""
 
     hint: str
-    parts: tuple[Insertion | Replacement | Rewriting | Renaming, ...]
+    parts: tuple[Insertion | Replacement | Removal | Renaming, ...]
     is_choice: bool = False
 
     def edits(self) -> tuple[Edit, ...]:
-        """What does it, in the file of the first part."""
-        return tuple(edit for part in self.parts for edit in part.edits())
-
-    @property
-    def element(self) -> ex.Located:
-        """What is changed first."""
-        return self.parts[0].element
+        """The edits of all parts; none where one part has none."""
+        edits = [part.edits() for part in self.parts]
+        return tuple(edit for those in edits for edit in those) if all(edits) else ()
 
 
-Way: TypeAlias = "Insertion | Replacement | Wrapping | Rewriting | Removal | Cut | Unassigned | Renaming | Together"
+Way: TypeAlias = "Insertion | Replacement | Removal | Renaming | Together"
 
 
 class Choice(NamedTuple):
@@ -197,99 +196,53 @@ class Choice(NamedTuple):
     ways: tuple[Way, ...]
 
 
-#: How to mend what a rule found: words, the text that takes the place of the element, or what does it elsewhere.
+#: How to mend a finding: words, the text that takes the place of the element, or an edit elsewhere.
 Hint: TypeAlias = "str | Repair | Way | Choice"
 
 
-def file_of(way: Way) -> str:
-    """The file that a way to mend something changes."""
+def changed_file(way: Way) -> str:
+    """The file that a way changes, as the user would write it; empty where it changes none."""
     match way:
-        case Cut(behind=element) | Unassigned(transition=element):
+        case Together(parts=parts):
+            return changed_file(parts[0])
+        case Renaming(element=element):
             return place(element)[0]
-    return place(way.element)[0]
+    if isinstance(way.where, Part):
+        return way.where.text.file if way.where.text is not None else ""
+    return place(way.where)[0]
 
 
-#: Words that stand before a name that is declared.
-_DECLARING = (
-    "state|component|object|enum|variable|constant|parameter|condition|function|requirement|property|message|service"
-    "|action|interface"
-)
+def wrapped(hint: str, before: str, behind: str, element: ex.Located, *, is_choice: bool = False) -> Together:
+    """A hint that puts texts before and behind an element."""
+    parts = (Insertion("", before, element), Insertion("", behind, element, behind=True))
+    return Together(hint, tuple(part for part in parts if part.text), is_choice)
 
 
-#: What names an element by which feature, and where in its text the name stands.
-_NAMING: tuple[tuple[type, str, str], ...] = (
-    (rsc.Access, "component", r"\ANAME(?=\s*\.)"),
-    (rsc.Access, "enumeration", r"\ANAME(?=\s*\.)"),
-    (rsc.Transition, "target", r"\bgoto\s+NAME\Z"),
-    (rsc.RequirementTransition, "target", r"\bgoto\s+NAME\Z"),
-    (rsc.CommunicationReference, "communicationType", r"NAME\Z"),
-    (rsc.CommunicationReference, "component", r"\ANAME(?=\s*\.)"),
-    (rsc.ComplexDataTypeReference, "type", r"\ANAME"),
-    (rsc.PropertySegment, "property", r"NAME\Z"),
-    (rsc.ObjectPropertyValue, "property", r"\ANAME"),
-    (rsc.TopicRemapping, "communicationType", r"\ANAME"),
-    (rsc.Call, "function", r"\ANAME"),
-    (rsc.Argument, "parameter", r"\ANAME"),
-    (rsc.InstantiatedComponent, "definition", r"\bis\s+NAME"),
-    (rsc.InstanceQuantifier, "template", r"\A\w+\s+NAME"),
-)
+def _with_comma(part: Part) -> Part:
+    with_comma = part.preceded_by(",")
+    if with_comma is NOWHERE:
+        with_comma = part.followed_by(",")
+    return part if with_comma is NOWHERE else with_comma
 
 
-def _named(base: rsc.Base) -> dict[Any, list[Any]]:
-    """By what is named in a robot or library what names it, in the order of the text."""
-    found: dict[Any, list[Any]] = {}
-    for _, part in tree(base):
-        features = [feature for kind, feature, _ in _NAMING if isinstance(part, kind)]
-        features += ["item"] if isinstance(part, rsc.Access) else []
-        for element in dict.fromkeys(getattr(part, feature) for feature in features):
-            if element is not None:
-                found.setdefault(element, []).append(part)
-    return found
+def _removed(text: Text, part: Part) -> Iterator[Edit]:
+    """Edits that take tokens away, with blanks or lines that nothing else stands in. Comments stay."""
+    content = text.content
+    for start, end in text.tokens.runs(part.first, part.last):
+        line = content.rfind("\n", 0, start) + 1
+        next_line = content.find("\n", end) + 1 or len(content)
+        if not content[line:start].strip() and not content[end:next_line].strip():
+            yield Edit(text.span(line, next_line), "")
+            continue
+        first, after = start, end
+        before, behind = content[start - 1 : start], content[end : end + 1]
+        if behind in _BLANKS and before in (*_BLANKS, "\n", "(", "[", "{", ""):
+            after = next(index for index in range(end, len(content) + 1) if content[index : index + 1] not in _BLANKS)
+        elif before in _BLANKS and behind in ("\n", ")", "]", ",", ""):
+            first = next(index for index in range(start, -1, -1) if content[index - 1 : index] not in _BLANKS)
+        glue = " " if _is_word(content[first - 1 : first]) and _is_word(content[after : after + 1]) else ""
+        yield Edit(text.span(first, after), glue)
 
 
-def _naming(part: Any, element: Any) -> str:
-    """The pattern of the name of an element, `NAME`, in the text of what names it."""
-    if isinstance(part, rsc.Access) and part.item is element:
-        own = part.component is not None and not _is_qualified(part, part.component)
-        return r"\ANAME" if own else r"\A(?:\^?\w+\s*\.\s*)?NAME"
-    rows = (row for row in _NAMING if isinstance(part, row[0]))
-    return next(pattern for _, feature, pattern in rows if getattr(part, feature) is element)
-
-
-def _is_qualified(access: rsc.Access, component: rsc.Component) -> bool:
-    """Whether the text of an access names the component before the item."""
-    content, start, end = _offsets(access) or ("", 0, 0)
-    return re.match(rf"\^?{re.escape(component.name)}\s*\.", content[start:end]) is not None
-
-
-def _rewritten(element: ex.Located, pattern: str, text: str) -> Iterator[Edit]:
-    found = _offsets(element)
-    match = re.search(pattern, found[0][found[1] : found[2]], re.DOTALL) if found is not None else None
-    if found is not None and match is not None:
-        first, behind = match.span(match.re.groups and 1)
-        yield _edit(found[0], found[1] + first, found[1] + behind, text)
-
-
-def _offsets(element: ex.Located) -> tuple[str, int, int] | None:
-    """The text that an element stands in, and where; None where that is not known."""
-    source = element.source
-    if source is None or source.file is None or not source.file.content:
-        return None
-    content, span = source.file.content, source.span
-    known = lines(content)
-    return content, known.offset(span.line, span.column), known.offset(span.end_line, span.end_column)
-
-
-def _edit(content: str, start: int, end: int, text: str) -> Edit:
-    known = lines(content)
-    return Edit(Span(*known.place(start), *known.place(end)), text)
-
-
-def _start_of(span: Span) -> Span:
-    """The place before a span."""
-    return Span(span.line, span.column, span.line, span.column)
-
-
-def _end_of(span: Span) -> Span:
-    """The place behind a span."""
-    return Span(span.end_line, span.end_column, span.end_line, span.end_column)
+def _is_word(character: str) -> bool:
+    return character.isalnum() or character == "_"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from robosc.checks.mending import Choice, file_of
+from robosc.checks.mending import Choice, Replacement, changed_file
 from robosc.diagnostics import Alternative, Edit, Related, Repair, Severity, Span
 from robosc.metamodel import expression as ex
 from robosc.metamodel.places import place
@@ -42,7 +42,7 @@ class Finding:
             case Repair(said, None) | str(said):
                 return said, (), ()
             case Repair(said, text):
-                return said, (Edit(place(self.element)[1], str(text)),), ()
+                return said, Replacement(said, str(text), self.element).edits(), ()
             case Choice(said, ways):
                 return said, (), self._alternatives(ways)
         if self.hint.is_choice:
@@ -55,7 +55,7 @@ class Finding:
 
     def _edits(self, way: Way) -> tuple[Edit, ...]:
         """What a way changes in the file of the element, where it changes nothing else."""
-        return way.edits() if file_of(way) == place(self.element)[0] else ()
+        return way.edits() if changed_file(way) == place(self.element)[0] else ()
 
     def places(self) -> tuple[Related, ...]:
         """Where the other element that it speaks of stands."""

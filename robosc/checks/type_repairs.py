@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import component_of
-from robosc.checks.mending import Choice, Insertion, Replacement, Wrapping
+from robosc.checks.mending import Choice, Insertion, Replacement, wrapped
 from robosc.diagnostics import Repair
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
@@ -29,7 +29,7 @@ from robosc.semantics.typing import (
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from robosc.checks.mending import Hint
+    from robosc.checks.mending import Hint, Together
 
 #: What stands in a hint for words that are the writer's.
 _GAP = "…"
@@ -68,7 +68,7 @@ def repair(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
             return f"write an object value, such as `{{ {first.name}: … }}`" if first else "write `{}`"
         case ArrayType():
             hint = "write an array, such as `[1.0, 0.0]`"
-            return Wrapping(hint, "[", "]", expression, is_choice=True) if found == wanted.element else hint
+            return wrapped(hint, "[", "]", expression, is_choice=True) if found == wanted.element else hint
         case BasicType.NONE:
             return "leave the provide statement out: there is no data to send along"
     return _conversion(expression, found, wanted)
@@ -171,7 +171,7 @@ def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
             return "write a whole number or declare it double: a double is never rounded"
         why = "`/` always gives a double" if isinstance(expression, ex.Division) else "no double is rounded by itself"
         hint = f"write `round({_text(expression).strip('()')})` or declare it double: {why}"
-        return Wrapping(hint, "round(", ")", expression, is_choice=True)
+        return wrapped(hint, "round(", ")", expression, is_choice=True)
     if isinstance(found, EnumType):
         return "compare an enum's values by `=` only"
     ways = tuple(Replacement(f"write `{text}`", text, expression) for text in _LITERALS[wanted][0])
@@ -193,13 +193,13 @@ def _compared(expression: ex.Expression, found: Type) -> Hint | None:
     return _around(hint, expression, "", f" {_COMPARISON[found].replace(_GAP, '')}")
 
 
-def _around(hint: str, expression: ex.Expression, before: str, behind: str, *, is_choice: bool = True) -> Wrapping:
+def _around(hint: str, expression: ex.Expression, before: str, behind: str, *, is_choice: bool = True) -> Together:
     """A hint that puts something around an expression, in parentheses unless it is a name."""
     if isinstance(expression.eContainer(), ex.Expression):
         before, behind = f"({before}", f"{behind})"
-    if isinstance(expression, rsc.Access):
-        return Wrapping(hint, before, behind, expression, is_choice)
-    return Wrapping(hint, f"{before}(", f"){behind}", expression, is_choice)
+    if not isinstance(expression, rsc.Access):
+        before, behind = f"{before}(", f"){behind}"
+    return wrapped(hint, before, behind, expression, is_choice=is_choice)
 
 
 def _alternatives(enum: EnumType) -> str:

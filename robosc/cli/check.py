@@ -3,27 +3,32 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
 from robosc.checks import check as rules_of
+from robosc.checks.fixing import safe_edits
 from robosc.cli import CallError, interruption, say
 from robosc.cli.options import FILE, Paths, findings_format, paths
 from robosc.cli.reading import read
 from robosc.cli.report import Report
 from robosc.cli.watching import whenever_files_change
-from robosc.diagnostics import ModelError, certain_edits
+from robosc.diagnostics import ModelError
 from robosc.diagnostics.visible import visible
 from robosc.files import reading as files
 from robosc.files.reading import noting
 from robosc.files.writing import write_file
+from robosc.language import Documents
 from robosc.language import read as read_text
 from robosc.language.libraries import search_folders
 from robosc.ros_types import RosTypes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from robosc.diagnostics import Diagnostic
+    from robosc.language import Reading
 
 #: One edit may show the next fault; two never go round in a circle for longer.
 _ROUNDS = 10
@@ -72,24 +77,39 @@ def command(models: Sequence[str], form: str, fix: bool, watch: bool, paths: Pat
     )
 
 
+class _Checked(NamedTuple):
+    """A model and all its findings."""
+
+    reading: Reading
+    findings: list[Diagnostic]
+
+
 def _mend(model: str, paths: Paths) -> None:
-    """Does what the hints about a text say to write, as long as they do."""
+    """Apply the edits of findings to a text, and those of what is found then, where they make nothing worse."""
     if not model.endswith(".rscd"):
         raise CallError(f"{model} is no .rscd file: only a text can be mended")
     interfaces = RosTypes(paths.interfaces)
-    for _ in range(_ROUNDS):
-        with noting():  # What is read here may be written over.
-            reading = read_text(model, paths.libraries, interfaces)
-            before = files.read(model)
-        findings = [*reading.findings, *rules_of(reading.base, reading.findings, interfaces)]
-        edits = certain_edits(findings, model)
-        if not edits:
-            return
-        after = reading.file.text.after(edits)
-        if b"\r\n" in before:
-            after = after.replace("\n", "\r\n")
+
+    def checked(content: str) -> _Checked:
         interruption.check()
-        write_file(model, after)
+        with noting():  # What is read here may be written over.
+            reading = read_text(model, paths.libraries, interfaces, Documents({model: content}))
+        return _Checked(reading, [*reading.findings, *rules_of(reading.base, reading.findings, interfaces)])
+
+    with noting():
+        written = files.read(model)
+    try:
+        content = before = written.decode("utf-8")
+    except UnicodeDecodeError:
+        return  # To write the text anew would lose the bytes that can't be read.
+    for _ in range(_ROUNDS):
+        found = checked(content)
+        edits = safe_edits(found, checked)
+        if not edits:
+            break
+        content = found.reading.file.text.after(edits, content)
+    if content != before:
+        write_file(model, content)
 
 
 def _check(models: Sequence[str], form: str, paths: Paths) -> None:

@@ -124,17 +124,3 @@ def in_order(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
 def has_errors(findings: Iterable[Diagnostic]) -> bool:
     """Whether one of the findings keeps the model from being used."""
     return any(finding.severity is Severity.ERROR for finding in findings)
-
-
-def certain_edits(findings: Iterable[Diagnostic], file: str) -> list[Edit]:
-    """What the hints of findings say to write in a file, where it is not for a person to choose; all at once."""
-    return without_overlaps(edit for finding in findings if finding.file == file for edit in finding.edits)
-
-
-def without_overlaps(edits: Iterable[Edit]) -> list[Edit]:
-    """Edits of one file in order, without those that touch an earlier one: all of these can be done at once."""
-    done: list[Edit] = []
-    for edit in sorted(set(edits)):
-        if not done or (done[-1].span.end_line, done[-1].span.end_column) < (edit.span.line, edit.span.column):
-            done.append(edit)
-    return done

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lsprotocol import types
+from pygls.exceptions import JsonRpcException
 
-from robosc.diagnostics import Severity, certain_edits, in_order
+from robosc.checks.fixing import safe_edits
+from robosc.diagnostics import Severity, in_order
 from robosc.diagnostics.rules import address
-from robosc.editor.places import span_range, to_range
+from robosc.editor.places import span_range, to_edits, to_range
+from robosc.editor.renaming import rename_everywhere, renaming_of
 from robosc.language.libraries import declared_name
 from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
-    from robosc.diagnostics import Diagnostic, Edit
+    from robosc.diagnostics import Diagnostic
     from robosc.editor.project import Analysis, Snapshot
     from robosc.language import Reference, Text
 
@@ -84,27 +89,44 @@ def code_actions(snapshot: Snapshot, analysis: Analysis, params: types.CodeActio
     only = params.context.only
     text, uri = analysis.text, params.text_document.uri
     own = [finding for finding in analysis.findings if finding.file == text.file]
-    found = []
+    found: list[types.CodeAction] = []
     if only is None or types.CodeActionKind.QuickFix in only:
         for finding in own:
             place = span_range(text, finding.span)
             if place.start <= params.range.end and params.range.start <= place.end:
-                mended = [diagnostic(snapshot, finding, {text.file: text})]
-                ways = [(finding.hint or finding.message, finding.edits)] if finding.edits else []
-                for title, edits in (*ways, *((way.title, way.edits) for way in finding.alternatives)):
-                    change = types.WorkspaceEdit({uri: _edits(text, edits)})
-                    preferred = edits is finding.edits
-                    found.append(
-                        types.CodeAction(
-                            title, types.CodeActionKind.QuickFix, mended, is_preferred=preferred, edit=change
-                        )
-                    )
+                found += _quick_fixes(snapshot, analysis, uri, finding)
         found += _library_folders(snapshot, analysis, params.range)
     if only is not None and any(kind == _MEND_ALL or _MEND_ALL.startswith(f"{kind}.") for kind in only):
-        certain = certain_edits(own, text.file)
+        certain = safe_edits(analysis, partial(_checked, snapshot, analysis))
         if certain:
-            whole = types.WorkspaceEdit({uri: _edits(text, certain)})
+            whole = types.WorkspaceEdit({uri: to_edits(text, certain)})
             found.append(types.CodeAction("Do what all hints say", kind=_MEND_ALL, edit=whole))
+    return found
+
+
+def _quick_fixes(snapshot: Snapshot, analysis: Analysis, uri: str, finding: Diagnostic) -> Iterator[types.CodeAction]:
+    """The ways to mend a finding. One that renames does so in the whole project, where its texts then mean the same."""
+    text = analysis.text
+    mended = [diagnostic(snapshot, finding, {text.file: text})]
+    ways = [(finding.hint or finding.message, finding.edits)] if finding.edits else []
+    for title, edits in (*ways, *((way.title, way.edits) for way in finding.alternatives)):
+        change = types.WorkspaceEdit({uri: to_edits(text, edits)})
+        renaming = renaming_of(analysis.file, edits)
+        if renaming is not None:
+            try:
+                change = rename_everywhere(snapshot, analysis, renaming, [finding])
+            except JsonRpcException:
+                continue
+        preferred = edits is finding.edits
+        yield types.CodeAction(title, types.CodeActionKind.QuickFix, mended, is_preferred=preferred, edit=change)
+
+
+def _checked(snapshot: Snapshot, analysis: Analysis, content: str) -> Analysis:
+    """The analysis of another text in place of one."""
+    document = snapshot.documents[analysis.path]
+    after = snapshot.with_documents({**snapshot.documents, analysis.path: replace(document, content=content)})
+    found = after.analysis(analysis.path)
+    assert found is not None
     return found
 
 
@@ -127,7 +149,3 @@ def _declares(snapshot: Snapshot, path: Path, name: Reference) -> bool:
         return declared_name(snapshot.texts.read(path, is_input=False)) == name.name
     except OSError:
         return False
-
-
-def _edits(text: Text, edits: Iterable[Edit]) -> list[types.TextEdit]:
-    return [types.TextEdit(span_range(text, edit.span), edit.text) for edit in edits]

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 if TYPE_CHECKING:
-    from robosc.diagnostics import Span
+    from collections.abc import Iterable
+
+    from robosc.diagnostics import Edit, Span
     from robosc.editor.project import Snapshot
     from robosc.language import Text
 
@@ -20,6 +22,11 @@ def to_range(text: Text, start: int, end: int) -> types.Range:
 def span_range(text: Text, span: Span) -> types.Range:
     """The range of a span."""
     return to_range(text, text.offset(span.line, span.column), text.offset(span.end_line, span.end_column))
+
+
+def to_edits(text: Text, edits: Iterable[Edit]) -> list[types.TextEdit]:
+    """The edits of a text."""
+    return [types.TextEdit(span_range(text, edit.span), edit.text) for edit in edits]
 
 
 def to_offset(text: Text, position: types.Position) -> int:

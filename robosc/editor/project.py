@@ -33,9 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
     from typing import Any
 
-    from lsprotocol import types
-
-    from robosc.diagnostics import Diagnostic
+    from robosc.diagnostics import Diagnostic, Edit
     from robosc.language import File, Reading, Reference
 
 _BREAK = re.compile(r"\r\n|\r|\n")
@@ -118,17 +116,6 @@ class Project:
 
 #: The first line and unit, the last line and unit.
 Range = tuple[int, int, int, int]
-
-
-def edited(content: str, edits: Iterable[types.TextEdit]) -> str:
-    """A text after edits that do not overlap."""
-    places = [
-        ((edit.range.start.line, edit.range.start.character, edit.range.end.line, edit.range.end.character), edit)
-        for edit in edits
-    ]
-    for place, edit in sorted(places, key=lambda found: found[0], reverse=True):
-        content = _replaced(content, place, edit.new_text)
-    return content
 
 
 def _replaced(content: str, place: Range, text: str) -> str:
@@ -296,6 +283,15 @@ class Snapshot:
             path: declared_name(document.content.encode("utf-8", "surrogatepass"))
             for path, document in self.documents.items()
         }
+
+    def edited(self, edits: Mapping[Path, Iterable[Edit]]) -> Snapshot:
+        """The project as it would be after edits of texts, by their paths."""
+        documents = dict(self.documents)
+        for path, changes in edits.items():
+            before = documents.get(path) or Document(path.as_uri(), None, self.texts.read(path).decode())
+            text, _ = decode(str(path), before.content.encode("utf-8", "surrogatepass"))
+            documents[path] = replace(before, content=text.after(changes, before.content))
+        return self.with_documents(documents)
 
     def with_documents(self, documents: Mapping[Path, Document]) -> Snapshot:
         """The project as it would be with other texts."""

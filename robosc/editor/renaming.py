@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
-from robosc.editor.places import to_offset, to_range
-from robosc.editor.project import Document, Snapshot, edited
+from robosc.checks.fixing import objection
+from robosc.diagnostics import Edit
+from robosc.editor.places import to_edits, to_offset, to_range
 from robosc.editor.reading import occurrences
 from robosc.language.tokens import is_name
 from robosc.semantics.naming import written
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
-    from robosc.editor.project import Analysis
-    from robosc.language import Reference
+    from robosc.diagnostics import Diagnostic
+    from robosc.editor.project import Analysis, Snapshot
+    from robosc.language import File, Reference
 
 _FAILED = int(types.LSPErrorCodes.RequestFailed)
 
@@ -50,12 +50,47 @@ def rename(snapshot: Snapshot, analysis: Analysis, params: types.RenameParams) -
     _require_own(snapshot, analysis, name)
     if not is_name(new):
         raise _refused(f"`{new}` is no name: it has letters from a to z and A to Z, digits and `_`")
-    edits: dict[str, list[types.TextEdit]] = {}
-    for file, reference in occurrences(snapshot, analysis, offset):
-        place = to_range(file.text, reference.start, reference.end)
-        edits.setdefault(file.text.file, []).append(types.TextEdit(place, written(new)))
-    _require_same(snapshot, analysis, name.name, edits)
-    return types.WorkspaceEdit({snapshot.uri(file): found for file, found in edits.items()})
+    return rename_everywhere(snapshot, analysis, Renaming(name, new))
+
+
+class Renaming(NamedTuple):
+    """A name of the element to rename, the new name, and further edits of the text that belong to it."""
+
+    name: Reference
+    new: str
+    others: Sequence[Edit] = ()
+
+
+def rename_everywhere(
+    snapshot: Snapshot, analysis: Analysis, renaming: Renaming, mended: Sequence[Diagnostic] = ()
+) -> types.WorkspaceEdit:
+    """The edits that rename an element in all files of the project; `mended` are the findings that they are to mend.
+
+    Raises JsonRpcException where the texts would mean something else.
+    """
+    name, new, others = renaming
+    texts = {analysis.text.file: analysis.text}
+    edits = {analysis.text.file: list(others)}
+    for file, reference in occurrences(snapshot, analysis, name.start):
+        texts[file.text.file] = file.text
+        place = file.text.span(reference.start, reference.end)
+        edits.setdefault(file.text.file, []).append(Edit(place, written(new)))
+    _require_same(snapshot, analysis, name.name, edits, mended)
+    changes = {file: to_edits(texts[file], found) for file, found in edits.items() if found}
+    return types.WorkspaceEdit({snapshot.uri(file): found for file, found in changes.items()})
+
+
+def renaming_of(file: File, edits: Collection[Edit]) -> Renaming | None:
+    """The renaming that edits are; None where they do not replace the declared name of an element and all its uses."""
+    texts = {edit.span: edit.text for edit in edits}
+    for name in file.names:
+        new = texts.get(file.text.span(name.start, name.end)) if name.is_declaration else None
+        if new is not None:
+            spans = [file.text.span(other.start, other.end) for other in file.occurrences(name.target)]
+            if all(texts.get(span) == new for span in spans):
+                others = [edit for edit in edits if edit.span not in spans]
+                return Renaming(name, new.removeprefix("^"), others)
+    return None
 
 
 def _require_own(snapshot: Snapshot, analysis: Analysis, name: Reference) -> None:
@@ -67,9 +102,13 @@ def _require_own(snapshot: Snapshot, analysis: Analysis, name: Reference) -> Non
 
 
 def _require_same(
-    snapshot: Snapshot, analysis: Analysis, word: str, edits: Mapping[str, Sequence[types.TextEdit]]
+    snapshot: Snapshot,
+    analysis: Analysis,
+    word: str,
+    edits: Mapping[str, Sequence[Edit]],
+    mended: Sequence[Diagnostic],
 ) -> None:
-    """Reads the texts as they would be, and refuses what would make names stand for something else, or draw findings.
+    """Read the texts as they would be; refuse edits after which a model is worse.
 
     A text that can't be read in part is no basis where the word stands in that part.
     """
@@ -79,40 +118,14 @@ def _require_same(
             skipped = (file.text.content[start:end] for start, end in file.skipped)
             if any(re.search(rf"\b{re.escape(word)}\b", part) for part in skipped):
                 raise _refused(f"mend {file.text.file} first: `{word}` stands in what can't be read")
-    documents = dict(snapshot.documents)
-    for name, changes in edits.items():
-        path = Path(name).resolve()
-        before = documents.get(path) or Document(path.as_uri(), None, snapshot.texts.read(path).decode())
-        documents[path] = replace(before, content=edited(before.content, changes))
-    after = snapshot.with_documents(documents)
+    by_path = {Path(name).resolve(): changes for name, changes in edits.items()}
+    after = snapshot.edited(by_path)
     for path, found in analyses.items():
         renamed = after.analysis(path)
-        if renamed is None or _meaning(renamed) != _meaning(found):
-            raise _refused(f"this would change what {path.name} means{_why(found, renamed)}")
-
-
-def _meaning(analysis: Analysis) -> object:
-    """Which name stands for what, in the order of the texts, and which findings stand in which lines."""
-    numbers = {
-        (file.text.file, name.start): index
-        for file in analysis.reading.files.values()
-        for index, name in enumerate(file.names)
-    }
-
-    def number(target: object) -> object:
-        key = analysis.key(target)
-        return (key[0], numbers[key]) if key is not None else target is not None
-
-    names = [number(name.target) for file in analysis.reading.files.values() for name in file.names]
-    return names, Counter((finding.file, finding.span.line, finding.rule) for finding in analysis.findings)
-
-
-def _why(before: Analysis, after: Analysis | None) -> str:
-    known = Counter((finding.file, finding.span.line, finding.rule) for finding in before.findings)
-    for finding in after.findings if after is not None else ():
-        if (finding.file, finding.span.line, finding.rule) not in known:
-            return f": line {finding.span.line}: {finding.message}"
-    return ""
+        own = {name: by_path[at] for name in found.reading.files if (at := Path(name).resolve()) in by_path}
+        why = "" if renamed is None else objection(found, renamed, own, mended if found is analysis else ())
+        if why is not None:
+            raise _refused(f"this would change what {path.name} means{why and f': {why}'}")
 
 
 def _refused(why: str) -> JsonRpcException:

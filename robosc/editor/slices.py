@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.diagnostics import Span
 from robosc.language.outline import Outline
-from robosc.language.tokens import Tokens
 from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:
@@ -103,7 +102,7 @@ class Slices:
     @cached_property
     def _ranges(self) -> list[tuple[int, int]]:
         """Where the definitions stand, those that could not be read, too."""
-        return [(item.start, item.end) for item in Outline(Tokens(self._file.text.content)).file().items]
+        return [(item.start, item.end) for item in Outline(self._file.text.tokens).file().items]
 
     @cached_property
     def _starts(self) -> list[int]:

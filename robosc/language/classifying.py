@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robosc.language.grammar import first_words, pattern, words_of
-from robosc.language.tokens import Kind, Tokens
+from robosc.language.grammar import first_words, words_of
+from robosc.language.tokens import Kind
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.naming import ROBOSC_QUANTIFIERS
 from robosc.semantics.operators import FUNCTIONS
@@ -15,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.language.scopes import File, Reference
+    from robosc.language.tokens import Tokens
 
 #: What a name stands for, by the class of its element.
 _CLASSES: dict[type, str] = {
@@ -43,7 +43,6 @@ _READONLY = (rsc.Constant, rsc.Condition, rsc.FormalParameter, rsc.EnumValue)
 _TYPES = first_words("BasicDataType", "Array")
 _KINDS = {Kind.NUMBER: "number", Kind.STRING: "string", Kind.OPEN_STRING: "string", Kind.OPEN_COMMENT: "comment"}
 _BRACKETS = set("{}()[],.:;")
-_STRING_OR_COMMENT = re.compile(rf"{pattern('String')}|(?P<comment>{pattern('Comment')})|/\*[\s\S]*|[\"'][^\n]*")
 
 
 class Word(NamedTuple):
@@ -59,19 +58,13 @@ class Word(NamedTuple):
 def classify(file: File) -> list[Word]:
     """The words of a text whose meaning is known, in order."""
     names = {name.start: name for name in file.names}
-    found = [*_comments(file.text.content), *_words(file.text.content, names)]
-    return sorted(found)
+    comments = (Word(start, end, "comment") for start, end in file.text.tokens.comments)
+    return sorted([*comments, *_words(file.text.tokens, names)])
 
 
-def _comments(content: str) -> Iterator[Word]:
-    for match in _STRING_OR_COMMENT.finditer(content):
-        if match["comment"] is not None:
-            yield Word(match.start(), match.end(), "comment")
-
-
-def _words(content: str, names: dict[int, Reference]) -> Iterator[Word]:
+def _words(tokens: Tokens, names: dict[int, Reference]) -> Iterator[Word]:
     end = 0
-    for token in Tokens(content):
+    for token in tokens:
         if token.start < end:
             continue
         name = names.get(token.start)

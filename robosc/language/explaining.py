@@ -7,13 +7,13 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics import Repair
-from robosc.language.grammar import first, is_reserved
+from robosc.language.grammar import first, following, is_reserved, words_of
 from robosc.language.outline import COMPONENT, DEFINITIONS, RULES
 from robosc.language.tokens import Kind, Token
 from robosc.semantics.naming import ROBOSC_QUANTIFIERS, enumeration, written
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Collection, Iterable, Sequence
 
     from robosc.language.outline import Block, Level
     from robosc.language.tokens import Tokens
@@ -162,9 +162,10 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Rep
     """How to mend what stands at a token of an item, where that can be told."""
     token, before = tokens[index], tokens[index - 1]
     symbols = _symbols(token, wanted)
-    if token.text in _FOREIGN:
-        return _foreign(tokens, index)
-    if (stated := _statement_hint(tokens, index, wanted, block)) is not None:
+    if index < block.after and _is_name(tokens, index, wanted):
+        return Repair(f"write `^{token.text}` where a keyword is used as a name", f"^{token.text}")
+    stated = _foreign(tokens, index) if token.text in _FOREIGN else _statement_hint(tokens, index, wanted, block)
+    if stated is not None:
         return stated
     if before.is_name and before.text in wanted and is_reserved(before.text):
         return f"is a name missing before `{before.text}`?"
@@ -183,11 +184,36 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Rep
     return _word_hint(tokens, index, wanted, block) if token.kind is Kind.WORD else _MEANT.get(token.text)
 
 
+def _is_name(tokens: Tokens, index: int, wanted: Sequence[str]) -> bool:
+    """Whether a keyword stands where a name was meant, and no name is missing before it."""
+    token, before, after = tokens[index], tokens[index - 1], tokens[index + 1]
+    if "UnreservedName" not in wanted or not is_reserved(token.text) or token.text not in following():
+        return False
+    if before.is_keyword("requirement", "property") and after.text in following()[token.text]:
+        return False
+    return after.is_first or after.kind is not Kind.WORD or after.text in words_of("Base")
+
+
+def misread(tokens: Tokens, index: int, wanted: Collection[str]) -> int:
+    """The token that was meant as a name, where the one before the failing one was read as a keyword; else that one."""
+    before, token = tokens[index - 1], tokens[index]
+    around = tokens[index - 2]
+    is_event = set(wanted) == {"to", "from"} and not around.is_keyword("on")
+    is_target = around.is_keyword("requirement", ":") and token.is_keyword("needs", "after")
+    is_literal = before.is_keyword("value", "true", "false", "if") and is_target
+    return index - 1 if is_event or is_literal else index
+
+
 def _foreign(tokens: Tokens, index: int) -> Repair:
     """A hint for a symbol of another language; a quotation mark has another one at the other end."""
     own = _FOREIGN[tokens[index].text]
     said = f"write `{own}`" if own else "leave it out: nothing ends with a semicolon"
-    return Repair(said, own, elsewhere=_other_quotes(tokens, index) if own == '"' else ())
+    if own != '"':
+        return Repair(said, own)
+    others = _other_quotes(tokens, index)
+    # A string with one end would go on to the end of the line, one around a comment would take it in.
+    is_whole = others and not tokens.has_comment(tokens[index].start, others[-1][1])
+    return Repair(said, own, elsewhere=others) if is_whole else Repair(said)
 
 
 def _before(token: Token, said: str, text: str) -> Repair:
@@ -321,7 +347,4 @@ def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) 
         return "a name is made of the letters a to z and A to Z, of digits and of `_`"
     if token.text == "if" and tokens[block.first].is_keyword("on"):
         return "the condition of a transition stands before `do` and `goto`, as in `on … if … do … goto …`"
-    goes_on = tokens[index + 1].kind is not Kind.WORD or is_reserved(tokens[index + 1].text)
-    if index < block.after and "UnreservedName" in wanted and is_reserved(token.text) and goes_on:
-        return Repair(f"write `^{token.text}` where a keyword is used as a name", f"^{token.text}")
     return Repair(f"did you mean `{close[0]}`?", close[0]) if close else None

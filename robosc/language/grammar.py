@@ -75,6 +75,11 @@ def first(rule: str) -> frozenset[str]:
     return frozenset(_facts()[id(_peg(rule))].first)
 
 
+def last(*rules: str) -> frozenset[str]:
+    """What a text by one of these rules can end with: words and symbols of the language, or rules for words."""
+    return frozenset().union(*(_facts()[id(_peg(rule))].last for rule in rules))
+
+
 def first_words(*rules: str) -> frozenset[str]:
     """The keywords that a text by one of these rules can begin with, where it does not begin with an expression."""
     words = frozenset().union(*map(first, rules))

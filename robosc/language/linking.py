@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import ChainMap
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -35,6 +34,7 @@ if TYPE_CHECKING:
 
     from robosc.diagnostics import Diagnostic
     from robosc.language.building import Name
+    from robosc.language.tokens import Token
     from robosc.ros_types import RosTypes
     from robosc.semantics.instances import Resolved
 
@@ -108,8 +108,9 @@ class Linker:
         self.scope = scope
         for element, names in self._file.references.items():
             self._declaration(element, names)
-        for component in self._file.declared[rsc.Component].values():
-            if isinstance(component.type, rsc.LocalComponent):
+        for component in self._file.base.definitions if self._file.base is not None else ():
+            # Also one whose name another one has: that is a finding by itself.
+            if isinstance(component, rsc.Component) and isinstance(component.type, rsc.LocalComponent):
                 for definition in component.type.definitions:
                     linked = "interface" in self._file.references.get(definition, ())
                     if isinstance(definition, rsc.CommunicationType) and not linked:
@@ -335,8 +336,9 @@ class Linker:
     def _value_of_enum(self, name: Name, value: rsc.EnumValue) -> Repair:
         enum = value.eContainer().eContainer()
         said = f"`{written(name.text)}` is a value of `{written(enum.name)}`: write it without a component"
-        qualifier = re.match(r"\s*\.\s*\w+\^?", self._file.text.content[: name.start][::-1])
-        return Repair(said, elsewhere=((name.start - qualifier.end(), name.start, ""),) if qualifier else ())
+        tokens = self._file.text.tokens
+        at = tokens.index_at(name.start)
+        return Repair(said, elsewhere=((tokens[at - 2].start, tokens[at - 1].end, ""),))
 
     def _target(self, transition: rsc.Transition | rsc.RequirementTransition, name: Name) -> None:
         if isinstance(transition, rsc.RequirementTransition):
@@ -535,7 +537,7 @@ class Linker:
 
     def _read_as_property(self, access: rsc.Access, name: Name) -> None:
         """`a.b`, where `a` turned out to be no component: then `b` is a property of it."""
-        start = self._file.text.content.rfind(".", 0, name.start)
+        start = self._point_before(name).start
         segment = rsc.PropertySegment(source=self._file.text.source(start, name.end))
         access.segments.insert(0, segment)
         names = self._file.references
@@ -596,8 +598,12 @@ class Linker:
         return None
 
     def _index_before(self, name: Name) -> Repair:
-        point = self._file.text.content.rfind(".", 0, name.start)
+        point = self._point_before(name).start
         return Repair(f"write an index before it: `[0].{name.text}`", elsewhere=((point, point, "[0]"),))
+
+    def _point_before(self, name: Name) -> Token:
+        tokens = self._file.text.tokens
+        return tokens[tokens.index_at(name.start) - 1]
 
     def around(self, element: ex.Located, kind: type[_Element]) -> _Element | None:
         """The component or enum that contains the element, if it is of that kind.

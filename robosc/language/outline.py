@@ -11,7 +11,7 @@ from difflib import get_close_matches
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from robosc.language.grammar import first, first_words, following, is_reserved
+from robosc.language.grammar import first, first_words, following, is_reserved, last, words_of
 from robosc.language.scopes import Declared
 from robosc.language.tokens import Kind, Token
 
@@ -84,6 +84,12 @@ _SECOND = {
     for word in following()[starter] - first("Expression")
     if word == "{" or (word.isalpha() and word.islower())
 }
+#: Keywords and symbols after which an item goes on. (A colon ends one by the grammar alone: `send:`.)
+_INSIDE = (
+    {word.partition("(?!")[0] for word in words_of("Base")}
+    - last(*(level.rule for level in (PROPERTIES, RULES, TRANSITIONS, AUTOMATON, COMPONENT, DEFINITIONS)))
+    - {"{"}
+) | {":"}
 
 
 @dataclass(frozen=True)
@@ -279,6 +285,8 @@ class Outline:
             return False
         if tokens[at].text == "message" and not tokens[at].is_first:
             return False
+        if self._is_named(at):
+            return False
         return not self._continues(level, _CONTINUED.get(tokens[at].text, ()))
 
     def _is_starter(self, level: Level, at: int) -> bool:
@@ -294,7 +302,13 @@ class Outline:
         """Whether the token before the current one is one of these keywords, if misspelt then in the same line."""
         token, before = self._tokens[self._at], self._tokens[self._at - 1]
         misspelt = before.is_first and not token.is_first and level.starter(before) in starters
-        return before.is_keyword(*starters) or misspelt
+        return (before.is_keyword(*starters) and not self._is_named(self._at - 1)) or misspelt
+
+    def _is_named(self, at: int) -> bool:
+        """Whether what looks like a keyword can only be a name: an item goes on before it in its line, or behind it."""
+        token, before, after = self._tokens[at], self._tokens[at - 1], self._tokens[at + 1]
+        goes_on = before.is_keyword(*_INSIDE) or self._tokens[at - 2].is_keyword("most")
+        return after.is_keyword(",", ".", ":=") or (not token.is_first and goes_on)
 
     def _misspelt(self, level: Level) -> bool:
         """Whether a line begins with what looks like a starter and a name: no line of an item goes on so."""

@@ -6,50 +6,58 @@ parse is a finding and is blanked out, and the text that remains, parsed as a wh
 
 from __future__ import annotations
 
+from dataclasses import replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
-from robosc.diagnostics import Repair
+from robosc.diagnostics import Related, Repair
 from robosc.language.building import Builder
-from robosc.language.explaining import expected, found, hint
+from robosc.language.explaining import expected, found, hint, misread
 from robosc.language.grammar import Failure, first_words, is_reserved, parse
 from robosc.language.outline import DECLARED, DEFINITIONS, PROPERTIES, RULES, Block, Brace, Outline
 from robosc.language.scopes import Declared, File, SkippedRegions
-from robosc.language.tokens import Kind, Token, Tokens, too_complex
+from robosc.language.tokens import Kind, Token, too_complex
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from robosc.diagnostics import Diagnostic
     from robosc.language.text import Text
     from robosc.metamodel import robosc as rsc
 
+_LEAVE_OUT = "leave it out"
 #: Items that begin with these declare nothing that another place could name.
 _DECLARING_NOTHING = first_words("Requirement", "ProvideStatement", "Transition")
 
 
 def parse_file(text: Text) -> File:
     """What can be read of a text, its names not linked. Findings are of the rule `syntax`."""
-    tokens = Tokens(text.content)
-    tree = None if too_complex(tokens) else parse(text.content, "Base")
+    file = _parsed(text)
+    if text.source_file is not None:
+        text.source_file.parsed = file
+    return file
+
+
+def _parsed(text: Text) -> File:
+    tree = None if too_complex(text.tokens) else parse(text.content, "Base")
     if tree is None or isinstance(tree, Failure):
-        return recovered(text, tokens)
+        return recovered(text)
     builder = Builder(text)
     base = builder.build(tree)
     return File(text, base, builder.references, builder.declared, builder.bounded, findings=builder.findings)
 
 
-def recovered(text: Text, tokens: Tokens) -> File:
-    """What can be read of a text that the grammar does not allow, and why it doesn't; `tokens` are the text's."""
-    return _Recovery(text, tokens).parse()
+def recovered(text: Text) -> File:
+    """What can be read of a text that the grammar does not allow, and why it doesn't."""
+    return _Recovery(text).parse()
 
 
 class _Recovery:
     """Parses a text that has faults. `_content` is the text, with what was found to be wrong blanked out or mended."""
 
-    def __init__(self, text: Text, tokens: Tokens) -> None:
+    def __init__(self, text: Text) -> None:
         self._text = text
-        self._tokens = tokens
+        self._tokens = tokens = text.tokens
         # Comments are blanks here, and so is what lies behind the text: room for the braces that are missing there.
         self._content = [character if character == "\n" else " " for character in text.content + " " * 10]
         for token in tokens:
@@ -78,6 +86,7 @@ class _Recovery:
         builder = Builder(self._text)
         base = self._base(root, builder)
         findings = sorted([*self._findings, *builder.findings], key=lambda finding: finding.span)
+        findings = _without_consequences(_by_cause(findings))
         return File(
             self._text, base, builder.references, builder.declared, builder.bounded, self._regions, findings=findings
         )
@@ -93,7 +102,7 @@ class _Recovery:
             token = tokens[brace.index]
             if brace.surplus:
                 why = "what follows belongs inside" if brace.text == "}" else "one stands before it"
-                self._report(brace.index, f"this `{brace.text}` is one too many: {why}", Repair("leave it out", ""))
+                self._report(brace.index, f"this `{brace.text}` is one too many: {why}", Repair(_LEAVE_OUT, ""))
                 self._blank(token.start, token.end)
                 continue
             # Of the braces that are missing at the end, the innermost is reported.
@@ -174,6 +183,10 @@ class _Recovery:
         if token.kind is Kind.OPEN_STRING:
             self._report(index, "this string is not closed", f"end it with `{token.text[0]}` in the same line")
             return
+        named = misread(tokens, index, failure.expected)
+        if named < index:
+            index, failure = named, replace(failure, expected=("UnreservedName",))
+            token = tokens[index]
         wanted = f"expected {expected(failure.expected, block.level)}"
         message = f"found {found(token)}, {wanted}"
         repair = hint(tokens, index, failure.expected, block)
@@ -276,6 +289,31 @@ class _Recovery:
     def _report(self, index: int, message: str, repair: Repair | str | None = None) -> None:
         token = self._tokens[index]
         self._findings.append(self._text.error("syntax", token.start, token.end, message, repair))
+
+
+def _by_cause(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Findings with one for each keyword that is used as a name: the first, with the edits of all."""
+    found: list[Diagnostic] = []
+    firsts: dict[str, int] = {}
+    for finding in findings:
+        word = finding.edits[0].text if finding.edits else ""
+        if word.startswith("^") and firsts.setdefault(word, len(found)) < len(found):
+            first = found[firsts[word]]
+            other = Related(finding.file, finding.span, f"here `{word}` is missing, too")
+            found[firsts[word]] = replace(first, edits=first.edits + finding.edits, related=(*first.related, other))
+        else:
+            found.append(finding)
+    return found
+
+
+def _without_consequences(findings: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """Findings of which no brace is left out behind another error, which may be why it seems to be one too many."""
+    first = findings[0].span.line if findings else 0
+    hint = f"mend the error in line {first} first"
+    return [
+        replace(finding, hint=hint, edits=()) if index and finding.hint == _LEAVE_OUT else finding
+        for index, finding in enumerate(findings)
+    ]
 
 
 def _meant(token: Token) -> str | None:

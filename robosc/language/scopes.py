@@ -131,6 +131,10 @@ class File:
         )
         return sorted(found, key=lambda name: name.start)
 
+    def occurrences(self, element: Any) -> list[Reference]:
+        """Where the text declares and names an element, in order."""
+        return [name for name in self.names if name.target is element]
+
     def name_at(self, offset: int) -> Reference | None:
         """The name that an offset lies in or right behind; None where there is none."""
         after = bisect_right(self.names, offset, key=lambda name: name.start)

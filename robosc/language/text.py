@@ -13,11 +13,14 @@ from typing import TYPE_CHECKING
 from robosc.diagnostics import Alternative, Diagnostic, Edit, Repair, Severity, Span
 from robosc.diagnostics.lines import Lines
 from robosc.files import reading as files
+from robosc.language.tokens import Tokens
 from robosc.metamodel.places import Place, SourceFile
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+_BREAK = re.compile(r"\r\n|\r|\n")
+_MARK = codecs.BOM_UTF8.decode()
 #: A line that is a comment and nothing else.
 _COMMENT = re.compile(r"[ \t]*(?://(?P<words>[^\n]*))")
 
@@ -40,6 +43,11 @@ class Text:
     @cached_property
     def _lines(self) -> Lines:
         return Lines(self.content)
+
+    @cached_property
+    def tokens(self) -> Tokens:
+        """The words, numbers, strings and symbols of the text."""
+        return Tokens(self.content)
 
     def span(self, start: int, end: int) -> Span:
         """The span between two offsets."""
@@ -77,15 +85,30 @@ class Text:
         # A first half alone is left out, and so is the character that it belongs to.
         return start + len(units.decode("utf-16-le", "ignore"))
 
-    def after(self, edits: Iterable[Edit]) -> str:
-        """The text after edits that do not overlap."""
+    def replaced(self, start: int, end: int, text: str) -> tuple[Edit, ...]:
+        """The edits that put a text in place of the tokens between two offsets. Comments between them stay."""
+        if start == end:
+            return (Edit(self.span(start, end), text),)
+        runs = self.tokens.runs(self.tokens.index_at(start), self.tokens.index_at(end - 1))
+        bounds = [(max(first, start), min(last, end)) for first, last in runs]
+        return tuple(Edit(self.span(*bound), "" if index else text) for index, bound in enumerate(bounds))
+
+    def after(self, edits: Iterable[Edit], written: str | None = None) -> str:
+        """The text after edits that do not overlap.
+
+        `written` is the text as its file has it, with a byte order mark and other line breaks, which are kept.
+        """
+        content = self.content if written is None else written
+        mark = len(content) - len(content.removeprefix(_MARK))
+        starts = [mark, *(found.end() for found in _BREAK.finditer(content))]
         pieces: list[str] = []
         behind = 0
         for edit in sorted(edits):
-            span = edit.span
-            pieces += self.content[behind : self.offset(span.line, span.column)], edit.text
-            behind = self.offset(span.end_line, span.end_column)
-        return "".join([*pieces, self.content[behind:]])
+            line, column = self._lines.place(self.offset(edit.span.line, edit.span.column))
+            pieces += content[behind : starts[line - 1] + column - 1], edit.text
+            line, column = self._lines.place(self.offset(edit.span.end_line, edit.span.end_column))
+            behind = starts[line - 1] + column - 1
+        return "".join([*pieces, content[behind:]])
 
     def source(self, start: int, end: int) -> Place:
         """The place between two offsets."""
@@ -97,9 +120,9 @@ class Text:
         made = Diagnostic(self.file, span, Severity.ERROR, rule, message)
         if not isinstance(repair, Repair):
             return replace(made, hint=repair)
-        edits = [Edit(self.span(first, behind), text) for first, behind, text in repair.elsewhere]
-        edits += [] if repair.text is None else [Edit(span, repair.text)]
-        alternatives = [Alternative(f"write `{text}`", (Edit(span, text),)) for text in repair.choices]
+        edits = [edit for place in repair.elsewhere for edit in self.replaced(*place)]
+        edits += [] if repair.text is None else self.replaced(start, end, repair.text)
+        alternatives = [Alternative(f"write `{text}`", self.replaced(start, end, text)) for text in repair.choices]
         return replace(made, hint=repair.hint, edits=tuple(edits), alternatives=tuple(alternatives))
 
 
@@ -148,4 +171,4 @@ def decode(file: str, content: bytes, name: str | None = None) -> tuple[Text, li
         # The rest is checked with blanks in such places, so that one fault draws one finding.
         text = content.decode("utf-8", errors="replace").replace("\N{REPLACEMENT CHARACTER}", " ")
     text = text.replace("\r\n", "\n").replace("\r", "\n")
-    return Text(file, text, SourceFile(name or file, file, text)), findings
+    return Text(file, text, SourceFile(name or file, file)), findings

@@ -6,7 +6,7 @@ The parser matches regular expressions at offsets: only the rule at hand tells a
 from __future__ import annotations
 
 import re
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from enum import Enum, auto
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 _TOKEN = re.compile(
-    rf"""[ \t\n\r]+|{pattern("Comment")}
+    rf"""[ \t\n\r]+|(?P<COMMENT>{pattern("Comment")})
     |(?P<OPEN_COMMENT>/\*[\s\S]*)
     |(?P<WORD>\^?[^\W\d]\w*)
     |(?P<NUMBER>\d+(?:\.\d+)?\w*)
@@ -30,6 +30,8 @@ _TOKEN = re.compile(
 
 #: After these only a name can stand, so that what looks like a keyword is one.
 _BEFORE_NAMES = tuple(word for word, others in following().items() if others == {"Name"})
+#: After these and a preposition an event's communication is named.
+_EVENTS = tuple(words_of("ResultType"))
 
 
 class Kind(Enum):
@@ -68,10 +70,14 @@ class Token(NamedTuple):
 
 
 class Tokens:
-    """The tokens of a text, blanks and comments left out. The last one is the end of the text."""
+    """The tokens of a text, blanks and comments left out. The last one is the end of the text.
+
+    `comments` holds the offsets of the comments.
+    """
 
     def __init__(self, text: str) -> None:
-        self._tokens = list(_tokens(text))
+        self.comments: list[tuple[int, int]] = []
+        self._tokens = list(_tokens(text, self.comments))
 
     def __getitem__(self, index: int) -> Token:
         """The token at an index, or the end of the text where the index is past it."""
@@ -87,27 +93,58 @@ class Tokens:
     def _starts(self) -> list[int]:
         return [token.start for token in self._tokens]
 
+    def runs(self, first: int, last: int) -> list[tuple[int, int]]:
+        """The offsets of the tokens from one index to another, both included, in pieces without a comment between."""
+        found: list[tuple[int, int]] = []
+        for index in range(first, last + 1):
+            start, end = self[index].start, self[index].end
+            if found and not self.has_comment(found[-1][1], start):
+                start = found.pop()[0]
+            found.append((start, end))
+        return found
+
+    def has_comment(self, start: int, end: int) -> bool:
+        """Whether a comment begins between two offsets."""
+        return bisect_left(self.comments, (start, 0)) < bisect_left(self.comments, (end, 0))
+
     def index_at(self, offset: int) -> int:
         """The index of the token that an offset lies in, or of the first one after it."""
         index = max(bisect_right(self._starts, offset) - 1, 0)
         return index if offset < self[index].end else min(index + 1, len(self))
 
 
-def _tokens(text: str) -> Iterator[Token]:
+def _tokens(text: str, comments: list[tuple[int, int]]) -> Iterator[Token]:
     previous, start_of_line = Token(Kind.END, "", 0, 0), 0
+    is_use = names_follow = False
     for found in _TOKEN.finditer(text):
         if found.lastgroup is None:
             continue
+        if found.lastgroup == "COMMENT":
+            comments.append(found.span())
+            continue
         kind, (start, end) = _KINDS[found.lastgroup], found.span()
         word = text[start:end]
-        is_name = kind is Kind.WORD and (word[0] == "^" or previous.is_keyword(*_BEFORE_NAMES))
         line = text.rfind("\n", previous.end, start) if start > previous.end else -1
         if line >= 0:
             start_of_line = line + 1
-        previous = Token(kind, word, start, end, is_name, line >= 0, start - start_of_line)
-        yield previous
+        is_named = previous.is_keyword(*_BEFORE_NAMES) and not is_use
+        is_name = kind is Kind.WORD and (word[0] == "^" or is_named)
+        token = Token(kind, word, start, end, is_name, line >= 0, start - start_of_line)
+        # A keyword that can only be the name of something declared elsewhere has no name behind it.
+        is_use, names_follow = names_follow and line < 0, _names_follow(previous, token)
+        previous = token
+        yield token
     # The end stands right after the last token, where a reader looks for what is missing.
     yield Token(Kind.END, "", previous.end, previous.end)
+
+
+def _names_follow(before: Token, token: Token) -> bool:
+    """Whether only a name can follow a token in its line, though its word alone does not say so."""
+    if token.is_keyword("from", "to"):
+        return before.is_keyword(*_EVENTS)
+    if token.kind is Kind.NUMBER:
+        return before.is_keyword("most")
+    return token.is_keyword("without") or (token.text == "." and before.kind is Kind.WORD)
 
 
 def is_name(word: str) -> bool:

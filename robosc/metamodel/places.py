@@ -19,13 +19,13 @@ class SourceFile:
     """A text that elements come from.
 
     `name` is relative to the folder of the model, so the same on every machine, and no other file of the model has it.
-    `path` is the file as the user of this run would write it, `content` its text where it was read, its line breaks
-    line feeds; models save neither.
+    `path` is the file as the user of this run would write it, `parsed` the `robosc.language.File` of its text, None
+    for a model that was loaded; models save neither.
     """
 
     name: str
     path: str = field(default="", compare=False)
-    content: str = field(default="", compare=False, repr=False)
+    parsed: Any = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         """The name is the path where no other is known."""

@@ -144,6 +144,9 @@ class RosTypes:
             if other != kind and any(name in distribution.names(package, other) for distribution in self.distributions)
         ]
 
+    def _names(self, package: str, kind: str) -> list[str]:
+        return sorted({found for known in self.distributions for found in known.names(package, kind)})
+
     def why_unknown(self, package: str, name: str, section: Section) -> tuple[str, str, tuple[str, str] | None]:
         """Why no distribution has this section of a type: a message, a hint, and the type that was probably meant.
 
@@ -160,12 +163,12 @@ class RosTypes:
                 message = f"{package}/{name} is of kind {other.kind}, expected a type of kind {kind}"
                 return message, f"name a type of kind {kind}", None
         if not any(known.names(package, other) for known in self.distributions for other in FOLDERS):
-            packages = sorted({found for known in self.distributions for found in known.packages()})
-            close = get_close_matches(package, packages, n=1, cutoff=0.8)
+            packages = {found for known in self.distributions for found in known.packages()}
+            having = sorted(other for other in packages if name in self._names(other, kind))
+            close = get_close_matches(package, having, n=1, cutoff=0.8)
             hint = f"did you mean `{close[0]}`? Else {MAKE_KNOWN}" if close else MAKE_KNOWN
             return f"the package `{package}` is unknown", hint, (close[0], name) if close else None
-        names = sorted({found for known in self.distributions for found in known.names(package, kind)})
-        close = get_close_matches(name, names, n=1)
+        close = get_close_matches(name, self._names(package, kind), n=1)
         hint = f"did you mean `{close[0]}`?" if close else MAKE_KNOWN
         meant = (package, close[0]) if close else None
         return f"no {kind} type `{name}` of the package `{package}` is known", hint, meant

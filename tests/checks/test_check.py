@@ -391,3 +391,26 @@ def test_libraries_that_import_each_other_are_all_checked() -> None:
     second.definitions[0].type.definition = first.definitions[0]
     second.definitions.append(rsc.EnumDataType(name="Empty"))
     assert [finding.rule for finding in check(first)] == ["enum-default"]
+
+
+def test_a_second_component_of_a_name_has_no_other_finding(tmp_path: Path) -> None:
+    """What it carries has the types of ROS that it names, whatever it is called."""
+    path = tmp_path / "twice.rscd"
+    path.write_text("""robot R {
+  component Lidar { outgoing message scan with type: sensor_msgs/LaserScan }
+  component Lidar {
+    service dock with request: none, response: std_srvs/Trigger
+    behaviour {
+      initial marked state away { on request to dock goto docking }
+      state docking {
+        on response from dock if value.success goto docked
+        on response from dock goto away
+        on error from dock goto away
+      }
+      marked state docked { }
+    }
+  }
+}
+""")
+    reading = read(path)
+    assert [found.rule for found in check(reading.base, reading.findings)] == ["unique-component"]

@@ -3,6 +3,8 @@
 import json
 from pathlib import Path
 
+import pytest
+
 from .conftest import DOOR, Run
 
 
@@ -91,6 +93,39 @@ def test_fix(run: Run, tmp_path: Path) -> None:
     answer = run("check", model, "--fix")
     assert (answer.exit_code, answer.output) == (0, "")
     assert model.read_bytes() == DOOR.replace("\n", "\r\n").encode()
+
+
+@pytest.mark.parametrize("breaks", ["\n", "\r\n", "\r"])
+def test_a_fix_keeps_the_rest_of_the_file(run: Run, tmp_path: Path, breaks: str) -> None:
+    """Also its byte order mark and its line breaks, of which the first is another one."""
+    model = tmp_path / "door.rscd"
+
+    def written(text: str) -> bytes:
+        return b"\xef\xbb\xbf" + text.replace("\n", breaks).replace(breaks, "\r\n", 1).encode()
+
+    model.write_bytes(written(DOOR.replace("goto opened", "goto openned")))
+    assert run("check", model, "--fix").exit_code == 0
+    assert model.read_bytes() == written(DOOR)
+
+
+def test_bytes_that_are_no_text_are_not_fixed_away(run: Run, tmp_path: Path) -> None:
+    model = tmp_path / "door.rscd"
+    content = DOOR.replace("goto opened", "goto openned // caf\xe9", 1).encode("latin-1")
+    model.write_bytes(content)
+    assert run("check", model, "--fix").exit_code == 1
+    assert model.read_bytes() == content
+
+
+def test_a_fix_that_makes_a_model_worse_is_left_out(run: Run, tmp_path: Path) -> None:
+    """`opened` is like what was written, and a state; the condition would be of the wrong type."""
+    model = tmp_path / "door.rscd"
+    text = DOOR.replace("robot Door {", "robot Door {\n  constant limit: double = 1.0\n").replace(
+        "needs Leaf.closed", "needs Leaf.closed and lmit"
+    )
+    model.write_text(text)
+    answer = run("check", model, "--fix")
+    assert "did you mean `limit`?" in answer.stdout
+    assert model.read_text() == text
 
 
 def test_what_is_to_be_chosen_is_not_fixed(run: Run, tmp_path: Path) -> None:

@@ -12,11 +12,23 @@ from lsprotocol import types
 from pygls.protocol import default_converter
 from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
 
+from robosc.language import Text
+
 ROOT = Path(__file__).parent.parent.parent
 COMMAND = [sys.executable, "-m", "robosc", "lsp"]
 
 #: After so many seconds without an answer the server hangs, however busy the machine is.
 LONGEST = 120
+
+
+def edited(content: str, edits: list[types.TextEdit]) -> str:
+    """A text after edits that do not overlap, as an editor makes it."""
+    text = Text("", content)
+    for edit in sorted(edits, key=lambda edit: edit.range.start, reverse=True):
+        start, end = edit.range.start, edit.range.end
+        first, last = text.from_utf16(start.line, start.character), text.from_utf16(end.line, end.character)
+        content = content[:first] + edit.new_text + content[last:]
+    return content
 
 
 class Editor(LanguageClient):

@@ -6,10 +6,10 @@ import pytest
 from lsprotocol import types
 
 from robosc.editor.completion import completion, signature_help
-from robosc.editor.project import Project, edited
+from robosc.editor.project import Project
 from robosc.editor.snippets import SNIPPETS
 from robosc.language import Documents, Text, read
-from tests.editor.server import LIBRARY
+from tests.editor.server import LIBRARY, edited
 
 TEXT = """robot Cart {
   constant limit: double = 0.5

@@ -8,8 +8,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 from pytest_lsp import client_capabilities
 
-from robosc.editor.project import edited
-from tests.editor.server import CONFIG, LIBRARY, ROBOT, Editor, at, findings, of, open_text, position
+from tests.editor.server import CONFIG, LIBRARY, ROBOT, Editor, at, edited, findings, of, open_text, position
 
 VAN = ROBOT.replace("Cart", "Van")
 

@@ -1,10 +1,14 @@
 """A hint that says what to write is an edit, and after it the finding is gone."""
 
+from pathlib import Path
+
 import pytest
 from lsprotocol import types
+from pygls.uris import to_fs_path
 
 from robosc.editor.findings import code_actions
-from robosc.editor.project import Project, Snapshot, edited
+from robosc.editor.project import Project, Snapshot
+from tests.editor.server import edited
 
 URI = "file:///nowhere/model.rscd"
 ROBOT = """robot R {
@@ -85,6 +89,55 @@ def test_each_way_is_a_fix() -> None:
     assert ["initial state busy" in other for other in after] == [False, True]
     assert ["initial-state" in errors(other) for other in after] == [False, False]
     assert ask(text, WHOLE, "source.fixAll")[1] == []
+
+
+TWICE = ROBOT.replace("state busy", "state /* state idle of old */ idle").replace("goto busy", "goto idle")
+
+
+def test_a_duplicate_is_renamed() -> None:
+    """The name, not the word in the comment before it; what names the first of the two stays."""
+    _, actions = ask(TWICE, WHOLE)
+    (action,) = [action for action in actions if action.title == "rename one of the two, such as `idle_2`"]
+    after = edited(TWICE, action.edit.changes[URI])
+    assert after == TWICE.replace("*/ idle", "*/ idle_2")
+
+
+def test_a_rename_that_would_change_the_meaning_is_not_offered() -> None:
+    """In the part that can't be read the name may stand for the state that is to be renamed."""
+    _, actions = ask(TWICE.replace("goto idle }", "got idle }", 1), WHOLE)
+    assert [action for action in actions if action.title.startswith("rename")] == []
+
+
+def test_a_duplicate_in_a_library_is_renamed_in_the_robots_too(tmp_path: Path) -> None:
+    library = """library L {
+  component C {
+    incoming message go with type: none
+    outgoing message told with type: none
+  }
+  component D { incoming message go with identifier: "/d", type: none }
+}
+"""
+    robot = """robot R {
+  component A from L import D
+  requirement A.go needs B.ready
+  component B { behaviour { initial marked state ready { } } }
+}
+"""
+    project = Project()
+    project.folders = (tmp_path,)
+    for name, text in (("l", library), ("r", robot)):
+        (tmp_path / f"{name}.rscd").write_text(text)
+        project.put((tmp_path / f"{name}.rscd").as_uri(), 1, text)
+    snapshot = project.snapshot()
+    uri = (tmp_path / "l.rscd").as_uri()
+    asked = types.CodeActionParams(types.TextDocumentIdentifier(uri), WHOLE, types.CodeActionContext([]))
+    actions = code_actions(snapshot, snapshot.analysis(tmp_path / "l.rscd"), asked)
+    (action,) = [action for action in actions if action.title.startswith("rename it in `D`, such as `go_d`")]
+    changes = {Path(to_fs_path(name)).stem: edits for name, edits in action.edit.changes.items()}
+    assert edited(library, changes["l"]) == library.replace(
+        "message go with identifier", "message go_d with identifier"
+    )
+    assert edited(robot, changes["r"]) == robot.replace("A.go", "A.go_d")
 
 
 def test_all_at_once() -> None:

@@ -6,9 +6,9 @@ import pytest
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
-from robosc.editor.project import Project, Snapshot, edited
+from robosc.editor.project import Project, Snapshot
 from robosc.editor.renaming import prepare_rename, rename
-from tests.editor.server import LIBRARY, ROBOT, position
+from tests.editor.server import LIBRARY, ROBOT, edited, position
 
 OTHER = ROBOT.replace("Cart", "Van")
 

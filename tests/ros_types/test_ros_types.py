@@ -218,3 +218,25 @@ def test_loads_definitions_only_where_a_model_links_them(tmp_path: Path, links: 
     )
     done = subprocess.run([sys.executable, "-c", program, model], check=True, capture_output=True, text=True)
     assert done.stdout == f"{loaded}\n"
+
+
+@pytest.mark.parametrize(
+    ("package", "name", "section", "meant"),
+    [
+        ("nav5_msgs", "ManageLifecycleNodes", Section.REQUEST, None),
+        ("nav5_msgs", "Path", Section.MESSAGE, ("nav_msgs", "Path")),
+        ("nav5_msgs", "GetMap", Section.MESSAGE, None),
+        ("nav5_msgs", "GetMap", Section.REQUEST, ("nav_msgs", "GetMap")),
+        ("nav5_msgs", "NavigateToPose", Section.GOAL, None),
+        ("sensors_msgs", "LaserScan", Section.MESSAGE, ("sensor_msgs", "LaserScan")),
+        ("std_srv", "Trigger", Section.REQUEST, ("std_srvs", "Trigger")),
+        ("std_srv", "Triger", Section.REQUEST, None),
+    ],
+)
+def test_a_package_is_meant_only_if_it_has_the_type(
+    package: str, name: str, section: Section, meant: tuple[str, str] | None
+) -> None:
+    message, hint, found = RosTypes().why_unknown(package, name, section)
+    assert message == f"the package `{package}` is unknown"
+    assert found == meant
+    assert ("did you mean" in hint) == (meant is not None)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from robosc.checks.definitions import of_kind
 from robosc.checks.facts import fact
 from robosc.checks.libraries import instances, reachable
-from robosc.checks.mending import Choice, Removal, Renaming, Rewriting, Together
+from robosc.checks.mending import Choice, Insertion, Removal, Renaming, Replacement, Together, part_of
 from robosc.checks.rule import Finding, rule
 from robosc.diagnostics import Severity
 from robosc.metamodel import robosc as rsc
@@ -58,17 +58,21 @@ def _new_name(first: PortInstance, second: PortInstance, base: rsc.Base) -> Hint
     new = f"{name}_2" if first.instance is second.instance else f"{name}_{own[0].instance.name.lower()}"
     renamed = own[0].communication
     hint = f"rename it in `{own[0].instance.name}`, such as `{new}`"
-    if renamed.identifier:
+    if renamed.identifier or renamed.computedIdentifier:
         return Renaming(hint, renamed, new)
     hint += f', and add `identifier: "{name}"` to keep its topic'
     return Together(hint, (Renaming(hint, renamed, new), _identified(hint, renamed, name)), is_choice=True)
 
 
-def _identified(hint: str, communication: rsc.CommunicationType, topic: str) -> Rewriting:
+def _identified(hint: str, communication: rsc.CommunicationType, topic: str) -> Insertion | Replacement:
     """A hint that gives communication a topic of its own."""
+    if communication.computedIdentifier:
+        return Replacement(hint, f'"{topic}"', communication.computedIdentifier, is_choice=True)
     if communication.identifier:
-        return Rewriting(hint, r"\bidentifier\s*:\s*(\"[^\"]*\"|'[^']*')", f'"{topic}"', communication, is_choice=True)
-    return Rewriting(hint, r"\bwith\b()", f' identifier: "{topic}",', communication, is_choice=True)
+        string = part_of(communication).find("identifier", ":").behind()
+        return Replacement(hint, f'"{topic}"', string, is_choice=True)
+    start = part_of(communication).find("with")
+    return Insertion(hint, f' identifier: "{topic}",', start, behind=True, is_choice=True)
 
 
 @rule("unique-topic", Severity.WARNING)
@@ -137,7 +141,8 @@ def _own_topic(port: PortInstance, base: rsc.Base) -> Hint:
     assert isinstance(imported, rsc.ImportedComponent)
     place = _place(port, base)
     if isinstance(place, rsc.TopicRemapping):
-        return Rewriting(hint, r":\s*(.*)\Z", f'"{topic}"', place, is_choice=True)
+        string = part_of(place.computedIdentifier) if place.computedIdentifier else part_of(place).end()
+        return Replacement(hint, f'"{topic}"', string, is_choice=True)
     if imported.remappings:
-        return Rewriting(hint, r"\bwith\s*\{()", f' {written(name)}: "{topic}",', imported, is_choice=True)
-    return Rewriting(hint, r"()\Z", f' with {{ {written(name)}: "{topic}" }}', imported, is_choice=True)
+        return Insertion(hint, f'{written(name)}: "{topic}", ', imported.remappings[0], is_choice=True)
+    return Insertion(hint, f' with {{ {written(name)}: "{topic}" }}', imported, behind=True, is_choice=True)

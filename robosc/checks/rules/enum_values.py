@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from robosc.checks.definitions import of_kind, unit_of
 from robosc.checks.facts import fact
 from robosc.checks.libraries import imports, instances, reachable
-from robosc.checks.mending import Insertion, Removal, Renaming, Rewriting
+from robosc.checks.mending import Insertion, Removal, Renaming, part_of
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
 
@@ -35,11 +35,11 @@ def enum_default(base: rsc.Base) -> Iterator[Finding]:
                     is_choice=True,
                 )
                 if enum.rules
-                else Rewriting(
+                else Insertion(
                     "add a last rule, such as `default -> other`",
-                    r"\{()",
                     " default -> other ",
-                    enum,
+                    part_of(enum).find("{"),
+                    behind=True,
                     is_choice=True,
                 ),
                 relies_on=enum,

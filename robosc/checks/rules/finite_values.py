@@ -15,7 +15,7 @@ from robosc.checks.definitions import (
     variables,
 )
 from robosc.checks.libraries import Meaning, meanings
-from robosc.checks.mending import Choice, Cut, Removal, Replacement, Together
+from robosc.checks.mending import Choice, Removal, Replacement, Together, part_of
 from robosc.checks.rule import Finding, rule
 from robosc.checks.supervised import Fault, function_faults, readings, supervised_faults, table_faults
 from robosc.metamodel import robosc as rsc
@@ -71,7 +71,11 @@ def variable_type(base: rsc.Base) -> Iterator[Finding]:
             starts = "an array starts empty" if isinstance(found, ArrayType) else "each field starts as a variable does"
             if variable.initial is not None:
                 message = f"variable `{variable.name}` is {found} and takes no initial value: {starts}"
-                hint = Cut(f"write `variable {variable.name}: …` without `=`", variable.type, variable.initial)
+                hint = Removal(
+                    f"write `variable {variable.name}: …` without `=`",
+                    part_of(variable.initial).preceded_by("="),
+                    is_choice=False,
+                )
                 yield Finding(variable.initial, message, hint)
             if _has_objects(found) and variable not in stored:
                 message = f"variable `{variable.name}` is {found}, and no event stores anything in it"
@@ -212,8 +216,8 @@ def _parameters(meaning: Meaning) -> Iterator[Finding]:
 def _unranged(parameter: rsc.Parameter) -> Choice:
     """The ways out of a range that only a double has."""
     double = Replacement("declare it double", "double", parameter.type)
-    ways = () if parameter.highest is None else (Cut("leave the range out", parameter.type, parameter.highest, ")"),)
-    return Choice("leave it out, or declare it double", (*ways, double))
+    bounds = part_of(parameter.lowest).preceded_by("(").to(part_of(parameter.highest).followed_by(")"))
+    return Choice("leave it out, or declare it double", (Removal("leave the range out", bounds), double))
 
 
 def _is_unranged(declared: rsc.DataType) -> bool:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.checks.definitions import circles, of_kind, statements
 from robosc.checks.expression_types import CONSTANT, ExpressionCheck, Place
 from robosc.checks.libraries import Meaning, instances, meanings
-from robosc.checks.mending import Choice, Cut, Insertion, Removal, Replacement
+from robosc.checks.mending import Choice, Insertion, Removal, Replacement, part_of
 from robosc.checks.rule import Finding, on_line, rule
 from robosc.checks.type_repairs import repair
 from robosc.diagnostics import Severity
@@ -250,7 +250,11 @@ def _defaults(base: rsc.Base) -> Iterator[Finding]:
         for parameter in function.parameters:
             if parameter.default is not None:
                 message = f"parameter `{parameter.name}` of a function has a default value"
-                hint = Cut("leave it out: each call gives all arguments", parameter.type, parameter.default)
+                hint = Removal(
+                    "leave it out: each call gives all arguments",
+                    part_of(parameter.default).preceded_by("="),
+                    is_choice=False,
+                )
                 yield Finding(parameter.default, message, hint)
 
 

@@ -13,7 +13,7 @@ from robosc.checks.definitions import (
     transitions,
 )
 from robosc.checks.libraries import instances
-from robosc.checks.mending import Choice, Removal, Rewriting
+from robosc.checks.mending import Choice, Removal, part_of
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.cone_of_influence import accesses
@@ -71,8 +71,8 @@ def _sent_on_change(base: rsc.Base) -> Iterator[Finding]:
             )
 
 
-def _with_every_tick(hint: str, message: rsc.Message, *, is_choice: bool = False) -> Rewriting:
-    return Rewriting(hint, r"\s*,\s*send\s*:\s*change\b", "", message, is_choice)
+def _with_every_tick(hint: str, message: rsc.Message, *, is_choice: bool = False) -> Removal:
+    return Removal(hint, part_of(message).find(",", "send", ":", "change"), is_choice)
 
 
 def _readers(base: rsc.Base) -> Iterator[Finding]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import communication_of, restricted_events, statements
-from robosc.checks.mending import Choice, Removal, Rewriting
+from robosc.checks.mending import Choice, Removal, Replacement, part_of
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import sent
@@ -22,9 +22,9 @@ _DIRECTIONS = (
 _NAMELESS = "name what it restricts, or leave the requirement out"
 
 
-def _as_incoming(communication: rsc.CommunicationType) -> Rewriting:
+def _as_incoming(communication: rsc.CommunicationType) -> Replacement:
     name = written(communication.name)
-    return Rewriting(f"declare `incoming message {name}`", r"\Aoutgoing\b", "incoming", communication)
+    return Replacement(f"declare `incoming message {name}`", "incoming", part_of(communication).find("outgoing"))
 
 
 @rule("data-provisioning")

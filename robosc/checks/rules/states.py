@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.checks.automata import initial_states, one_initial, start_of
 from robosc.checks.definitions import behaviours, common_transitions, states
-from robosc.checks.mending import Choice, Insertion, Rewriting
+from robosc.checks.mending import Choice, Insertion, part_of
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
 
@@ -34,11 +34,11 @@ def initial_state(base: rsc.Base) -> Iterator[Finding]:
             yield Finding(
                 behaviour,
                 f"the behaviour of `{component.name}` has no state, expected one that is initial",
-                Rewriting(
+                Insertion(
                     "add a state, such as `initial marked state idle { }`",
-                    r"\{()",
                     " initial marked state idle { }",
-                    behaviour,
+                    part_of(behaviour).find("{"),
+                    behind=True,
                     is_choice=True,
                 ),
                 relies_on=behaviour,

@@ -17,7 +17,7 @@ from robosc.checks.definitions import (
     states,
     transitions,
 )
-from robosc.checks.mending import Choice, Removal, Replacement, Rewriting, Unassigned
+from robosc.checks.mending import Choice, Part, Removal, Replacement, part_of
 from robosc.checks.rule import Finding, on_line, rule
 from robosc.diagnostics import Severity
 from robosc.metamodel import robosc as rsc
@@ -54,7 +54,7 @@ def result_type(base: rsc.Base) -> Iterator[Finding]:
                 for name, word in prepositions.items()
             }
             ways: list[Way] = [
-                Replacement(f"write {form}", text, transition, until=transition.communicationType)
+                Replacement(f"write {form}", text, part_of(transition).until(part_of(transition.communicationType)))
                 for text, form in forms.items()
             ]
             direction = f"{communication.direction} " if isinstance(communication, rsc.Message) else ""
@@ -63,7 +63,8 @@ def result_type(base: rsc.Base) -> Iterator[Finding]:
                 opposite, sender = _SENT_BY[event]
                 declared = f"declare it as `{opposite} message {written(communication.name)}`"
                 hint += f", or, if {sender} sends it, {declared}"
-                ways.append(Rewriting(declared, rf"\A{communication.direction}\b", opposite, communication))
+                direction_word = part_of(communication).find(str(communication.direction))
+                ways.append(Replacement(declared, opposite, direction_word))
             yield Finding(
                 transition,
                 f"{direction}{type(communication).__name__.lower()} `{communication.name}` has no {event}, expected"
@@ -170,9 +171,9 @@ def assignment_on_message_to_node(base: rsc.Base) -> Iterator[Finding]:
                 transition.assignments[0],
                 f"`{component.name}` assigns a value when it is sent `{name}`, expected no assignment: a message"
                 " to a component brings no data back",
-                Unassigned(
+                Removal(
                     "leave `do …` out; a state that the transition goes to can remember that the message was sent",
-                    transition,
+                    _assignments(transition),
                 ),
             )
 
@@ -224,12 +225,22 @@ def _describe(target: rsc.Access) -> str:
     return f"{type(item).__name__.lower()} `{item.name}`{owner}"
 
 
+def _assignments(transition: rsc.Transition) -> Part:
+    """The assignments of a transition, with the `do` before them."""
+    assignments = transition.assignments
+    return part_of(assignments[0]).preceded_by("do").to(part_of(assignments[-1]))
+
+
 def _repair(target: rsc.Access, component: rsc.Component, transition: rsc.Transition) -> Hint:
     item = target.item
     if isinstance(item, rsc.State) and target.component is component:
         text = f"goto {written(item.name)}"
         alone = len(transition.assignments) == 1 and transition.target is None
-        return Unassigned(f"write `{text}`", transition, f" {text}") if alone else f"write `{text}`"
+        return (
+            Replacement(f"write `{text}`", text, _assignments(transition), is_choice=True)
+            if alone
+            else f"write `{text}`"
+        )
     if isinstance(item, rsc.Variable) and target.component:
         return f"assign it in `{target.component.name}`, by a transition of its own that reads `{component.name}`"
     return f"declare `variable … : …` in the behaviour of `{component.name}` and assign that"

@@ -22,16 +22,15 @@ def format_text(text: Text) -> tuple[str | None, list[Diagnostic]]:
     Where there are findings there is no new text. Names are not looked up. The words stay as they are, comments too but
     for blanks at the ends and beginnings of their lines; what has the canonical layout keeps it.
     """
-    words = Tokens(text.content)
-    tree = None if too_complex(words) else parse(text.content, "Base")
+    tree = None if too_complex(text.tokens) else parse(text.content, "Base")
     if tree is None or isinstance(tree, Failure):
-        return None, recovered(text, words).findings
+        return None, recovered(text).findings
     builder = Builder(text)
     builder.build(tree)
     if builder.findings:
         return None, builder.findings
     formatted = render(layout(text.content, tree))
-    if [word.text for word in words] != [word.text for word in Tokens(formatted)]:
+    if [word.text for word in text.tokens] != [word.text for word in Tokens(formatted)]:
         raise AssertionError(f"{text.file}: the layout changed the words")
     return formatted, []
 

@@ -1,0 +1,250 @@
+"""Apply edits only where they leave a model at least as good as it was."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections import Counter
+from typing import TYPE_CHECKING, Any, Protocol
+
+from robosc.language.tokens import Kind
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+
+    from robosc.diagnostics import Diagnostic, Edit
+    from robosc.language import Reading, Reference, Text
+
+_STRINGS = (Kind.STRING, Kind.OPEN_STRING)
+
+
+class Checked(Protocol):
+    """A model that was read and checked; `findings` are those of reading and of the rules, of imported files too."""
+
+    @property
+    def reading(self) -> Reading:
+        """The model and its files."""
+
+    @property
+    def findings(self) -> Sequence[Diagnostic]:
+        """All findings."""
+
+
+class _Offsets:
+    """Offsets of a text before and after edits that do not overlap."""
+
+    def __init__(self, text: Text, edits: Iterable[Edit]) -> None:
+        spans = [(edit.span, edit.text) for edit in sorted(edits)]
+        starts = [text.offset(span.line, span.column) for span, _ in spans]
+        self._ends = [text.offset(span.end_line, span.end_column) for span, _ in spans]
+        self._ranges = list(zip(starts, self._ends, strict=True))
+        self._shifts = [0]
+        for (start, end), (_, new) in zip(self._ranges, spans, strict=True):
+            self._shifts.append(self._shifts[-1] + len(new) - (end - start))
+        self._written = [
+            (start + shift, start + shift + len(new))
+            for start, shift, (_, new) in zip(starts, self._shifts, spans, strict=False)
+        ]
+
+    def after(self, offset: int) -> int:
+        """Where an offset lies after the edits; one that was replaced lies where the new text starts."""
+        index = bisect_right(self._ends, offset)
+        start = self._ranges[index][0] if index < len(self._ranges) else offset
+        return min(offset, start) + self._shifts[index]
+
+    def range(self, start: int, end: int) -> tuple[int, int]:
+        """Where a range without edits lies after the edits."""
+        return self.after(start), self.after(start) + end - start
+
+    def edits_in(self, start: int, end: int) -> list[tuple[int, int]]:
+        """The ranges that are replaced, or written at, between two offsets."""
+        return [(first, last) for first, last in self._ranges if first < end and start < last]
+
+    def is_written(self, start: int, end: int) -> bool:
+        """Whether a range of the text after the edits holds something that an edit wrote."""
+        return any(first < end and start < last for first, last in self._written)
+
+
+def objection(
+    before: Checked, after: Checked, edits: Mapping[str, Sequence[Edit]], mended: Sequence[Diagnostic] = ()
+) -> str | None:
+    """Why a model is worse after edits, in words; None where it is not.
+
+    `edits` are those of each file, by the paths that findings carry, `mended` the findings that they are to mend. A
+    model is worse where less of it can be read, where a finding is new or one of `mended` stays, where a name stands
+    for something else, or where a comment or a string has changed. A syntax error hides findings: to mend it may
+    reveal them.
+    """
+    return _Comparison(before, after, edits).objection(mended)
+
+
+def safe_edits(before: Checked, check: Callable[[str], Checked]) -> list[Edit]:
+    """The edits of a file's findings, of those with exactly one way to mend them, that leave it no worse.
+
+    `check` reads and checks the model with another text in place of the file's. Syntax errors come first: other edits
+    are returned where no edit mends one.
+    """
+    text = before.reading.file.text
+    own = [finding for finding in before.findings if finding.file == text.file and finding.edits]
+    syntax = [finding for finding in own if finding.rule == "syntax"]
+    others = [finding for finding in own if finding.rule != "syntax"]
+    return _edits(_safe(syntax, before, check) or _safe(others, before, check))
+
+
+def _safe(findings: Sequence[Diagnostic], before: Checked, check: Callable[[str], Checked]) -> Sequence[Diagnostic]:
+    """As many of these findings as can be mended at once."""
+    text = before.reading.file.text
+    chosen = _apart(findings)
+    if not chosen:
+        return ()
+    edits = _edits(chosen)
+    if objection(before, check(text.after(edits)), {text.file: edits}, chosen) is None:
+        return chosen
+    if len(findings) == 1:
+        return ()
+    half = len(findings) // 2
+    first, last = _safe(findings[:half], before, check), _safe(findings[half:], before, check)
+    both = _apart([*first, *last])
+    if not first or not last or both == first:
+        return first or last
+    edits = _edits(both)
+    return both if objection(before, check(text.after(edits)), {text.file: edits}, both) is None else first
+
+
+def _apart(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Those findings whose edits touch no edit of an earlier one, but for the same edit."""
+    found: list[Diagnostic] = []
+    done: set[Edit] = set()
+    for finding in findings:
+        new = set(finding.edits) - done
+        if not any(_touch(edit, other) for edit in new for other in done):
+            found.append(finding)
+            done |= new
+    return found
+
+
+def _touch(edit: Edit, other: Edit) -> bool:
+    first, second = sorted((edit.span, other.span))
+    return (second.line, second.column) <= (first.end_line, first.end_column)
+
+
+def _edits(findings: Iterable[Diagnostic]) -> list[Edit]:
+    return sorted({edit for finding in findings for edit in finding.edits})
+
+
+class _Comparison:
+    """A model before and after edits."""
+
+    def __init__(self, before: Checked, after: Checked, edits: Mapping[str, Sequence[Edit]]) -> None:
+        self._before, self._after = before, after
+        self._files = before.reading.files
+        self._files_after = after.reading.files
+        self._moved = {path: _Offsets(file.text, edits.get(path, ())) for path, file in self._files.items()}
+
+    def objection(self, mended: Sequence[Diagnostic]) -> str | None:
+        """Why it is worse."""
+        for path in self._files:
+            if path not in self._files_after:
+                return f"{path} would be imported no more"
+            if not self._keeps_comments(path):
+                return "a comment would change"
+            if not self._keeps_strings(path, mended):
+                return "a string would change"
+        is_syntax = any(finding.rule == "syntax" for finding in mended)
+        worse = self._syntax_error(mended) if is_syntax else self._new_finding(mended)
+        if worse is not None:
+            return f"line {worse.span.line}: {worse.message}"
+        name = None if is_syntax else next(self._changed_names(), None)
+        return None if name is None else f"`{name.name}` would stand for something else"
+
+    def _keeps_comments(self, path: str) -> bool:
+        moved, comments = self._moved[path], self._files[path].text.tokens.comments
+        if any(moved.edits_in(*comment) for comment in comments):
+            return False
+        return [moved.range(*comment) for comment in comments] == self._files_after[path].text.tokens.comments
+
+    def _keeps_strings(self, path: str, mended: Sequence[Diagnostic]) -> bool:
+        """Whether strings are kept, but for those that an edit replaces whole and those with an error inside."""
+        moved, text = self._moved[path], self._files[path].text
+        faulty = [_start(finding, text) for finding in mended if finding.file == path]
+        kept = set()
+        for start, end in _strings(text):
+            edited = moved.edits_in(start, end)
+            if not edited:
+                kept.add(moved.range(start, end))
+            elif edited != [(start, end)] and not any(start < place < end for place in faulty):
+                return False
+        strings = set(_strings(self._files_after[path].text))
+        return kept <= strings and all(moved.is_written(*string) for string in strings - kept)
+
+    def _syntax_error(self, mended: Sequence[Diagnostic]) -> Diagnostic | None:
+        """A syntax error that stays, or the first of them where there are more than before."""
+        before, after = (
+            [finding for finding in checked.findings if finding.rule == "syntax"]
+            for checked in (self._before, self._after)
+        )
+        if len(after) > len(before):
+            return after[0]
+        places = {(found.file, _start(found, self._files_after[found.file].text), found.message) for found in after}
+        return next((found for found in mended if (found.file, self._start(found), found.message) in places), None)
+
+    def _new_finding(self, mended: Sequence[Diagnostic]) -> Diagnostic | None:
+        """A finding of a rule in a line in which no finding of the rule was left."""
+        left = Counter(map(self._line, self._before.findings))
+        left.subtract(map(self._line, mended))
+        for finding in self._after.findings:
+            key = finding.file, finding.rule, finding.span.line
+            left[key] -= 1
+            if left[key] < 0:
+                return finding
+        return None
+
+    def _start(self, finding: Diagnostic) -> int:
+        """Where a finding of before starts after the edits."""
+        return self._moved[finding.file].after(_start(finding, self._files[finding.file].text))
+
+    def _line(self, finding: Diagnostic) -> tuple[str, str, int]:
+        """File, rule and line after the edits of a finding of before."""
+        if finding.file not in self._files:
+            return finding.file, finding.rule, finding.span.line
+        start = self._start(finding)
+        return finding.file, finding.rule, self._files_after[finding.file].text.span(start, start).line
+
+    def _changed_names(self) -> Iterator[Reference]:
+        """The names that stand for something else.
+
+        A name that an edit replaces or removes may do so, but for the names of an element that is renamed.
+        """
+        declared, declared_after = _declarations(self._before.reading), _declarations(self._after.reading)
+        for path, file in self._files.items():
+            names = {name.start: name for name in self._files_after[path].names}
+            for name in file.names:
+                place = declared.get(name.target)
+                is_kept = place is not None and not self._moved[place[0]].edits_in(*place[1:])
+                is_renamed = place is not None and self._moved[place[0]].edits_in(*place[1:]) == [place[1:]]
+                if name.target is None or not (is_renamed or not self._moved[path].edits_in(name.start, name.end)):
+                    continue
+                after = names.get(self._moved[path].after(name.start))
+                if after is None or after.target is None:
+                    yield name
+                elif place is not None and (is_kept or is_renamed):
+                    found = declared_after.get(after.target)
+                    if found is None or found[:2] != (place[0], self._moved[place[0]].after(place[1])):
+                        yield name
+
+
+def _strings(text: Text) -> Iterator[tuple[int, int]]:
+    return ((token.start, token.end) for token in text.tokens if token.kind in _STRINGS)
+
+
+def _start(finding: Diagnostic, text: Text) -> int:
+    return text.offset(finding.span.line, finding.span.column)
+
+
+def _declarations(reading: Reading) -> dict[Any, tuple[str, int, int]]:
+    """File and offsets of the names of all elements."""
+    return {
+        name.target: (path, name.start, name.end)
+        for path, file in reading.files.items()
+        for name in file.names
+        if name.is_declaration
+    }
