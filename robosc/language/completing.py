@@ -18,7 +18,7 @@ from robosc.language.scopes import by_name
 from robosc.language.tokens import Kind, Tokens, too_complex
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import literals
-from robosc.semantics.communication import event_names, sent_type
+from robosc.semantics.communication import RUNNING_WORD, event_names, sent_type
 from robosc.semantics.naming import written
 from robosc.semantics.operators import FUNCTIONS
 from robosc.semantics.typing import ObjectType, access_types, declared_type, provided_data_type, value_type
@@ -326,6 +326,7 @@ def _accessible(
         known = {**linker.components(access), **linker.templates(access)}
         if first.text in known:
             yield from (linker.scope.members(known[first.text]) or {}).items()
+            yield from _running(linker, known[first.text])
         elif access.enumeration is not None:
             yield from by_name(rule.value for rule in access.enumeration.rules if rule.value).items()
         elif first.text in (automata := linker.automata(access)):
@@ -339,10 +340,18 @@ def _accessible(
         own = linker.around(access, rsc.Component)
         members = (linker.scope.members(own) if own is not None else None) or {}
         found |= {**linker.templates(access), **members, **linker.components(access), **linker.automata(access)}
+        found |= dict(_running(linker, own)) if own is not None else {}
     for kind in (rsc.NamedExpression, rsc.EnumValue, rsc.Function):
         for name, element in _usable(linker, kind):
             found.setdefault(name, element)
     yield from found.items()
+
+
+def _running(linker: Linker, component: rsc.Component) -> Iterator[tuple[str, Any]]:
+    """The words that read whether a service or action of a component is running."""
+    for name, communication in (linker.scope.communications(component) or {}).items():
+        if isinstance(communication, rsc.Service | rsc.Action):
+            yield f"{name}.{RUNNING_WORD}", communication
 
 
 def _object_type(element: rsc.ObjectPropertyValue) -> Any:

@@ -13,6 +13,7 @@ from robosc.language.interface_types import declare, is_made, link_interface, ro
 from robosc.language.scopes import Declared, File, Names, Scope, by_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.communication import RUNNING_WORD
 from robosc.semantics.expansion import constant_value
 from robosc.semantics.naming import enumeration, written
 from robosc.semantics.operators import FUNCTIONS
@@ -117,7 +118,8 @@ class Linker:
                         link_interface(definition)
         for element, names in list(self._file.references.items()):
             checkpoint()
-            self._use(element, names)
+            if element in self._file.references:  # `.running` is no property
+                self._use(element, names)
         for declared in self._file.bounded:
             low, high = constant_value(declared.lower), constant_value(declared.upper)
             if type(low) is int and type(high) is int:
@@ -378,6 +380,8 @@ class Linker:
             return
         elif self.around(access, rsc.EnumDataType) is not None:
             self._in_enum(access, first)
+        elif qualifies and self._own_running(access, first, names["item"]):
+            return
         else:
             self._bare(access, first, qualifies=qualifies)
         if qualifies:
@@ -468,8 +472,38 @@ class Linker:
     def _qualified(self, access: rsc.Access, component: rsc.Component, name: Name) -> None:
         access.component = component
         members = self.scope.members(component)
+        if members is not None and name.text not in members and self._running(access, component, name):
+            return
         if members is not None:
             access.item = self._member(members, name, component, Declared.MEMBER)
+
+    def _own_running(self, access: rsc.Access, name: Name, word: Name) -> bool:
+        """Whether `a.running` reads a service or action of the own component; what else `a` may be comes first."""
+        own = self.around(access, rsc.Component)
+        if own is None or word.text != RUNNING_WORD or access.segments or name.text in (self.scope.members(own) or {}):
+            return False
+        if self.scope.find(rsc.NamedExpression, name.text) or self.scope.values(name.text):
+            return False
+        communication = (self.scope.communications(own) or {}).get(name.text)
+        if not isinstance(communication, rsc.Service | rsc.Action):
+            return False
+        access.component, access.item = own, communication
+        self._file.references[access] = {"item": name}
+        return True
+
+    def _running(self, access: rsc.Access, component: rsc.Component, name: Name) -> bool:
+        """Whether `A.b.running` reads a service or action of a component, which has no state or variable `b`."""
+        communication = (self.scope.communications(component) or {}).get(name.text)
+        if not isinstance(communication, rsc.Service | rsc.Action) or len(access.segments) != 1:
+            return False
+        (segment,) = access.segments
+        word = self._file.references.get(segment, {}).get("property")
+        if word is None or word.text != RUNNING_WORD:
+            return False
+        access.item = communication
+        access.segments.remove(segment)
+        del self._file.references[segment]
+        return True
 
     def _bare(self, access: rsc.Access, name: Name, *, qualifies: bool) -> None:
         """A component, then a name of the own component, of the robot or library, an enum value."""

@@ -9,10 +9,13 @@ from robosc.m2m.tabulation import TooLargeError, tabulate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.metamodel.places import place
+from robosc.semantics.communication import RUNNING
 from robosc.semantics.cone_of_influence import accesses, read_data
 from robosc.semantics.evaluation import Value, evaluate, literal
+from robosc.semantics.instances import PortInstance
 from robosc.semantics.naming import Names
 from robosc.semantics.operators import COMPARISONS, FUNCTIONS, Rule, operator_of
+from robosc.semantics.printing import disjunction
 from robosc.semantics.typing import DOUBLE, STRING, ArrayType, ObjectType, Types, declared_type
 from robosc.semantics.walks import fold, operands, with_operands
 
@@ -68,6 +71,14 @@ class _Expressions:
             return sct.LocationReference(
                 location=self._trace.requirement_locations[within if inner else None, access.item]
             )
+        if isinstance(access.item, robosc.CommunicationType):
+            instance = instances.instance(access.component, within)
+            assert instance is not None
+            plant = self._trace.plants[PortInstance(instance, access.item)]
+            running = (location for location in plant.locations if location.name in RUNNING)
+            either = disjunction(sct.LocationReference(location=location) for location in running)
+            assert either is not None
+            return either
         if isinstance(access.item, robosc.Parameter):
             return rosgraph.NodeVariableReference(variable=self._parameters[instances.parameter(access, within)])
         if isinstance(access.item, robosc.EnumValue):

@@ -119,7 +119,7 @@ class ComponentBehaviour(ComponentDefinition):
     automaton: Automaton
     def __init__(self, *, automaton: Automaton | None = ..., source: Place | None = ...) -> None: ...
 
-class CommunicationType(ComponentDefinition, expression.NamedElement):
+class CommunicationType(ComponentDefinition, AccessibleItem):
     """A message, service or action of a component (thesis figure 4.9)."""
     identifier: str | None
     interface: Interface | None

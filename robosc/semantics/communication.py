@@ -60,6 +60,10 @@ EVENTS: Mapping[type[robosc.CommunicationType], tuple[PortEvent, ...]] = {
 IDLE, WAITING, EXECUTING, READY, ERROR = "idle", "wait_for_response", "executing", "ready", "error"
 #: The controller has asked the server to cancel the goal, which has not ended yet.
 CANCELING = "canceling"
+#: The locations in which a service or action is running: from its request until its end is known.
+RUNNING = (WAITING, EXECUTING, CANCELING)
+#: The word behind a service or action that reads whether it is running.
+RUNNING_WORD = "running"
 #: In the order in which the language lists them.
 _NAMES = ("request", "response", "error", "feedback", "cancel", "canceled")
 #: The kinds of the events that the controller decides on: all but what comes from the robot.

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 from robosc.diagnostics.visible import visible
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
+from robosc.semantics.communication import RUNNING_WORD
 from robosc.semantics.naming import written
 from robosc.semantics.operators import ATOM, PRECEDENCE, SYMBOLS, Associativity, operator_of
 from robosc.semantics.walks import fold, operands
@@ -121,6 +122,8 @@ class RoboscPrinter(Printer):
                 if isinstance(expression.item, robosc.RequirementState):
                     component = expression.item.eContainer()
                 owner = self.owner(component) if component else ""
+                if isinstance(expression.item, robosc.CommunicationType):
+                    name += f".{RUNNING_WORD}"
                 indices = iter(texts)
                 return Printed(owner + name + "".join(_step(segment, indices) for segment in expression.segments))
             case robosc.ArrayQuantifier():

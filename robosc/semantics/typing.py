@@ -196,7 +196,7 @@ def operator_type(row: Operator, operands: Sequence[Type]) -> Type:
 def item_type(item: rsc.AccessibleItem | None) -> Type:
     """The type of what a name stands for: a state is a boolean; a bare component has no value and is UNKNOWN."""
     match item:
-        case rsc.State() | rsc.RequirementState():
+        case rsc.State() | rsc.RequirementState() | rsc.CommunicationType():
             return BOOLEAN
         case rsc.Variable() | rsc.Constant() | rsc.Parameter() | rsc.FormalParameter():
             return declared_type(item.type)

@@ -50,6 +50,16 @@ def _communication(reference: robosc.CommunicationReference, _model: Model) -> I
         yield reference, f"'{reference.communicationType.name}' is no communication of '{component.name}'"
 
 
+def _running(access: robosc.Access, item: robosc.CommunicationType) -> Iterator[Fault]:
+    component = _owner(access)
+    if component is None:
+        yield access, f"it does not say whose '{item.name}' is meant"
+    elif item not in _definitions(component):
+        yield access, f"'{item.name}' is no communication of '{component.name}'"
+    elif isinstance(item, robosc.Message):
+        yield access, f"'{item.name}' is a message: only a service or an action is running"
+
+
 def _access(access: robosc.Access, _model: Model) -> Iterator[Fault]:
     item = access.item
     if isinstance(item, (robosc.State, robosc.Variable)):
@@ -61,6 +71,9 @@ def _access(access: robosc.Access, _model: Model) -> Iterator[Fault]:
         if item.eContainer() not in [behaviour.automaton for behaviour in behaviours]:
             yield access, f"'{item.name}' is no state or variable of '{component.name}'"
             return
+    elif isinstance(item, robosc.CommunicationType):
+        yield from _running(access, item)
+        return
     elif access.component is not None and item not in _definitions(access.component):
         yield access, "only a state, a variable, a constant or a condition is one of a component"
         return

@@ -1,4 +1,4 @@
-"""The words of the language's second edition are no reserved words."""
+"""The words of the language's later editions are no reserved words."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tests.language.second_edition import running
 
 FUNCTIONS = "abs min max mod floor ceil round sqrt sin cos atan2 size"
 WORDS = f"""{FUNCTIONS} all any count in after without ms s each at most since automaton never always reachable property
-    constant parameter condition function is then else send change""".split()
+    constant parameter condition function is then else send change canceled running""".split()
 NAMED = """robot {word} {{
   datatype object Data {{ {word}: boolean }}
   interface link use Data from my_msgs

@@ -231,10 +231,19 @@ class Names:
                 return self.leaf(At(Slot(instance.plant), item.name))
             case robosc.Variable() if instance is not None:
                 return self.leaf(Slot(instance.plant, item.name))
+            case robosc.Service() | robosc.Action() if instance is not None:
+                return self._running(item, instance)
         if not isinstance(item, robosc.Constant | robosc.Condition):
             raise NotReadError(item)
         value: ex.Expression = yield item.value, self._inside(item, instance)
         return self._folded(value) if isinstance(item, robosc.Constant) else value
+
+    def _running(self, call: robosc.Service | robosc.Action, instance: Instance) -> ex.Expression:
+        """That a service or action has been requested, and its end is not known."""
+        slot = Slot(Plant(type(call).__name__.lower(), f"{instance.name}.{call.name}"))
+        if isinstance(call, robosc.Service):
+            return self.leaf(At(slot, "wait_for_response"))
+        return ex.Disjunction(left=self.leaf(At(slot, "executing")), right=self.leaf(At(slot, "canceling")))
 
     def _folded(self, constant: ex.Expression) -> ex.Expression:
         """The value of a constant expression that is written out, as an expression."""

@@ -1,0 +1,110 @@
+"""`Base.drive.running` reads whether a service or action is running, where the name means nothing else."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+import robosc
+from robosc.metamodel import robosc as rsc
+from tests.language.second_edition import requirements, running
+from tests.language.texts import reading, underlined
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+ROBOT = """robot Carrier {
+  interface moving use Move from carrier_msgs
+  component Base {
+    action drive with request: none, response: none, feedback: none links moving
+    service beep with request: none, response: none
+    outgoing message bump with type: none
+    behaviour {
+      initial marked state here { on request to drive if !beep.running on request to beep }
+    }
+  }
+  component Lift { service raise with request: none, response: none }
+  requirement raise needs !Base.drive.running
+  property never Base.drive.running and Lift.raise.running
+}"""
+
+
+def test_it_is_true_from_the_request_until_the_end() -> None:
+    engine = running(ROBOT)
+    rise, beep = "service_raise.c_trigger", "service_beep.c_trigger"
+    assert engine.enabled(rise)
+    engine.perform("action_drive.c_trigger")
+    assert not engine.enabled(rise)
+    engine.perform("action_drive.u_feedback")
+    assert not engine.enabled(rise)
+    engine.perform("action_drive.u_response")
+    assert engine.enabled(rise)
+    engine.perform("action_drive.c_reset")
+    engine.perform(beep)
+    assert not engine.enabled("action_drive.c_trigger")
+    engine.perform("service_beep.u_error")
+    assert engine.enabled("action_drive.c_trigger")
+
+
+def test_it_is_true_while_a_cancel_is_under_way() -> None:
+    stop = "component Stop { outgoing message stop with type: none behaviour {"
+    stop += " initial marked state free { on response from stop goto pressed } marked state pressed { } } }"
+    engine = running(ROBOT.replace("  requirement", f"  {stop} requirement drive needs Stop.free\n  requirement", 1))
+    for event in ("action_drive.c_trigger", "message_stop.u_response", "action_drive.c_cancel"):
+        assert engine.perform(event)
+    assert not engine.enabled("service_raise.c_trigger")
+    assert engine.perform("action_drive.u_canceled")
+    assert engine.enabled("service_raise.c_trigger")
+
+
+def test_it_takes_no_state_of_its_own() -> None:
+    with_it, without = (
+        robosc.synthesize(robosc.to_sct(robosc.load(text=text))).uncontrolledStates
+        for text in (ROBOT.replace(" if !beep.running", ""), ROBOT.replace("Base.drive.running", "false"))
+    )
+    assert with_it == without == 5 * 4 * 4
+
+
+def test_a_text_keeps_its_meaning(tmp_path: Path) -> None:
+    """A variable named like a communication, with a property `running`, comes first."""
+    found = reading(
+        tmp_path,
+        """robot R {
+          interface link use Data from my_msgs
+          datatype object Data { running: boolean }
+          component C {
+            outgoing message told with type: Data links link
+            service drive with request: none, response: none
+            behaviour {
+              variable drive: Data
+              initial marked state here { on response from told do drive := value }
+            }
+          }
+          component running { behaviour { initial marked state s { } } }
+          provide go with 1.0 if C.drive.running
+          component D { incoming message go with type: double }
+        }""",
+    )
+    assert underlined(found) == []
+    assert found.base is not None
+    items = [element.item for element in found.base.eAllContents() if isinstance(element, rsc.Access) and element.item]
+    assert [type(item).__name__ for item in items] == ["Variable", "Variable"]
+
+
+@pytest.mark.parametrize(
+    ("condition", "message"),
+    [
+        ("Base.bump.running", "component `Base` has no variable or state `bump`"),
+        ("Base.drive.runs", "component `Base` has no variable or state `drive`"),
+        ("Base.drive", "component `Base` has no variable or state `drive`"),
+        ("Base.drive.running.more", "component `Base` has no variable or state `drive`"),
+    ],
+)
+def test_only_services_and_actions_are_running(tmp_path: Path, condition: str, message: str) -> None:
+    found = reading(tmp_path, ROBOT.replace("!Base.drive.running", condition))
+    assert message in [finding.message for finding in found.findings]
+
+
+def test_it_is_printed_as_it_is_written() -> None:
+    assert "requirement raise needs !Base.drive.running" in requirements(ROBOT)
