@@ -79,9 +79,12 @@ def _run(models: Models, configuration: Configuration, version: int, arguments: 
 
     graph = models.rosgraph
     assert graph is not None
-    last, instead = (
-        [sending for name in names for sending in [message_named(graph, name)] if sending is not None]
-        for names in (configuration.on_shutdown, configuration.on_withheld)
+    settings = (configuration.on_shutdown, configuration.on_withheld, configuration.on_blocked)
+    safe = SafeMessages(
+        *(
+            [sending for name in names for sending in [message_named(graph, name)] if sending is not None]
+            for names in settings
+        )
     )
     interruption.check()
     interruption.leave()
@@ -90,8 +93,8 @@ def _run(models: Models, configuration: Configuration, version: int, arguments: 
     gc.set_threshold(700, 10, 10)
     try:
         if layer:
-            run_layer(graph, configuration, version, arguments)
+            run_layer(graph, configuration, version, arguments, safe)
         else:
-            run_controller(graph, configuration, version, arguments, SafeMessages(last, instead))
+            run_controller(graph, configuration, version, arguments, safe)
     except StartError as error:
         raise CallError(f"{error}\n  {error.hint}" if error.hint else str(error)) from error

@@ -196,6 +196,15 @@ class Configuration(_Settings):
         description="Messages of the model to send, in this order, when a command's data can't be sent."
         " Without any the robot goes on as it was told last.",
     )
+    on_blocked: list[str] = Field(
+        default=[],
+        description="Messages of the model. When a layer blocks one of them after it forwarded one, it sends one"
+        " itself, once. Without any the robot goes on as it was told last.",
+    )
+    wait_for: list[str] = Field(
+        default=[],
+        description="Topics that a controller must have heard once each before it sends commands.",
+    )
     lifecycle: bool = Field(default=False, description="Whether the ROS 2 node is a managed one.")
     package: Package = Package()
 

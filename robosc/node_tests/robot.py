@@ -107,6 +107,10 @@ class Robot:
         """Nobody listens to statuses."""
         return 0
 
+    def other_servers(self, client: rosgraph.ServiceClient | rosgraph.ActionClient) -> dict[str, str]:  # noqa: ARG002  # a trace has no other nodes
+        """No servers of other types."""
+        return {}
+
     def endpoints(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
         """Nobody else is there."""
         return {}

@@ -39,7 +39,13 @@ def run_controller(
     _run(_node(version, name, graph, configuration, arguments), name, graph, configuration, make)
 
 
-def run_layer(graph: rosgraph.RosGraph, configuration: Configuration, version: int, arguments: Sequence[str]) -> None:
+def run_layer(
+    graph: rosgraph.RosGraph,
+    configuration: Configuration,
+    version: int,
+    arguments: Sequence[str],
+    safe: SafeMessages,
+) -> None:
     """Runs the supervisory layer of a graph whose model has a supervisor, until the user interrupts it.
 
     No two communications of the graph are on one topic. Raises StartError where it can't start.
@@ -47,7 +53,7 @@ def run_layer(graph: rosgraph.RosGraph, configuration: Configuration, version: i
 
     def make(node: Node, log: str) -> tuple[Layer, Settings]:
         settings = Settings(node.parameters(layer_parameters(graph, configuration, log)), configuration)
-        return Layer(graph, settings, node, node.event_loop), settings
+        return Layer(graph, settings, node, node.event_loop, safe), settings
 
     name = configuration.layer_name(graph)
     _run(_node(version, name, graph, configuration, arguments), name, graph, configuration, make)

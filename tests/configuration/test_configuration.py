@@ -38,6 +38,8 @@ EVERYTHING = {
     "watchdogStops": True,
     "onShutdown": ["halt"],
     "onWithheld": ["halt"],
+    "onBlocked": ["velocity"],
+    "waitFor": ["/scan"],
     "lifecycle": True,
     "package": {
         "name": "my_robot",

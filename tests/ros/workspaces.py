@@ -28,8 +28,13 @@ EXAMPLES = HERE.parents[1] / "examples"
 USHER, DRIVER = HERE.parent / "m2t" / "layer", HERE / "usher_driver"
 #: Two generated controllers in one process.
 TWO_IN_ONE = HERE / "faults" / "two_in_one"
-#: A component in an executor that comes late.
+#: A base behind a layer that sends a stop in the place of blocked ones.
+BLOCKED = HERE / "blocked"
+#: A robot whose stop button is published once, and kept.
+LATCHED = HERE / "latched"
+#: A component in an executor that comes late; components in one that queues the calls of timers.
 LATE = HERE / "late_arrival"
+QUEUED = HERE / "events_executor"
 #: A managed node with times, kept data, parameters and what is sent on change.
 MANAGED = HERE / "managed"
 CPP = HERE.parent / "m2t" / "cpp"
@@ -81,6 +86,8 @@ def _packages(target: str) -> list[Package]:
         Package("patience_controller", HERE / "times" / "patience.rscd", target),
         Package("keeper_controller", HERE / "kept" / "keeper.rscd", target),
         Package("usher_layer", USHER / "usher.rscd", f"{target}-layer", USHER / "controller-config.json"),
+        Package("hoist_layer", BLOCKED / "hoist.rscd", f"{target}-layer", BLOCKED / "controller-config.json"),
+        Package("latch_controller", LATCHED / "latch.rscd", target, LATCHED / "controller-config.json"),
         Package("guard_layer", HERE.parent / "runtime" / "guard.rscd", f"{target}-layer"),
     ]
 
@@ -178,7 +185,7 @@ def ros1_workspace(request: pytest.FixtureRequest) -> Workspace:
 @pytest.fixture(scope="session")
 def ros2_workspace(shared_folder: Path) -> Workspace:
     """The packages of `ROS2_PACKAGES` and `interfaces/ros2`; `ROBOSC_ROS2_WORKSPACE` likewise."""
-    others = [*sorted((HERE / "interfaces" / "ros2").iterdir()), LATE]
+    others = [*sorted((HERE / "interfaces" / "ros2").iterdir()), LATE, QUEUED]
     return _workspace(shared_folder, found_or_skipped(2), ROS2_PACKAGES, others)
 
 

@@ -73,6 +73,8 @@ class FakePort:
     statuses: list[list[ComponentStatus]] = field(default_factory=list)
     said: list[str] = field(default_factory=list)
     others: dict[Any, list[Endpoint]] = field(default_factory=dict)
+    #: Of the wrong type: nodes to types.
+    servers: dict[str, str] = field(default_factory=dict)
     hearing: int = 1
     #: What has arrived and was not handled yet.
     arrived: list[Callable[[], None]] = field(default_factory=list)
@@ -123,6 +125,9 @@ class FakePort:
 
     def status_listeners(self) -> int:
         return self.hearing
+
+    def other_servers(self, client: object) -> dict[str, str]:
+        return self.servers
 
     def endpoints(self) -> dict[Any, list[Endpoint]]:
         return self.others

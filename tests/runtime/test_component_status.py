@@ -10,7 +10,8 @@ import pytest
 
 from robosc.configuration import Configuration
 from robosc.configuration.parameters import controller_parameters, layer_parameters
-from tests.runtime.fake import World, supervised
+from robosc.runtime.core.port import Endpoint
+from tests.runtime.fake import Record, World, supervised
 
 if TYPE_CHECKING:
     from robosc.runtime.core.port import ComponentStatus
@@ -70,3 +71,70 @@ def test_values_are_texts_as_people_read_them(tmp_path: Path) -> None:
         "requirement report needs Scanner.looking => Counter.limited < 50",
     ]
     assert dict(status(world, "Office").values)["request to report"] == f"forbidden: {'; '.join(forbidden)}"
+
+
+def test_faults_of_the_graph_are_told_as_long_as_they_last(tmp_path: Path) -> None:
+    world = World(SCOUT, tmp_path / "events.jsonl", diagnostics_ms=100).start()
+    topics = {end.topic: end for end in [*world.graph.subscriptions, *world.graph.publishers]}
+    type_name = world.port.type_name
+    teleop = Endpoint("/teleop", type_name(topics["/cmd_vel"].interface))
+    world.port.others = {
+        topics["/scan"]: [Endpoint("/lidar", type_name(topics["/scan"].interface), "it is best effort")],
+        topics["/charge"]: [Endpoint("/battery", "std_msgs/String")],
+        topics["/bumper"]: [],
+        topics["/pulse"]: [Endpoint("", "plc_msgs/Pulse")],
+        topics["/cmd_vel"]: [teleop],
+    }
+    for _ in range(2):
+        world.wait(6.0)
+        found = {name: status(world, name) for name in ("Lidar", "Battery", "Bumper", "Encoder", "Platform")}
+        assert {name: reported.message for name, reported in found.items() if reported.warns} == {
+            "Lidar": "looking; /scan: /lidar offers a quality of service that does not fit: it is best effort",
+            "Battery": "powered; /charge: /battery publishes std_msgs/String, not std_msgs/Int16",
+            "Bumper": "untouched; /bumper: nobody publishes it",
+            "Platform": "has no states; /cmd_vel: /teleop publishes it, too",
+        }
+    assert len(world.port.said) == len(set(world.port.said)), "the log has each once"
+    world.port.others = {topics["/bumper"]: [Endpoint("/bumper", type_name(topics["/bumper"].interface))]}
+    world.wait(2.0)
+    assert not any(reported.warns for reported in world.port.statuses[-1])
+
+
+def test_a_server_of_another_type_is_told(tmp_path: Path) -> None:
+    world = World(SCOUT, tmp_path / "events.jsonl", diagnostics_ms=100).start()
+    world.port.served = False
+    world.port.servers = {"/switch": "std_srvs/Trigger"}
+    lamp = next(client for client in world.graph.serviceClients if client.identifier == "/lamp")
+    fault = f"/switch serves std_srvs/Trigger, not {world.port.type_name(lamp.interface)}"
+    world.hear("light", data=True)
+    world.wait(12.0)
+    assert world.port.said.count(f"/lamp: {fault}") == world.port.said.count("/lamp: the server has another type") == 1
+    assert not [text for text in world.port.said if text.startswith("/lamp: no server")]
+    assert status(world, "Lamp").message == f"dark; /lamp: {fault}; /lamp: the server has another type"
+    world.port.servers, world.port.served = {}, True
+    world.wait(2.0)
+    world.port.calls[-1].answered(Record(success=True, message="on"))
+    world.wait(0.2)
+    assert not status(world, "Lamp").warns
+
+
+def test_commands_wait_for_the_topics_that_are_named(tmp_path: Path) -> None:
+    settings = Configuration(wait_for=["charge", "/stop"], on_shutdown=["halt"])
+    world = World(SCOUT, tmp_path / "events.jsonl", settings, diagnostics_ms=100).start()
+    world.hear("scan", ranges=[1.0, 0.25])
+    world.wait(1.0)
+    assert world.port.sent == []
+    assert status(world, "Battery").message == "powered; /charge was not heard yet"
+    assert ("request to move", "held back: it waits for /charge, /stop") in status(world, "Platform").values
+    world.hear("stop")
+    world.hear("continue")
+    world.wait(1.0)
+    assert world.port.sent == []
+    world.hear("charge", data=50)
+    world.wait(0.2)
+    assert [topic for topic, _ in world.port.sent][:1] == ["/cmd_vel"]
+    assert not status(world, "Battery").warns
+    assert world.port.said == [
+        "commands wait for /charge, /stop",
+        "commands wait no longer: each topic was heard",
+    ]

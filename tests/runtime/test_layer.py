@@ -14,10 +14,13 @@ from robosc.configuration.parameters import layer_parameters
 from robosc.files.resources import locate
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.layer import Layer
-from robosc.runtime.core.settings import Settings
+from robosc.runtime.core.settings import SafeMessages, Settings
+from robosc.semantics.messages import message_named
 from tests.runtime.fake import FakePort, Record, supervised
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from robosc.metamodel import rosgraph
 
 USHER = Path(__file__).parents[1] / "m2t" / "layer" / "usher.rscd"
@@ -27,7 +30,7 @@ MISSION = Path(__file__).parent / "mission.rscd"
 class Bench:
     """A layer, and its robot's graph by names."""
 
-    def __init__(self, log: Path, model: Path = USHER) -> None:
+    def __init__(self, log: Path, model: Path = USHER, on_blocked: Sequence[str] = ()) -> None:
         self.graph = supervised(model)
         self.port = FakePort()
         self.event_loop = EventLoop(lambda: self.port.time)
@@ -36,7 +39,9 @@ class Bench:
         values = {
             parameter.name: parameter.default for parameter in layer_parameters(self.graph, configuration, str(log))
         }
-        self.layer = Layer(self.graph, Settings(values, configuration), self.port, self.event_loop)
+        instead = [message_named(self.graph, name) for name in on_blocked]
+        safe = SafeMessages(on_blocked=[sending for sending in instead if sending is not None])
+        self.layer = Layer(self.graph, Settings(values, configuration), self.port, self.event_loop, safe)
         (self.action,) = self.graph.actionClients
         (self.service,) = self.graph.serviceClients
         self.cancelled = 0
@@ -168,3 +173,30 @@ def test_provided_data_plays_no_part(bench: Bench) -> None:
     bench.hear("/stop")
     bench.hear("/resume")
     assert not [name for _, name in bench.directions() if name.startswith("data_")]
+
+
+def test_blocked_messages_are_replaced_once_until_the_next_passes(tmp_path: Path) -> None:
+    bench = Bench(tmp_path / "events.jsonl", on_blocked=["speed"])
+    bench.hear("battery", data=10)
+    assert not bench.passes("speed")
+    assert bench.port.sent == [], "the robot was told nothing yet"
+    for _ in range(2):
+        bench.hear("battery", data=80)
+        assert bench.passes("speed")
+        bench.hear("battery", data=10)
+        for _ in range(3):
+            assert not bench.passes("speed")
+    assert bench.port.sent == [("/speed", {"data": 0.25})] * 2, "what the model provides"
+    assert [line for line in bench.directions() if line[0] == "outside"] == [("outside", "message_speed.c_trigger")] * 2
+    assert len(bench.blocked()) == 7
+
+
+def test_warnings_of_what_is_blocked_are_throttled(bench: Bench) -> None:
+    bench.hear("/stop")
+    for _ in range(3):
+        assert not bench.passes("speed")
+        assert not bench.passes("go_to")
+    assert [text.partition(" is blocked")[0] for text in bench.port.said] == ["Drive.speed", "Navigation.go_to"]
+    bench.port.time += 5
+    assert not bench.passes("speed")
+    assert len(bench.port.said) == 3

@@ -26,6 +26,8 @@ class LayerNode:
         messages += [client.request for client in self.node.clients]
         #: What the controller sends, by the enumerator of its event.
         self.gates = {gate.event: gate for gate in gates}
+        #: What it sends in the place of blocked messages, by the enumerator of its event.
+        self.instead = {last.message.event: last for last in node.on_blocked}
         #: Events of the controller and internal ones that change the node's own data.
         self.changing = [*self.node.internal, *(message.reaction for message in messages if message.reaction)]
         #: Events that choose provided data, which is none of the layer's business.

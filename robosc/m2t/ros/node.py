@@ -219,7 +219,8 @@ class Node:
     """The node of one graph; everything is ready to be printed, in the order of the model.
 
     `on_shutdown` names the messages that go out when the node stops the robot, `on_withheld` those when data of a
-    command can't be sent; each must be one that it sends.
+    command can't be sent, `on_blocked` those that a layer sends in the place of blocked ones; each must be one that it
+    sends.
     """
 
     def __init__(
@@ -228,6 +229,7 @@ class Node:
         executed: engine.EngineModel,
         on_shutdown: Sequence[str] = (),
         on_withheld: Sequence[str] = (),
+        on_blocked: Sequence[str] = (),
     ) -> None:
         self._graph = graph
         self._names = CppNames(graph)
@@ -274,6 +276,7 @@ class Node:
         self.actions = [self._client(client) for client in graph.actionClients]
         self.shutdown = [self._last(name) for name in on_shutdown]
         self.instead = [self._last(name) for name in on_withheld]
+        self.on_blocked = [self._last(name) for name in on_blocked]
         outside = {reception.event for topic in graph.subscriptions for reception in topic.receptions}
         outside |= {sending.event for topic in graph.publishers for sending in topic.sendings}
         for service in graph.serviceClients:

@@ -45,17 +45,19 @@ _HEADERS = {
     "robosc/component_status": {"statuses"},
     "robosc/data": set(),
     "robosc/event_log": set(),
-    "robosc/fields": {"controller"},
+    "robosc/fields": {"composes"},
     "robosc/json": set(),
-    "robosc/message_headers": {"controller", "defaults"},
+    "robosc/message_headers": {"composes", "defaults"},
+    "robosc/throttle": {"layer", "gates"},
     "robosc/transitions": {"state"},
+    "robosc/unheard": {"controller", "awaits"},
     "robosc/watchdog": {"controller", "subscriptions"},
     "robosc_ros{ros}/alarm": {"timed"},
     "robosc_ros{ros}/action_client": {"controller", "actions"},
     "robosc_ros{ros}/action_proxy": {"layer", "actions"},
     "robosc_ros{ros}/arrivals": {"controller", "ros2", "subscriptions", "timed"},
     "robosc_ros{ros}/countdown": {"controller", "waits"},
-    "robosc_ros{ros}/finite": {"controller", "hands_on"},
+    "robosc_ros{ros}/finite": {"composes", "hands_on"},
     "robosc_ros{ros}/controller_node": {"controller"},
     "robosc_ros{ros}/guarded_node": {"layer", "ros2"},
     "robosc_ros{ros}/managed_node": {"controller", "managed", "ros2"},
@@ -66,7 +68,7 @@ _HEADERS = {
     "robosc_ros{ros}/run_layer": {"layer", "ros1"},
     "robosc_ros{ros}/service_client": {"controller", "services"},
     "robosc_ros{ros}/service_proxy": {"layer", "services"},
-    "robosc_ros{ros}/unit_quaternions": {"controller", "defaults", "ros1"},
+    "robosc_ros{ros}/unit_quaternions": {"composes", "defaults", "ros1"},
 }
 
 _MESSAGE = rosgraph.InterfaceKind.message
@@ -126,7 +128,7 @@ class RosTarget:
         assert graph is not None
         executed = models.engine
         if self.kind == "layer":
-            node, name = Node(graph, executed), configuration.layer_name(graph)
+            node, name = Node(graph, executed, on_blocked=configuration.on_blocked), configuration.layer_name(graph)
         else:
             node = Node(graph, executed, configuration.on_shutdown, configuration.on_withheld)
             name = configuration.package_name(graph)
@@ -230,6 +232,7 @@ class RosTarget:
             "writes_log": configuration.write_events_to_log,
             "definition": definition_text(graph),
             "no_stop": _no_stop(node, configuration),
+            "awaited": _awaited(node, configuration) if kind == "controller" else [],
             "has_defaults": has_defaults,
             "frame": lambda topic: configuration.frame_id.get(topic.removeprefix("/"), ""),
             "controller": configuration.supervisor.controller,
@@ -253,11 +256,16 @@ class RosTarget:
         self, node: Node, layer: LayerNode | None, told: Sequence[Status], configuration: Configuration
     ) -> list[str]:
         """The headers of `include` that the node includes, without their ending."""
-        sent = [publisher.interface for publisher in node.publishers] + [client.interface for client in node.clients]
+        if self.kind == "controller":
+            sent = [end.interface for ends in (node.publishers, node.clients) for end in ends]
+        else:
+            sent = [last.publisher.interface for last in node.on_blocked]
         present = {
             self.kind: True,
             f"ros{self.ros.version}": True,
             "actions": node.actions,
+            "awaits": _awaited(node, configuration),
+            "composes": self.kind == "controller" or node.on_blocked,
             "defaults": any(has_defaults(interface) for interface in sent),
             "gates": (layer and layer.gates) or any(status.commands for status in told),
             "hands_on": node.hands_on,
@@ -273,6 +281,12 @@ class RosTarget:
         }
         features = {feature for feature, is_there in present.items() if is_there}
         return [name.format(ros=self.ros.version) for name, needed in _HEADERS.items() if needed <= features]
+
+
+def _awaited(node: Node, configuration: Configuration) -> list[str]:
+    """The topics that commands wait for."""
+    names = {topic.removeprefix("/") for topic in configuration.wait_for}
+    return [topic.topic for topic in node.subscriptions if topic.topic.removeprefix("/") in names]
 
 
 def _test_files(ros: Middleware, name: str, into: str | None) -> dict[str, str]:

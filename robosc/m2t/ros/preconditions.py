@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from robosc.m2t.models import Models
+    from robosc.metamodel import engine
 
 RULE, LAYER_RULE = "ros-node", "layer-topic"
 
@@ -33,6 +34,15 @@ _NAMESPACE = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
 _FILE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*(/[A-Za-z0-9_][A-Za-z0-9_.+-]*)*")
 _FIELD = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _TOPIC = re.compile(r"(/_*)?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
+#: Types of messages that move a robot until the next one.
+_MOVING = frozenset(
+    [
+        "geometry_msgs/Twist",
+        "geometry_msgs/TwistStamped",
+        "trajectory_msgs/JointTrajectory",
+        "trajectory_msgs/MultiDOFJointTrajectory",
+    ]
+)
 #: Parameters that every node has, by version of ROS.
 _OWN_PARAMETERS = {1: ("log_level",), 2: ("use_sim_time", "start_type_description_service")}
 #: What would end a string, or mean something in it, where the build tools copy it into CMake code.
@@ -60,6 +70,8 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
         *found,
         *_package(graph, configuration, configuration.layer_name(graph)),
         *_shared_topics(graph),
+        *_unsendable(graph, configuration, "onBlocked", configuration.on_blocked),
+        *_swallowed(graph, models.engine, configuration),
         *_controller(configuration, ros),
         *_unused(configuration),
     ]
@@ -143,11 +155,17 @@ def _settings(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterato
     others = [publisher.topic for publisher in graph.publishers]
     others += [service.identifier for service in graph.serviceClients]
     others += [action.identifier for action in graph.actionClients]
+    for place_of_topic, topic in enumerate(configuration.wait_for):
+        if topic.removeprefix("/") not in heard:
+            hint = f"topics that it listens to: {', '.join(sorted(heard))}" if heard else None
+            message = f'"waitFor": the node does not listen to {topic}'
+            yield configuration.error(("waitFor", place_of_topic), message, hint)
     for topic in configuration.watchdog_ms:
         if topic not in heard and topic in {name.removeprefix("/") for name in others}:
             yield configuration.warning(("watchdogMs", topic), f'"watchdogMs": the node does not listen to {topic}')
     controller = configuration.supervisor.controller
     unused = {
+        ("onBlocked",): configuration.on_blocked,
         ("supervisor", "controller"): controller.run or controller.launch,
         ("output", "ros2SupervisorNodeLocation"): configuration.output.ros2_supervisor_node_location,
     }
@@ -160,18 +178,49 @@ def _outside(
     graph: rosgraph.RosGraph, configuration: Configuration, setting: str, names: Sequence[str]
 ) -> Iterator[Diagnostic]:
     """What can't be sent where a setting names it; and what is sent then, requirements or not."""
+    yield from _unsendable(graph, configuration, setting, names)
     for place_of_name, name in enumerate(names):
-        key = (setting, place_of_name)
         sending = message_named(graph, name)
         if sending is None:
-            sent = [sending.name for publisher in graph.publishers for sending in publisher.sendings]
-            hint = f"messages to the robot: {', '.join(sent)}" if sent else None
-            yield configuration.error(key, f'"{setting}": {name} is no message that the node sends', hint)
             continue
         for requirement in graph.model.requirements:
             if requirement.event is sending.event and requirement.text:
                 message = f'"{setting}": {name} is sent then in spite of "{requirement.text}"'
-                yield configuration.warning(key, message)
+                yield configuration.warning((setting, place_of_name), message)
+
+
+def _unsendable(
+    graph: rosgraph.RosGraph, configuration: Configuration, setting: str, names: Sequence[str]
+) -> Iterator[Diagnostic]:
+    """Names in a setting that are no messages to the robot."""
+    for place_of_name, name in enumerate(names):
+        if message_named(graph, name) is None:
+            sent = [sending.name for publisher in graph.publishers for sending in publisher.sendings]
+            hint = f"messages to the robot: {', '.join(sent)}" if sent else None
+            message = f'"{setting}": {name} is no message that the node sends'
+            yield configuration.error((setting, place_of_name), message, hint)
+
+
+def _swallowed(
+    graph: rosgraph.RosGraph, executed: engine.EngineModel, configuration: Configuration
+) -> Iterator[Diagnostic]:
+    """Messages that move the robot until the next one, and that a layer can block without a word to the robot."""
+    if "on_blocked" in configuration.model_fields_set:
+        return
+    blockable = {event.event for event in executed.events if event.reasons}
+    for publisher in graph.publishers:
+        kind = f"{publisher.interface.package}/{publisher.interface.type}"
+        for sending in publisher.sendings:
+            if kind in _MOVING and sending.event in blockable:
+                message = (
+                    f"the layer can block {sending.name}, also one that stops the robot: the robot then goes on as it"
+                    " was told last"
+                )
+                hint = (
+                    f'name it in controller-config.json: "onBlocked": ["{sending.name}"]; where the robot stops by'
+                    " itself, write []"
+                )
+                yield replace(_error(sending.event, message, hint), severity=Severity.WARNING)
 
 
 def _nothing_safe(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterator[Diagnostic]:
@@ -287,6 +336,7 @@ def _unused(configuration: Configuration) -> Iterator[Diagnostic]:
         "watchdogStops": configuration.watchdog_stops,
         "onShutdown": configuration.on_shutdown,
         "onWithheld": configuration.on_withheld,
+        "waitFor": configuration.wait_for,
         "lifecycle": configuration.lifecycle,
     }
     for key, used in settings.items():

@@ -42,6 +42,13 @@ class Status:
     commands: list[Command]
     topics: list[Subscription]
     clients: list[Client]
+    #: The topics on which its commands go out.
+    commanded: list[str]
+
+    def watched(self, version: int) -> list[str]:
+        """The topics, services and actions whose faults in the graph are told in a ROS."""
+        names = [*(topic.topic for topic in self.topics), *self.commanded]
+        return names if version == 1 else [*names, *(client.name for client in self.clients)]
 
 
 def statuses(graph: rosgraph.RosGraph, node: Node, gates: Mapping[rosgraph.Sending, Gate]) -> list[Status]:
@@ -54,6 +61,7 @@ def statuses(graph: rosgraph.RosGraph, node: Node, gates: Mapping[rosgraph.Sendi
         message.event for message in [*messages, *(client.request for client in node.clients)] if message.may_fail
     }
     reported = {component.name: component for component in node.reported}
+    topics = {sending: publisher.topic for publisher in graph.publishers for sending in publisher.sendings}
     words = Names()
     return [
         Status(
@@ -74,6 +82,7 @@ def statuses(graph: rosgraph.RosGraph, node: Node, gates: Mapping[rosgraph.Sendi
             ],
             [heard[topic] for topic in parts.topics],
             [called[client] for client in parts.clients],
+            list(dict.fromkeys(topics[sending] for sending in parts.commands if sending in topics)),
         )
         for parts in components(graph)
         for component in [reported.get(string_literal(parts.name))]

@@ -11,23 +11,22 @@ from typing import TYPE_CHECKING, Any
 from robosc.configuration import NO_STOP, NO_STOP_ON_SILENCE
 from robosc.configuration.parameters import topic_words, watchdog
 from robosc.engine import Settings as LoopSettings
-from robosc.metamodel import rosgraph
 from robosc.ros_types import Section
 from robosc.runtime.core.clients import ActionClient, Answers, ServiceClient
+from robosc.runtime.core.composing import Composer
 from robosc.runtime.core.event_handler import EventHandler
-from robosc.runtime.core.event_log import nested
-from robosc.runtime.core.monitors import GraphMonitor, Watchdog
-from robosc.runtime.core.node_data import NotFiniteError, bounded, fill, hand_on
+from robosc.runtime.core.monitors import OTHER_TYPE, GraphMonitor, Watchdog
+from robosc.runtime.core.node_data import NotFiniteError
 from robosc.runtime.core.settings import SafeMessages
 from robosc.runtime.core.times import RESOLUTION_MS
-from robosc.semantics.messages import holds_objects, parts_with_headers, paths_set
+from robosc.semantics.messages import paths_set
 from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name, plant_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from robosc.metamodel import sct
+    from robosc.metamodel import rosgraph, sct
     from robosc.runtime.core.event_loop import EventLoop, Timer
     from robosc.runtime.core.json_text import Json
     from robosc.runtime.core.port import Client, ControllerPort, Message
@@ -88,10 +87,13 @@ class Controller(EventHandler):
             RESOLUTION_MS,
         )
         super().__init__(graph, settings, port, event_loop, loop)
-        self._node = port
+        self._composer = Composer(port, self._data)
         self._safe = safe or SafeMessages()
         self._withheld: set[str] = set()
-        self._monitor = GraphMonitor(port, event_loop)
+        self._monitor = GraphMonitor(port, event_loop, [*graph.serviceClients, *graph.actionClients])
+        awaited = {topic.removeprefix("/") for topic in settings.configuration.wait_for}
+        #: The topics that were not heard yet, of those that commands wait for.
+        self._unheard = [topic for topic in graph.subscriptions if topic.topic.removeprefix("/") in awaited]
         self._watchdogs: dict[rosgraph.Subscription, Watchdog] = {}
         self._watchdog_stops = bool(settings.parameters["watchdog_stops"])
         self._stopping = False
@@ -101,6 +103,7 @@ class Controller(EventHandler):
         self._failures: dict[Client, _Failure] = {}
         self._resets: dict[sct.Event, _Failure] = {}
         self._cancels: dict[sct.Event, ActionClient] = {}
+        self._publishers = {sending: publisher for publisher in graph.publishers for sending in publisher.sendings}
         for publisher in graph.publishers:
             for sending in publisher.sendings:
                 self._add_sender(publisher, publisher.topic, sending, Section.MESSAGE, partial(port.publish, publisher))
@@ -145,6 +148,8 @@ class Controller(EventHandler):
                 self._port.warn(NO_STOP_ON_SILENCE)
             elif not self._settings.configuration.says_how_to_stop:
                 self._port.warn(NO_STOP)
+        if self._unheard:
+            self._port.info(f"commands wait for {_topics(self._unheard)}")
         words = topic_words(self._graph)
         for subscription in self._graph.subscriptions:
             seconds = self._settings.seconds(watchdog(words, subscription))
@@ -233,6 +238,10 @@ class Controller(EventHandler):
             self._control.end()
 
     def _note_received(self, subscription: rosgraph.Subscription) -> None:
+        if subscription in self._unheard:
+            self._unheard.remove(subscription)
+            if not self._unheard:
+                self._port.info("commands wait no longer: each topic was heard")
         if subscription in self._watchdogs:
             self._watchdogs[subscription].reset()
 
@@ -240,6 +249,8 @@ class Controller(EventHandler):
         self._failures[client].why = ""
 
     def _note_failure(self, client: Client, why: str) -> None:
+        if self._monitor.faults(client):
+            why = OTHER_TYPE
         failure = self._failures[client]
         if failure.why != why:
             super()._note_failure(client, why)
@@ -261,7 +272,7 @@ class Controller(EventHandler):
         sender, name = self._senders.get(event), event_name(event)
         if sender is None:
             return event not in self._resets or self._resets[event].pause is None
-        if self._halted or (sender.client is not None and sender.client.busy):
+        if self._halted or self._unheard or (sender.client is not None and sender.client.busy):
             return False
         if not self._prepare(sender):
             if name not in self._withheld:
@@ -275,6 +286,8 @@ class Controller(EventHandler):
         return event not in self._cancels
 
     def _held_back(self, event: sct.Event) -> str | None:
+        if self._unheard and not self._stopping:
+            return f"it waits for {_topics(self._unheard)}"
         if self._halted:
             return "the node is not active" if self._stopping else "a topic is silent"
         client = self._senders[event].client
@@ -284,30 +297,25 @@ class Controller(EventHandler):
 
     def _faults(self, parts: Parts) -> list[str]:
         silent = [topic for topic in parts.topics if topic in self._watchdogs and self._watchdogs[topic].tripped]
+        unheard = [topic for topic in parts.topics if topic in self._unheard]
+        commanded = dict.fromkeys(self._publishers.get(sending) for sending in parts.commands)
+        watched = [*parts.topics, *(publisher for publisher in commanded if publisher is not None), *parts.clients]
         failed = [(client.identifier, self._failures[client].why) for client in parts.clients]
         withheld = [sending.name for sending in parts.commands if event_name(sending.event) in self._withheld]
         return [
             *(f"{topic.topic} is silent" for topic in silent),
+            *(f"{topic.topic} was not heard yet" for topic in unheard),
+            *(fault for element in watched for fault in self._monitor.faults(element)),
             *(f"{name}: {why}" for name, why in failed if why),
             *(f"{name} is withheld" for name in withheld),
         ]
 
     def _prepare(self, sender: _Sender) -> bool:
         """Makes the data of a trigger; False where it can't be sent."""
-        message = self._node.create(sender.interface, sender.section)
-        for part in parts_with_headers(sender.sending):
-            self._node.stamp(reduce(getattr, part, message), sender.frame)
-        fields: dict[tuple[str, ...], Json] = {}
-        alternatives = sender.sending.alternatives
-        chosen = next((data for data in alternatives if self._data.is_in(data.location)), None)
         try:
-            given = list(chosen.fields) if chosen is not None else []
-            values = [bounded(self._data.value(field.value), field.type) for field in given]
-            for field, value in zip(given, values, strict=True):
-                if isinstance(field.value, rosgraph.WireAccess) and holds_objects(field.type):
-                    hand_on(self._node, message, field.path, value)
-                    continue
-                fields[tuple(field.path)] = fill(self._node, message, field.path, value)
+            sender.message, sender.logged = self._composer.compose(
+                sender.sending, sender.interface, sender.section, sender.frame
+            )
         except (NotFiniteError, UnreadableError) as fault:
             event = sender.sending.event
             word = plant_of(event).name.partition("_")[2]
@@ -315,10 +323,6 @@ class Controller(EventHandler):
             why = f"its {path} would not be finite" if path else str(fault)
             self._warn((event_name(event), path), f"{word} is withheld: {why}")
             return False
-        sender.message = message
-        sender.logged = None
-        if alternatives:
-            sender.logged = {"value": fields["data",] if list(fields) == [("data",)] else nested(fields)}
         return True
 
     def _after(self, name: str) -> None:
@@ -340,6 +344,10 @@ class Controller(EventHandler):
             self._cancels[event].cancel()
             return "out", None
         return None
+
+
+def _topics(subscriptions: Sequence[rosgraph.Subscription]) -> str:
+    return ", ".join(subscription.topic for subscription in subscriptions)
 
 
 def _plain(value: Any) -> Any:

@@ -6,9 +6,14 @@ from typing import TYPE_CHECKING
 
 from robosc.engine import Settings as LoopSettings
 from robosc.metamodel import engine
+from robosc.ros_types import Section
+from robosc.runtime.core.composing import Composer
 from robosc.runtime.core.event_handler import EventHandler
 from robosc.runtime.core.json_text import Json, json_text
+from robosc.runtime.core.node_data import NotFiniteError
+from robosc.runtime.core.settings import SafeMessages
 from robosc.runtime.core.times import RESOLUTION_MS
+from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name, plant_of
 
 if TYPE_CHECKING:
@@ -16,26 +21,40 @@ if TYPE_CHECKING:
 
     from robosc.metamodel import rosgraph, sct
     from robosc.runtime.core.event_loop import EventLoop
-    from robosc.runtime.core.port import Port
+    from robosc.runtime.core.port import ControllerPort
     from robosc.runtime.core.settings import Settings
     from robosc.semantics.component_parts import Parts
 
 
 class Layer(EventHandler):
-    """The layer of a robot. It decides, others forward.
+    """The layer of a robot. It decides, others forward. Of `safe` it sends `on_blocked`.
 
     What the robot sends moves the supervisor before it is forwarded (`receive`, `respond`, `fail`, `feed_back`); what
     the controller sends is forwarded where `passes` allows it. `cancels`: what cancels the goal of an action, by event;
     set by whoever forwards.
     """
 
-    def __init__(self, graph: rosgraph.RosGraph, settings: Settings, port: Port, event_loop: EventLoop) -> None:
+    def __init__(
+        self,
+        graph: rosgraph.RosGraph,
+        settings: Settings,
+        port: ControllerPort,
+        event_loop: EventLoop,
+        safe: SafeMessages | None = None,
+    ) -> None:
         super().__init__(graph, settings, port, event_loop, LoopSettings(resolution_ms=RESOLUTION_MS))
         self._period = settings.seconds("period_ms")
         self._outgoing = self._of_role(engine.Role.trigger, engine.Role.cancel)
         self._data_events = self._of_role(engine.Role.data)
         #: What was blocked since the last report on `/diagnostics`.
         self._blocked: set[sct.Event] = set()
+        self._composer = Composer(port, self._data)
+        instead = (safe or SafeMessages()).on_blocked
+        self._publishers = {
+            sending: publisher for publisher in graph.publishers for sending in publisher.sendings if sending in instead
+        }
+        #: Of `on_blocked`, the messages that the layer forwarded last: it sends one when it blocks the next.
+        self._forwarded: set[rosgraph.Sending] = set()
         self.cancels: dict[sct.Event, Callable[[], None]] = {}
 
     def start(self) -> None:
@@ -59,10 +78,29 @@ class Layer(EventHandler):
         with self._times:
             if self._control.perform(event_name(sending.event)):
                 self._control.settle()
+                if sending in self._publishers:
+                    self._forwarded.add(sending)
                 return True
         reason = self._blocking.reason(sending.event)
         self._report_blocked(sending.event, reason.kind, reason.because)
+        if sending in self._forwarded:
+            self._forwarded.remove(sending)
+            self._send_instead(sending)
         return False
+
+    def _send_instead(self, sending: rosgraph.Sending) -> None:
+        """Sends a message in the place of blocked ones; one with default data where its own can't be sent."""
+        publisher = self._publishers[sending]
+        frame = self._settings.configuration.frame_id.get(publisher.topic.removeprefix("/"), "")
+        target = sending, publisher.interface, Section.MESSAGE, frame
+        try:
+            message, logged = self._composer.compose(*target)
+        except (NotFiniteError, UnreadableError) as fault:
+            why = f"its {fault} would not be finite" if isinstance(fault, NotFiniteError) else str(fault)
+            self._warn((sending, why), f"{sending.name} is sent with default data: {why}")
+            message, logged = self._composer.default(*target), None
+        self._composer.port.publish(publisher, message)
+        self._log.write(self._port.now(), "outside", event_name(sending.event), logged)
 
     def reject(self, sending: rosgraph.Sending) -> None:
         """A call or goal is rejected because another one has not ended."""
@@ -83,7 +121,7 @@ class Layer(EventHandler):
         }
         self._port.publish_report("blocked", json_text(report))
         self._log.write(self._port.now(), "blocked", event_name(event))
-        self._port.warn(f"{name} is blocked: {reason} {json_text(because)}")
+        self._warn(event, f"{name} is blocked: {reason} {json_text(because)}")
 
     def _faults(self, parts: Parts) -> list[str]:
         return [f"{sending.name} was blocked" for sending in parts.commands if sending.event in self._blocked]

@@ -7,14 +7,16 @@ from typing import TYPE_CHECKING
 from robosc.metamodel import rosgraph
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from robosc.runtime.core.event_loop import EventLoop
-    from robosc.runtime.core.port import ControllerPort, Endpoint
+    from robosc.runtime.core.port import Client, ControllerPort, Endpoint
 
 #: From one look at the graph to the next, in seconds, and after how many looks a topic should have a publisher.
 _PERIOD = 1.0
 _PATIENCE = 5
+#: Why a call or goal has failed where only such a server is there.
+OTHER_TYPE = "the server has another type"
 
 
 class Watchdog:
@@ -52,39 +54,47 @@ class Watchdog:
 
 
 class GraphMonitor:
-    """Looks every second at the other nodes on the node's topics, and reports each fault once.
+    """Looks every second at the other nodes on the node's topics, and at the servers of what it calls.
 
-    Reported are another type, a quality of service that does not fit, no publisher for five seconds, and another
-    publisher on a topic that the controller commands.
+    Each fault is logged once, and `faults` has it as long as it lasts: another type, a quality of service that does not
+    fit, no publisher for five seconds, another publisher on a topic that the controller commands, and a server of
+    another type where there is none of the right one.
     """
 
-    def __init__(self, port: ControllerPort, loop: EventLoop) -> None:
+    def __init__(self, port: ControllerPort, loop: EventLoop, clients: Sequence[Client] = ()) -> None:
         self._port = port
         self._loop = loop
-        self._looks = 0
-        self._published: set[str] = set()
+        self._clients = clients
+        self._missing: dict[str, int] = {}
         self._reported: set[str] = set()
+        self._faults: dict[rosgraph.Subscription | rosgraph.Publisher | Client, list[str]] = {}
 
     def start(self) -> None:
         """Looks from now on."""
         self._loop.call_later(_PERIOD, self._look)
 
+    def faults(self, element: rosgraph.Subscription | rosgraph.Publisher | Client) -> Sequence[str]:
+        """The faults of a topic, service or action at the last look."""
+        return self._faults.get(element, ())
+
     def _look(self) -> None:
-        self._looks += 1
+        self._faults = {}
         for element, endpoints in self._port.endpoints().items():
             if isinstance(element, rosgraph.Subscription):
                 self._check_subscription(element, endpoints)
             else:
                 self._check_publisher(element, endpoints)
+        for client in self._clients:
+            self._check_servers(client)
         self.start()
 
     def _check_subscription(self, subscription: rosgraph.Subscription, endpoints: list[Endpoint]) -> None:
         topic = subscription.topic
-        if endpoints:
-            self._published.add(topic)
-        elif topic not in self._published and self._looks >= _PATIENCE:
-            # It may tell what seldom happens, such as that a button was pressed.
-            self._report(f"{topic}: nobody publishes it after {_PATIENCE} s", self._port.info)
+        self._missing[topic] = 0 if endpoints else self._missing.get(topic, 0) + 1
+        if self._missing[topic] >= _PATIENCE:
+            # A publisher that comes late is usual while a robot starts. So this is no warning in the log.
+            text = f"{topic}: nobody publishes it after {_PATIENCE} s"
+            self._note(subscription, f"{topic}: nobody publishes it", text, self._port.info)
         for publisher in endpoints:
             self._compare(subscription, publisher, "publishes", "offers")
 
@@ -92,17 +102,36 @@ class GraphMonitor:
         for endpoint in endpoints:
             if endpoint.listens:
                 self._compare(publisher, endpoint, "expects", "asks for")
-            else:
-                self._report(f"{publisher.topic}: {endpoint.node} publishes it, too")
+            elif endpoint.node:
+                self._note(publisher, f"{publisher.topic}: {endpoint.node} publishes it, too")
+
+    def _check_servers(self, client: Client) -> None:
+        if not self._port.is_served(client):
+            expected = self._port.type_name(client.interface)
+            for node, other in self._port.other_servers(client).items():
+                self._note(client, f"{client.identifier}: {node} serves {other}, not {expected}")
 
     def _compare(self, own: rosgraph.Subscription | rosgraph.Publisher, other: Endpoint, does: str, has: str) -> None:
         topic, expected = own.topic, self._port.type_name(own.interface)
+        if not other.node:
+            return
         if other.type != expected:
-            self._report(f"{topic}: {other.node} {does} {other.type}, not {expected}")
+            self._note(own, f"{topic}: {other.node} {does} {other.type}, not {expected}")
         elif other.incompatible:
-            self._report(f"{topic}: {other.node} {has} a quality of service that does not fit: {other.incompatible}")
+            self._note(own, f"{topic}: {other.node} {has} a quality of service that does not fit: {other.incompatible}")
 
-    def _report(self, text: str, report: Callable[[str], None] | None = None) -> None:
+    def _note(
+        self,
+        element: rosgraph.Subscription | rosgraph.Publisher | Client,
+        fault: str,
+        text: str | None = None,
+        report: Callable[[str], None] | None = None,
+    ) -> None:
+        """Notes a fault until the next look; logs a text, else the fault, the first time."""
+        found = self._faults.setdefault(element, [])
+        if fault not in found:
+            found.append(fault)
+        text = text or fault
         if text not in self._reported:
             self._reported.add(text)
             (report or self._port.warn)(text)

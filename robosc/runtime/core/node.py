@@ -127,7 +127,9 @@ class Node(ControllerPort, ABC):
             self._relay(topic, topic.topic, self.inside(topic.topic), partial(_forwarded, layer, topic))
         for publisher in self._graph.publishers:
             (sending,) = publisher.sendings
-            self._relay(publisher, self.inside(publisher.topic), publisher.topic, partial(_allowed, layer, sending))
+            self._publishers[publisher] = self._relay(
+                publisher, self.inside(publisher.topic), publisher.topic, partial(_allowed, layer, sending)
+            )
         for service in self._graph.serviceClients:
             self._clients[service] = self._service_client(service)
             proxy = ServiceProxy(self, self.event_loop, service, layer, settings.seconds("service_timeout_ms"))
@@ -220,8 +222,8 @@ class Node(ControllerPort, ABC):
         source: str,
         target: str,
         passes: Callable[[Message], bool],
-    ) -> None:
-        """Forwards messages from one topic to another where `passes` says so."""
+    ) -> Any:
+        """Forwards messages from one topic to another where `passes` says so; what it returns publishes there, too."""
 
     @abstractmethod
     def _serve(self, kind: Any, name: str, called: Callable[[Message, Answer], None]) -> None:

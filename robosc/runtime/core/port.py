@@ -125,6 +125,9 @@ class ControllerPort(Port, Protocol):
     def send_goal(self, client: rosgraph.ActionClient, goal: Message, handlers: GoalHandlers) -> Goal:
         """Sends a goal; the handlers are not called before this returns."""
 
+    def other_servers(self, client: Client) -> Mapping[str, str]:
+        """The nodes that serve the name of a service or action with another type, and this type; none in ROS 1."""
+
     def endpoints(self) -> Mapping[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
         """The other publishers on the node's topics; in ROS 2 the subscriptions to what it publishes, too."""
 
@@ -133,7 +136,8 @@ class ControllerPort(Port, Protocol):
 class Endpoint:
     """A publisher on a topic, or a subscription to it (`listens`), of another node.
 
-    `type` is as its ROS writes it; `incompatible` says why its quality of service keeps it and the node apart.
+    `node` is empty where its name is not known. `type` is as its ROS writes it; `incompatible` says why its quality of
+    service keeps it and the node apart.
     """
 
     node: str

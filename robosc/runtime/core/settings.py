@@ -33,10 +33,15 @@ def check(parameter: Parameter, value: object) -> Value:
 
 @dataclass(frozen=True)
 class SafeMessages:
-    """What goes out whatever is required of it: when the node stops the robot, and when a command can't be sent."""
+    """Messages that are sent in spite of requirements.
+
+    A controller sends `on_shutdown` when it stops the robot and `on_withheld` when a command's data can't be sent. A
+    layer sends one of `on_blocked` when it blocks it after it forwarded one.
+    """
 
     on_shutdown: Sequence[rosgraph.Sending] = ()
     on_withheld: Sequence[rosgraph.Sending] = ()
+    on_blocked: Sequence[rosgraph.Sending] = ()
 
 
 @dataclass(frozen=True)

@@ -155,23 +155,16 @@ class Ros1Node(Node):
         source: str,
         target: str,
         passes: Callable[[Message], bool],
-    ) -> None:
-        kind = self._types[element.interface]
-        publishers: dict[bool, Any] = {}
-
-        def forward(message: Message) -> None:
-            if passes(message):
-                latched = message._connection_header.get("latching") == "1"  # noqa: SLF001  # as genpy has it
-                if latched not in publishers:
-                    publishers[latched] = self.advertise(target, kind, latch=latched)
-                publishers[latched].publish(message)
-
-        # Advertised before the first message, so that those who listen are connected when it comes.
-        publishers[False] = self.advertise(target, kind)
-        self.subscribe(source, kind, forward)
+    ) -> _Relay:
+        relay = _Relay(self, target, self._types[element.interface], passes)
+        self.subscribe(source, self._types[element.interface], relay.forward)
+        return relay
 
     def type_name(self, interface: rosgraph.Interface) -> str:
         return f"{interface.package}/{interface.type}"
+
+    def other_servers(self, client: Client) -> dict[str, str]:  # noqa: ARG002  # ROS 1 has one server for a name
+        return {}
 
     def endpoints(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
         with suppress(OSError, MasterException):
@@ -262,6 +255,32 @@ def start(name: str, arguments: Sequence[str], *, anonymous: bool = False) -> No
         rospy.init_node(name, argv=["robosc", *arguments], anonymous=anonymous, disable_signals=True)
     except rospy.exceptions.ROSInitException as error:
         raise StartError(str(error), "start roscore, or name its ROS_MASTER_URI") from None
+
+
+class _Relay:
+    """Sends messages on to a topic where `passes` says so; latched from the first latched one on."""
+
+    def __init__(self, node: Ros1Node, topic: str, kind: Any, passes: Callable[[Message], bool]) -> None:
+        self._node = node
+        self._topic = topic
+        self._kind = kind
+        self._passes = passes
+        self._latched = False
+        # Advertised before the first message, so that those who listen are connected when it comes.
+        self._publisher = node.advertise(topic, kind)
+
+    def forward(self, message: Message) -> None:
+        """Sends a message on, if it passes."""
+        if not self._passes(message):
+            return
+        if not self._latched and message._connection_header.get("latching") == "1":  # noqa: SLF001  # as genpy has it
+            self._latched = True
+            self._publisher = self._node.advertise(self._topic, self._kind, latch=True)
+        self.publish(message)
+
+    def publish(self, message: Message) -> None:
+        """Sends a message."""
+        self._publisher.publish(message)
 
 
 class _Answer:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from robosc.configuration import QualityOfService
 from robosc.metamodel import rosgraph
 from robosc.ros_types import Section
-from robosc.runtime.core.clients import POLL
+from robosc.ros_types.wire import FOLDERS
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.node import DIAGNOSTICS, FAREWELL, LONGEST_WAIT, Node, StartError
 from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers
@@ -24,9 +26,11 @@ try:
     from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
     from rclpy.clock import Clock, ClockType
     from rclpy.executors import SingleThreadedExecutor
+    from rclpy.node import NodeNameNonExistentError
     from rclpy.qos import (
         DurabilityPolicy,
         QoSCompatibility,
+        QoSPolicyKind,
         QoSProfile,
         ReliabilityPolicy,
         qos_check_compatible,
@@ -61,8 +65,13 @@ if TYPE_CHECKING:
     from robosc.runtime.core.port import Client, Goal, Message
     from robosc.runtime.core.proxies import ActionProxy, Answer
 
-#: Messages of a topic that are heard before a time that is up.
+#: What parameters may set of the quality of a subscription that gets what was kept.
+_KEPT_POLICIES = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH)
+#: From one look at the publishers of topics to the next, in seconds.
+_LOOK = 0.05
+#: Messages of a topic that are heard before a time that is up, and before the next topic has its turn.
 MOST_HEARD = 1000
+MOST_AT_ONCE = 10
 
 
 class Ros2Node(Node):
@@ -92,6 +101,9 @@ class Ros2Node(Node):
         self.event_loop = EventLoop(self.now if self.simulated else time.monotonic, starts_late=self.simulated)
         self._pending: dict[rosgraph.ServiceClient, Any] = {}
         self._qualities: dict[rosgraph.Subscription | rosgraph.Publisher, Any] = {}
+        self._durabilities = _Durabilities(self.node)
+        #: How many messages came on each topic, for those that `_take` took.
+        self._heard: Counter[str] = Counter()
 
     def _load_type(self, interface: rosgraph.Interface, suffix: str = "") -> Any:
         found = super()._load_type(interface, suffix)
@@ -158,7 +170,12 @@ class Ros2Node(Node):
     def _spin_once(self) -> None:
         left = self.event_loop.run_pending()
         wait = LONGEST_WAIT if left is None or self.simulated else min(left, LONGEST_WAIT)
-        self._executor.spin_once(timeout_sec=wait)
+        taken = self._take(MOST_AT_ONCE)
+        # The executor knows of each message that was taken. It finds nothing there, and then what came behind.
+        for _ in range(taken):
+            self._executor.spin_once(timeout_sec=0)
+        if not taken:
+            self._executor.spin_once(timeout_sec=wait)
 
     def _take_leave(self) -> None:
         until = time.monotonic() + FAREWELL
@@ -200,6 +217,10 @@ class Ros2Node(Node):
             made.durability = DurabilityPolicy[chosen.durability.upper()]
         return made
 
+    def _chosen(self, element: rosgraph.Subscription | rosgraph.Publisher) -> QualityOfService:
+        """What the configuration says of a topic."""
+        return self._configuration.qos.get(element.topic.removeprefix("/")) or QualityOfService()
+
     def _received_quality(self, element: rosgraph.Subscription | rosgraph.Publisher) -> Any:
         sensor = is_sensor_data(element.interface.package)
         return self.quality(element.topic, qos_profile_sensor_data if sensor else None)
@@ -218,15 +239,31 @@ class Ros2Node(Node):
         )
 
     def _subscribe(self, subscription: rosgraph.Subscription, receive: Callable[[Message], None]) -> None:
-        self._qualities[subscription] = self._received_quality(subscription)
-        self.node.create_subscription(
-            self._types[subscription.interface],
-            subscription.topic,
-            receive,
-            self._qualities[subscription],
-            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
-        )
+        made: list[Any] = []
+
+        def subscribe(lasting: bool) -> None:
+            quality = self._received_quality(subscription)
+            wanted = _durable(quality, self._chosen(subscription)) if lasting else quality
+            while made:
+                self.node.destroy_subscription(made.pop())
+            self._qualities[subscription] = wanted
+            made.append(
+                self.node.create_subscription(
+                    self._types[subscription.interface],
+                    subscription.topic,
+                    receive,
+                    wanted,
+                    # Their parameters have the reliability of the first subscription by default.
+                    qos_overriding_options=QoSOverridingOptions(_KEPT_POLICIES)
+                    if lasting
+                    else QoSOverridingOptions.with_default_policies(),
+                    event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+                )
+            )
+
+        subscribe(lasting=False)
+        if self._chosen(subscription).durability is None:
+            self._durabilities.watch(subscription.topic, subscribe, lasting=False)
 
     def _relay(
         self,
@@ -234,17 +271,36 @@ class Ros2Node(Node):
         source: str,
         target: str,
         passes: Callable[[Message], bool],
-    ) -> None:
+    ) -> _Relay:
         # What is sent on is reliable, whatever is received.
-        chosen = self._configuration.qos.get(element.topic.removeprefix("/"))
-        sent = QoSProfile(depth=(chosen.depth if chosen else None) or QUEUE_DEPTH)
+        chosen = self._chosen(element)
+        sent = QoSProfile(depth=chosen.depth or QUEUE_DEPTH)
         kind, received = self._types[element.interface], self._received_quality(element)
-        _Relay(self.node, _Route(kind, source, target, received, sent), passes)
+        return _Relay(self.node, self._durabilities, _Route(kind, source, target, received, sent, chosen), passes)
 
     def type_name(self, interface: rosgraph.Interface) -> str:
-        return f"{interface.package}/msg/{interface.type}"
+        return f"{interface.package}/{FOLDERS[interface.kind.name]}/{interface.type}"
+
+    def other_servers(self, client: Client) -> dict[str, str]:
+        part = ("/_action/send_goal", "_SendGoal") if isinstance(client, rosgraph.ActionClient) else ("", "")
+        name = self.node.resolve_service_name(client.identifier + part[0])
+        own = self.type_name(client.interface) + part[1]
+        # The types of clients are among these; which nodes are servers takes longer to find out.
+        if set(dict(self.node.get_service_names_and_types()).get(name, ())) <= {own}:
+            return {}
+        found = {}
+        for node, space in self.node.get_node_names_and_namespaces():
+            try:
+                served = dict(self.node.get_service_names_and_types_by_node(node, space))
+            except NodeNameNonExistentError:
+                continue  # it has just gone
+            for kind in served.get(name, ()):
+                if kind != own:
+                    found[f"{space.rstrip('/')}/{node}"] = kind.removesuffix(part[1])
+        return found
 
     def endpoints(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
+        self._durabilities.look()
         return {element: self._endpoints(element) for element in self._topics}
 
     def _endpoints(self, element: rosgraph.Subscription | rosgraph.Publisher) -> list[Endpoint]:
@@ -258,19 +314,31 @@ class Ros2Node(Node):
                 for other in self.node.get_subscriptions_info_by_topic(element.topic)
                 if own
             ]
-        return [endpoint for endpoint in found if endpoint.node != self.full_name and "UNKNOWN" not in endpoint.node]
+        return [endpoint for endpoint in found if endpoint.node != self.full_name]
 
     def hear(self) -> None:
         # The executor hears one message at a time, with what is planned in between.
-        for subscription in self.node.subscriptions:
+        self._take(MOST_HEARD)
+
+    def _take(self, most: int) -> int:
+        """Handles what has arrived, at most so many messages of each topic; how many.
+
+        The executor takes messages in the order in which they came. So a stop would wait behind thousands of scans.
+        Here topics with few messages come first.
+        """
+        taken = 0
+        for subscription in sorted(self.node.subscriptions, key=lambda known: self._heard[known.topic_name]):
             if subscription.topic_name == "/clock":
                 continue
-            for _ in range(MOST_HEARD):
+            for _ in range(most):
                 with subscription.handle:
-                    taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
-                if taken is None:
+                    found = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+                if found is None:
                     break
-                subscription.callback(taken[0])
+                subscription.callback(found[0])
+                self._heard[subscription.topic_name] += 1
+                taken += 1
+        return taken
 
     # Data
 
@@ -353,7 +421,8 @@ def executor() -> Any:
 def _endpoint(other: Any, offered: Any, asked: Any) -> Endpoint:
     compatibility, reason = qos_check_compatible(offered, asked)
     fault = reason.strip(";: ") if compatibility == QoSCompatibility.ERROR else None
-    return Endpoint(_full_name(other), other.topic_type, fault)
+    name = _full_name(other)
+    return Endpoint("" if "UNKNOWN" in name else name, other.topic_type, fault)
 
 
 def _full_name(info: Any) -> str:
@@ -369,6 +438,44 @@ class _Route:
     target: str
     received: Any
     sent: Any
+    chosen: QualityOfService
+
+
+class _Durabilities:
+    """Looks whether the publishers of topics keep their last messages for late subscribers.
+
+    A topic lasts where all of its publishers are transient-local and reliable: a subscription that asks for less hears
+    them, but does not get what they keep. One that asks for that does not hear other publishers.
+    """
+
+    def __init__(self, node: Any) -> None:
+        self._node = node
+        self._watched: list[tuple[str, Callable[[bool], None]]] = []
+        self._lasting: dict[int, bool | None] = {}
+
+    def watch(self, topic: str, changed: Callable[[bool], None], *, lasting: bool | None = None) -> None:
+        """Calls `changed` whenever a topic lasts or no longer does. `lasting`: what is known; None: not even that."""
+        if not self._watched:
+            # Publishers come and go whether simulated time passes or not.
+            self._node.create_timer(_LOOK, self.look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._lasting[len(self._watched)] = lasting
+        self._watched.append((topic, changed))
+
+    def look(self) -> None:
+        """Looks at all topics."""
+        for number, (topic, changed) in enumerate(self._watched):
+            publishers = self._node.get_publishers_info_by_topic(topic)
+            if not publishers:
+                continue
+            lasting = all(_keeps(info.qos_profile) for info in publishers)
+            if lasting != self._lasting[number]:
+                self._lasting[number] = lasting
+                changed(lasting)
+
+
+def _keeps(quality: Any) -> bool:
+    keeps: bool = quality.durability == DurabilityPolicy.TRANSIENT_LOCAL
+    return keeps and quality.reliability == ReliabilityPolicy.RELIABLE
 
 
 class _Relay:
@@ -377,39 +484,48 @@ class _Relay:
     What it publishes is reliable, and transient-local where all who publish the messages are.
     """
 
-    def __init__(self, node: Any, route: _Route, passes: Callable[[Message], bool]) -> None:
+    def __init__(
+        self, node: Any, durabilities: _Durabilities, route: _Route, passes: Callable[[Message], bool]
+    ) -> None:
         self._node = node
         self._route = route
         self._passes = passes
         self._lasting = False
         self._subscription: Any = None
         self._publisher = node.create_publisher(route.kind, route.target, route.sent)
-        # Publishers come and go whether simulated time passes or not.
-        node.create_timer(POLL, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
-        self._look()
+        durabilities.watch(node.resolve_topic_name(route.source), self._open)
 
-    def _look(self) -> None:
-        publishers = self._node.get_publishers_info_by_topic(self._node.resolve_topic_name(self._route.source))
-        lasting = all(info.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for info in publishers)
-        if publishers and (self._subscription is None or lasting != self._lasting):
-            self._open(lasting=lasting)
-
-    def _open(self, *, lasting: bool) -> None:
+    def _open(self, lasting: bool) -> None:
         node, route = self._node, self._route
         if lasting != self._lasting:
             self._lasting = lasting
             node.destroy_publisher(self._publisher)
-            self._publisher = node.create_publisher(route.kind, route.target, _durable(route.sent, lasting=lasting))
+            sent = _durable(route.sent, route.chosen) if lasting else route.sent
+            self._publisher = node.create_publisher(route.kind, route.target, sent)
         if self._subscription is not None:
             node.destroy_subscription(self._subscription)
-        quality = _durable(route.received, lasting=lasting)
+        quality = _durable(route.received, route.chosen) if lasting else _volatile(route.received)
         self._subscription = node.create_subscription(route.kind, route.source, self._forward, quality)
 
     def _forward(self, message: Message) -> None:
         if self._passes(message):
-            self._publisher.publish(message)
+            self.publish(message)
+
+    def publish(self, message: Message) -> None:
+        """Sends a message to those who get what is forwarded."""
+        self._publisher.publish(message)
+
+    def wait_for_all_acked(self, timeout: Any) -> None:
+        """Waits until all that was sent has arrived."""
+        self._publisher.wait_for_all_acked(timeout)
 
 
-def _durable(quality: Any, *, lasting: bool) -> Any:
-    durability = DurabilityPolicy.TRANSIENT_LOCAL if lasting else DurabilityPolicy.VOLATILE
-    return QoSProfile(depth=quality.depth, reliability=quality.reliability, durability=durability)
+def _durable(quality: Any, chosen: QualityOfService) -> Any:
+    """The same, transient-local: then also reliable, unless the configuration says otherwise."""
+    reliability = quality.reliability if chosen.reliability else ReliabilityPolicy.RELIABLE
+    return QoSProfile(depth=quality.depth, reliability=reliability, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+def _volatile(quality: Any) -> Any:
+    """The same, volatile."""
+    return QoSProfile(depth=quality.depth, reliability=quality.reliability, durability=DurabilityPolicy.VOLATILE)

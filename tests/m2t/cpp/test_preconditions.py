@@ -109,6 +109,10 @@ def test_names_and_kinds(tmp_path: Path, changes: dict[str, str], expected: str)
             'controller-config.json:2: "onWithheld": where is no message that the node sends',
         ),
         (
+            '{\n "waitFor": ["where"]}',
+            'controller-config.json:2: "waitFor": the node does not listen to where',
+        ),
+        (
             '{"package": {\n "maintainer": "A\\") execute_process(COMMAND id) (\\""}}',
             "controller-config.json:2: the maintainer would break the package's build",
         ),
@@ -129,6 +133,7 @@ def test_settings(tmp_path: Path, settings: str, expected: str) -> None:
             '{\n "supervisor": {\n  "controller": {"launch": {"packageName": "p", "file": "f"}}}}',
             "supervisor.controller",
         ),
+        ('{\n\n "onBlocked": ["drive"]}', "onBlocked"),
         ('{\n "output": {\n  "ros2SupervisorNodeLocation": "x"}}', "output.ros2SupervisorNodeLocation"),
     ],
 )

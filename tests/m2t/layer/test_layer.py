@@ -211,7 +211,13 @@ def test_leaves_out_what_is_not_asked_for(usher: robosc.Models, tmp_path: Path) 
         ros = f"robosc_{target.removesuffix('-layer')}"
         names = {"robosc/data", "robosc/event_log", "robosc/json", "robosc/transitions", "robosc/version"}
         names |= {"robosc/queue_depth", f"{ros}/message_relay", f"{ros}/parameters", f"{ros}/report"}
-        own = {"robosc/callback_guard", "robosc/hangup", f"{ros}/arrivals", f"{ros}/guarded_node"}
+        own = {
+            "robosc/callback_guard",
+            "robosc/hangup",
+            f"{ros}/arrivals",
+            f"{ros}/durabilities",
+            f"{ros}/guarded_node",
+        }
         names |= own if target == "ros2-layer" else {f"{ros}/run_layer"}
         assert headers == {f"include/{name}.hpp" for name in (*names, "ear_layer/definition")}
 
@@ -228,9 +234,14 @@ def test_quality_of_service(usher: robosc.Models) -> None:
     assert TARGETS["ros2-layer"].findings(usher, settings) == []
     node = " ".join(robosc.generate("ros2-layer", usher, settings)["src/usher_layer_node.cpp"].split())
     # Received as the configuration says, handed on reliably.
-    assert '"~/controller/speed", "/speed", rclcpp::QoS(10).keep_last(3).best_effort(), rclcpp::QoS(3),' in node
-    assert '"~/controller/stop", rclcpp::QoS(10).best_effort(), rclcpp::QoS(10),' in node
-    assert '"~/controller/battery", rclcpp::QoS(10).keep_last(7), rclcpp::QoS(7),' in node
+    kept = "rclcpp::QoS(10){}.transient_local()".format
+    speed, battery = ".keep_last(3).best_effort()", ".keep_last(7)"
+    for given in (
+        f'"~/controller/speed", "/speed", rclcpp::QoS(10){speed}, {kept(speed)}, rclcpp::QoS(3),',
+        f'"~/controller/stop", rclcpp::QoS(10).best_effort(), {kept(".best_effort()")}, rclcpp::QoS(10),',
+        f'"~/controller/battery", rclcpp::QoS(10){battery}, {kept(battery)}, rclcpp::QoS(7),',
+    ):
+        assert given.replace(" .", ".") in node.replace(" .", ".")
     assert '"/lamp/light", rclcpp::ServicesQoS().keep_last(4).durability_volatile(), service_timeout' in node
     assert '"/go_to", rclcpp::QoS(10).keep_last(5).best_effort(), action_timeout' in node
 

@@ -24,8 +24,8 @@ class Ros:
     def listen(self, topic, kind, callback, latched):  # noqa: ARG002
         rospy.Subscriber(topic, kind, callback, queue_size=10000, tcp_nodelay=True)
 
-    def publisher(self, topic, kind, qos):  # noqa: ARG002
-        return rospy.Publisher(topic, kind, queue_size=50000, tcp_nodelay=True)
+    def publisher(self, topic, kind, qos):
+        return rospy.Publisher(topic, kind, queue_size=50000, tcp_nodelay=True, latch=qos.get("latched", False))
 
     def withdraw(self, publisher):
         publisher.unregister()

@@ -56,6 +56,8 @@ class Ros:
         profile = QoSProfile(depth=qos.get("depth", 10))
         if qos.get("best_effort"):
             profile.reliability = ReliabilityPolicy.BEST_EFFORT
+        if qos.get("latched"):
+            profile.durability = DurabilityPolicy.TRANSIENT_LOCAL
         return self.node.create_publisher(kind, topic, profile)
 
     def withdraw(self, publisher):

@@ -35,6 +35,27 @@ def test_absent_at_start(scout: Scout) -> None:
     assert steps[2]["time"] - steps[1]["time"] > RETRY - 0.01
 
 
+def test_server_of_another_type(scout: Scout) -> None:
+    if scout.version == 1:
+        pytest.skip("ROS 1 has one server for a name")
+    scout.dismiss_server()
+    impostor = scout.meet("impostor")
+    impostor.do("serve", name="/lamp", kind="std_srvs/Trigger")
+    since = scout.now()
+    fault = "/lamp: /impostor serves std_srvs/srv/Trigger, not std_srvs/srv/SetBool"
+    scout.until_says(since, fault)
+    scout.send("/light", data=True)
+    scout.until_says(since, "/lamp: the server has another type")
+    scout.until_diagnosed("Lamp", f"dark; {fault}; /lamp: the server has another type")
+    assert impostor.process.stdin is not None
+    impostor.process.stdin.close()
+    impostor.process.wait()
+    scout.serve().do("answer_at_once", fields=LIT)
+    scout.until_state("Lamp", "lit")
+    scout.until_diagnosed("Lamp", "lit")
+    assert scout.says(since, fault) == 1
+
+
 def test_dies_while_it_answers(scout: Scout) -> None:
     server = scout.serve()
     since = scout.now()

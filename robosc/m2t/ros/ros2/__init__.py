@@ -59,6 +59,10 @@ class Ros2:
             "headers": self._headers(node, used.reports),
             **_build(libraries, types, started, _TESTED if tests else []),
             "subscription_qos": lambda topic: _quality(_usual(topic), topic.topic, configuration),
+            # Where the configuration does not set the durability, it is that of who publishes.
+            "kept_qos": lambda topic: (
+                "" if _chosen(topic.topic, configuration).durability else _kept(topic, configuration)
+            ),
             "publisher_qos": lambda topic: _quality(_sent(topic), topic.topic, configuration),
             "client_qos": lambda client: _quality(_client(client), client.name, configuration),
         }
@@ -66,14 +70,17 @@ class Ros2:
     def layer(self, layer: LayerNode, configuration: Configuration, used: Used) -> dict[str, Any]:
         """What only the templates of a layer read; see `Middleware`."""
         types = {*used.types, *(["action_msgs"] if layer.node.actions else [])}
+        hands_on = layer.instead and layer.node.hands_on
+        libraries = ["rclcpp", *(["rosidl_typesupport_introspection_cpp"] if hands_on else [])]
         return {
             "headers": self._headers(layer.node, used.reports),
-            **_build(["rclcpp"], types, {"launch", "launch_ros", *controller_package(configuration)}),
+            **_build(libraries, types, {"launch", "launch_ros", *controller_package(configuration)}),
             "names": layer.remapped(_ACTION),
             "launch_path": launch_path(configuration),
             "controller_side": lambda name: f"~/{below_layer(name)}",
             # The durability of what is handed on is that of who publishes.
             "received_qos": lambda topic: _quality(_usual(topic), topic.topic, configuration, with_durability=False),
+            "kept_qos": lambda topic: _kept(topic, configuration),
             "sent_qos": lambda topic: f"rclcpp::QoS({_chosen(topic.topic, configuration).depth or QUEUE_DEPTH})",
             "client_qos": lambda call: _quality(_client(call), call.name, configuration),
         }
@@ -100,6 +107,13 @@ def _build(
 def _usual(topic: Subscription | Publisher) -> str:
     """The quality of service in which messages of a topic are received, where the configuration says nothing."""
     return "rclcpp::SensorDataQoS()" if is_sensor_data(topic.interface.package) else f"rclcpp::QoS({QUEUE_DEPTH})"
+
+
+def _kept(topic: Subscription | Publisher, configuration: Configuration) -> str:
+    """The quality of service in which messages are received that their publishers keep: such come reliably."""
+    unreliable = is_sensor_data(topic.interface.package) and not _chosen(topic.topic, configuration).reliability
+    usual = f"{_usual(topic)}{'.reliable()' if unreliable else ''}"
+    return f"{_quality(usual, topic.topic, configuration, with_durability=False)}.transient_local()"
 
 
 def _client(client: Client) -> str:

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <ros/ros.h>
 
@@ -54,6 +55,9 @@ class ControllerNode {
     return node_.subscribe<const Message&>(topic, kQueueDepth, boost::function<void(const Message&)>(std::move(heard)),
                                            ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
   }
+
+  /// What is wrong around the node with a topic.
+  std::vector<std::string> faults(const std::string& topic) const { return monitor_.faults(topic); }
 
   /// Ticks from now on.
   void start(std::chrono::milliseconds period) {

@@ -30,7 +30,8 @@ namespace robosc {
 inline namespace ROBOSC_VERSION {
 
 /// Asks the master every second, on a thread of its own, and reports by name, once: a publisher of another type, a
-/// topic that nobody publishes, a foreign publisher on a topic that the node commands.
+/// topic that nobody publishes, a foreign publisher on a topic that the node commands. `faults` has them as long as
+/// they last.
 class GraphMonitor {
  public:
   explicit GraphMonitor(const ros::NodeHandle& node) : node_(node) {}
@@ -57,6 +58,13 @@ class GraphMonitor {
     commanded_[node_.resolveName(topic)] = ros::message_traits::datatype<Message>();
   }
 
+  /// The faults of a topic at the last look.
+  std::vector<std::string> faults(const std::string& topic) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto found = faults_.find(node_.resolveName(topic));
+    return found == faults_.end() ? std::vector<std::string>() : found->second;
+  }
+
   /// Begins to ask; all topics are known.
   void start() {
     thread_ = std::thread([this] { work(); });
@@ -64,14 +72,14 @@ class GraphMonitor {
 
  private:
   using Types = std::map<std::string, std::string>;
+  using Faults = std::map<std::string, std::vector<std::string>>;
 
   void work() {
-    const auto begin = std::chrono::steady_clock::now();
     std::unique_lock<std::mutex> lock(mutex_);
     while (!changed_.wait_for(lock, std::chrono::seconds(1), [this] { return ending_; })) {
       lock.unlock();
       try {
-        look(std::chrono::steady_clock::now() - begin >= std::chrono::seconds(5));
+        look();
       } catch (const XmlRpc::XmlRpcException& error) {
         ROS_DEBUG("an answer of another shape than expected: %s", error.getMessage().c_str());
       }
@@ -79,7 +87,7 @@ class GraphMonitor {
     }
   }
 
-  void look(bool patient) {
+  void look() {
     XmlRpc::XmlRpcValue name(ros::this_node::getName()), answer, state;
     if (!ros::master::execute("getSystemState", name, answer, state, false)) return;
     std::map<std::string, std::vector<std::string>> publishers;
@@ -90,22 +98,32 @@ class GraphMonitor {
         if (other != ros::this_node::getName()) publishers[state[0][entry][0]].push_back(other);
       }
     }
+    Faults faults;
+    std::map<std::pair<std::string, std::string>, std::string> types;
     for (const auto& [topic, type] : listened_) {
-      if (!publishers[topic].empty()) published_.insert(topic);
-      if (patient && published_.count(topic) == 0 && is_new(topic, "nobody publishes it after 5 s")) {
-        // It may tell what seldom happens, such as that a button was pressed.
-        ROS_INFO("%s: nobody publishes it after 5 s", topic.c_str());
+      missing_[topic] = publishers[topic].empty() ? missing_[topic] + 1 : 0;
+      if (missing_[topic] >= 5) {
+        // A publisher that comes late is usual while a robot starts. So this is no warning in the log.
+        faults[topic].push_back(topic + ": nobody publishes it");
+        if (is_new(topic, "nobody publishes it after 5 s")) {
+          ROS_INFO("%s: nobody publishes it after 5 s", topic.c_str());
+        }
       }
       for (const std::string& other : publishers[topic]) {
-        if (!asked_.emplace(topic, other).second) continue;
-        const std::string found = type_at(other, topic);
-        if (!found.empty() && found != type)
-          report(topic, std::string(other).append(" publishes ").append(found).append(", not ").append(type));
+        const auto known = types_.find({topic, other});
+        const std::string found = known == types_.end() ? type_at(other, topic) : known->second;
+        types[{topic, other}] = found;
+        if (!found.empty() && found != type) {
+          report(faults, topic, std::string(other).append(" publishes ").append(found).append(", not ").append(type));
+        }
       }
     }
+    types_ = std::move(types);
     for (const auto& [topic, type] : commanded_) {
-      for (const std::string& other : publishers[topic]) report(topic, other + " publishes it, too");
+      for (const std::string& other : publishers[topic]) report(faults, topic, other + " publishes it, too");
     }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    faults_ = std::move(faults);
   }
 
   // What a node sends on a topic, in its own words: the master knows one type for all of them. Empty: it does not
@@ -131,7 +149,8 @@ class GraphMonitor {
     return "";
   }
 
-  void report(const std::string& topic, const std::string& what) {
+  void report(Faults& faults, const std::string& topic, const std::string& what) {
+    faults[topic].push_back(topic + ": " + what);
     if (is_new(topic, what)) ROS_WARN("%s: %s", topic.c_str(), what.c_str());
   }
 
@@ -140,10 +159,11 @@ class GraphMonitor {
   ros::NodeHandle node_;
   Types listened_;
   Types commanded_;
-  std::set<std::string> published_;  // at some time
-  std::set<std::pair<std::string, std::string>> asked_;
+  std::map<std::string, int> missing_;                                // For so many looks nobody has published it.
+  std::map<std::pair<std::string, std::string>, std::string> types_;  // By topic and publisher.
   std::set<std::pair<std::string, std::string>> reported_;
-  std::mutex mutex_;
+  Faults faults_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   bool ending_ = false;
   std::thread thread_;

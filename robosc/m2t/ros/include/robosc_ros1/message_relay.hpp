@@ -27,6 +27,9 @@ class MessageRelay {
                                            ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
   }
 
+  /// Sends a message to those who get what is handed on.
+  void publish(const Message& message) { publisher_.publish(message); }
+
  private:
   using Event = const ros::MessageEvent<const Message>&;
 

@@ -8,17 +8,23 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <rclcpp/rclcpp.hpp>
 #include <rosidl_runtime_cpp/traits.hpp>
 
 #include "robosc/version.hpp"
+#include "robosc_ros2/durabilities.hpp"
 #include "robosc_ros2/graph_monitor.hpp"
 #include "robosc_ros2/guarded_node.hpp"
 #include "robosc_ros2/shutdown_hook.hpp"
 
 namespace robosc {
 inline namespace ROBOSC_VERSION {
+
+/// A subscription that is made anew where its quality of service changes.
+template <typename Message>
+using Subscription = std::shared_ptr<typename rclcpp::Subscription<Message>::SharedPtr>;
 
 /// A node that stops its robot before ROS closes, or when it goes.
 template <typename Node>
@@ -59,15 +65,42 @@ class ControllerNode : public GuardedNode<Node> {
 
   /// A subscription to what the robot tells.
   template <typename Message>
-  typename rclcpp::Subscription<Message>::SharedPtr subscribe(const std::string& topic, const rclcpp::QoS& quality,
-                                                              std::function<void(const Message&)> heard) {
-    rclcpp::SubscriptionOptions options;
-    options.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
-    options.use_default_callbacks = false;
-    auto subscription =
-        this->template create_subscription<Message>(topic, quality, this->guard_(std::move(heard)), options);
-    monitor().hear(topic, rosidl_generator_traits::name<Message>(), subscription->get_actual_qos());
+  Subscription<Message> subscribe(const std::string& topic, const rclcpp::QoS& quality,
+                                  std::function<void(const Message&)> heard) {
+    auto subscription = std::make_shared<typename Subscription<Message>::element_type>();
+    open<Message>(*subscription, topic, quality, heard, rclcpp::QosOverridingOptions::with_default_policies());
     return subscription;
+  }
+
+  /// The same, `kept` as long as the publishers keep their last messages.
+  template <typename Message>
+  Subscription<Message> subscribe(const std::string& topic, const rclcpp::QoS& quality, const rclcpp::QoS& kept,
+                                  std::function<void(const Message&)> heard) {
+    const auto subscription = subscribe<Message>(topic, quality, heard);
+    if (!durabilities_) durabilities_.emplace(*this, this->guard_);
+    const auto changed = [this, subscription, topic, quality, kept, heard](bool lasting) {
+      // The parameters have the reliability of the first subscription by default.
+      open<Message>(*subscription, topic, lasting ? kept : quality, heard,
+                    {rclcpp::QosPolicyKind::History, rclcpp::QosPolicyKind::Depth});
+    };
+    durabilities_->watch(topic, changed, false);
+    return subscription;
+  }
+
+  /// Watches the servers of a service that the node calls; `part`: which one of an action.
+  template <typename Service>
+  void watch_servers(const std::string& name, const std::string& part = "") {
+    monitor().call(name, part, rosidl_generator_traits::name<Service>());
+  }
+
+  /// What is wrong around the node with a topic, service or action.
+  std::vector<std::string> faults(const std::string& name) const {
+    return monitor_ ? monitor_->faults(name) : std::vector<std::string>();
+  }
+
+  /// Why a call or goal has failed: a server of another type is none to ROS.
+  std::string explained(const std::string& name, const std::string& why) const {
+    return faults(name).empty() ? why : "the server has another type";
   }
 
   /// Ticks from now on.
@@ -105,9 +138,22 @@ class ControllerNode : public GuardedNode<Node> {
   bool stopping_ = false;
   bool active_ = false;
   std::optional<GraphMonitor> monitor_;
+  std::optional<Durabilities> durabilities_;
   rclcpp::TimerBase::SharedPtr timer_;
 
  private:
+  template <typename Message>
+  void open(typename rclcpp::Subscription<Message>::SharedPtr& subscription, const std::string& topic,
+            const rclcpp::QoS& quality, const std::function<void(const Message&)>& heard,
+            const rclcpp::QosOverridingOptions& overrides) {
+    rclcpp::SubscriptionOptions options;
+    options.qos_overriding_options = overrides;
+    options.use_default_callbacks = false;
+    subscription.reset();
+    subscription = this->template create_subscription<Message>(topic, quality, this->guard_(heard), options);
+    monitor().hear(topic, rosidl_generator_traits::name<Message>(), subscription->get_actual_qos());
+  }
+
   GraphMonitor& monitor() { return monitor_ ? *monitor_ : monitor_.emplace(*this, this->guard_); }
 
   std::optional<ShutdownHook> shutdown_hook_;

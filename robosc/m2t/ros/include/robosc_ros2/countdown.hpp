@@ -3,6 +3,7 @@
 #define ROBOSC_ROS2_COUNTDOWN_HPP_
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -26,12 +27,16 @@ rclcpp::Clock::SharedPtr waiting_clock(Node& node) {
 }
 
 /// Calls a function once, some time after each start: on the steady clock, or in ROS time with `use_sim_time`.
+///
+/// An events executor queues the calls of timers that have expired. Such a call may run after the countdown was stopped
+/// or started again; then it has no effect.
 class Countdown {
  public:
   template <typename Node>
   Countdown(Node& node, const CallbackGuard& guard, std::chrono::milliseconds time, std::function<void()> over)
-      : over_(std::move(over)) {
+      : over_(std::move(over)), time_(time), clock_(waiting_clock(node)) {
     const auto expire = guard([this] {
+      if (!running() || is_early()) return;
       stop();
       if (began_) {
         over_();
@@ -40,8 +45,7 @@ class Countdown {
       }
     });
     if (node.get_parameter("use_sim_time").as_bool()) {
-      clock_ = node.get_clock();
-      timer_ = rclcpp::create_timer(&node, node.get_clock(), time, expire);
+      timer_ = rclcpp::create_timer(&node, clock_, time, expire);
     } else {
       timer_ = node.create_wall_timer(time, expire);
     }
@@ -54,16 +58,25 @@ class Countdown {
 
   /// Begins, or begins again, with the full time.
   void start() {
-    began_ = !clock_ || clock_->started();
+    began_ = clock_->started();
+    started_ = clock_->now().nanoseconds();
     timer_->reset();
   }
   void stop() { timer_->cancel(); }
   bool running() const { return !timer_->is_canceled(); }
 
  private:
+  /// Whether the time since the last start is not over. Where the clock was set back, the timer alone knows.
+  bool is_early() const {
+    const std::int64_t passed = clock_->now().nanoseconds() - started_;
+    return passed >= 0 && passed < std::chrono::nanoseconds(time_).count();
+  }
+
   std::function<void()> over_;
-  rclcpp::Clock::SharedPtr clock_;  ///< Of simulated time only.
-  bool began_ = true;               ///< Its first message sets the clock to any time: until then none has passed.
+  std::chrono::milliseconds time_;
+  rclcpp::Clock::SharedPtr clock_;
+  std::int64_t started_ = 0;  ///< In nanoseconds.
+  bool began_ = true;         ///< The first message sets a clock of simulated time: until then no time has passed.
   rclcpp::TimerBase::SharedPtr timer_;
 };
 

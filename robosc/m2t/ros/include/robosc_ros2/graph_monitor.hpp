@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <functional>
+#include <exception>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -18,31 +19,54 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Looks once a second at who else is on the node's topics, and says once, by name, what keeps them from working.
+/// Looks once a second at who else is on the node's topics, and at the servers of what it calls. Says once, by name,
+/// what keeps them from working; `faults` has it as long as it lasts.
 class GraphMonitor {
  public:
   template <typename Node>
   GraphMonitor(Node& node, const CallbackGuard& guard)
       : logger_(node.get_logger()),
-        publishers_([&node](const std::string& topic) { return node.get_publishers_info_by_topic(topic); }),
-        subscriptions_([&node](const std::string& topic) { return node.get_subscriptions_info_by_topic(topic); }),
-        timer_(node.create_wall_timer(std::chrono::seconds(1), guard([this] { look(); }))) {}
+        self_(node.get_fully_qualified_name()),
+        graph_(node.get_node_graph_interface()),
+        services_(node.get_node_services_interface()),
+        timer_(node.create_wall_timer(std::chrono::seconds(1), guard([this] {
+                                        if (!stopped_) look();
+                                      }))) {}
 
   GraphMonitor(const GraphMonitor&) = delete;
   GraphMonitor& operator=(const GraphMonitor&) = delete;
   ~GraphMonitor() { stop(); }
 
   /// Looks no more: with its context closed, a node can't.
-  void stop() { timer_->cancel(); }
+  void stop() {
+    stopped_ = true;  // An events executor may have a look in its queue.
+    timer_->cancel();
+  }
 
-  /// The node listens to a topic.
+  /// The node listens to a topic; again where its quality of service changes.
   void hear(const std::string& topic, const std::string& type, const rclcpp::QoS& quality) {
-    heard_.push_back({topic, type, quality, {}});
+    const auto known = std::find_if(heard_.begin(), heard_.end(), [&](const Topic& one) { return one.name == topic; });
+    if (known == heard_.end()) {
+      heard_.push_back({topic, type, quality, {}});
+    } else {
+      known->quality = quality;
+    }
   }
 
   /// The node commands a topic: it alone, as far as it knows.
   void command(const std::string& topic, const std::string& type, const rclcpp::QoS& quality, const rmw_gid_t& own) {
     commanded_.push_back({topic, type, quality, own});
+  }
+
+  /// The node calls a service, which may be a part of an action.
+  void call(const std::string& name, const std::string& part, const std::string& type) {
+    called_.push_back({name, services_->resolve_service_name(name + part), type});
+  }
+
+  /// The faults of a topic, service or action at the last look.
+  std::vector<std::string> faults(const std::string& name) const {
+    const auto found = faults_.find(name);
+    return found == faults_.end() ? std::vector<std::string>() : found->second;
   }
 
  private:
@@ -51,34 +75,77 @@ class GraphMonitor {
     std::string type;
     rclcpp::QoS quality;
     rmw_gid_t own;
+    int missing = 0;  ///< For so many looks nobody has published it.
+  };
+
+  struct Called {
+    std::string name;
+    std::string service;
+    std::string type;
   };
 
   void look() {
-    seconds_ += 1;
-    for (const Topic& topic : heard_) {
-      const auto others = publishers_(topic.name);
-      if (others.empty() && seconds_ == 5) {
-        // It may tell what seldom happens, such as that a button was pressed.
-        RCLCPP_INFO(logger_, "%s: nobody publishes it after 5 s", topic.name.c_str());
-      }
-      for (const auto& other : others) {
-        if (fits(topic, other, "publishes")) meets(topic, other, other.qos_profile(), topic.quality, "offers");
+    faults_.clear();
+    try {
+      for (Topic& topic : heard_) look_at_publishers(topic);
+      for (const Topic& topic : commanded_) look_at_listeners(topic);
+      for (const Called& called : called_) look_at_servers(called);
+    } catch (const rclcpp::exceptions::RCLError&) {
+      // The context is closed: the node is at its end.
+    }
+  }
+
+  void look_at_publishers(Topic& topic) {
+    const auto others = graph_->get_publishers_info_by_topic(topic.name);
+    const bool is_missing =
+        std::all_of(others.begin(), others.end(), [this](const auto& other) { return is_self(other); });
+    topic.missing = is_missing ? topic.missing + 1 : 0;
+    if (topic.missing >= 5) {
+      // A publisher that comes late is usual while a robot starts. So this is no warning in the log.
+      note(topic.name, topic.name + ": nobody publishes it");
+      const std::string text = topic.name + ": nobody publishes it after 5 s";
+      if (told_.insert(text).second) RCLCPP_INFO(logger_, "%s", text.c_str());
+    }
+    for (const auto& other : others) {
+      if (is_nameless(other) || is_self(other)) continue;
+      if (fits(topic, other, "publishes")) meets(topic, other, other.qos_profile(), topic.quality, "offers");
+    }
+  }
+
+  void look_at_listeners(const Topic& topic) {
+    for (const auto& other : graph_->get_publishers_info_by_topic(topic.name)) {
+      if (!is_own(topic, other) && !is_nameless(other)) tell(topic.name, name(other) + " publishes it, too");
+    }
+    for (const auto& other : graph_->get_subscriptions_info_by_topic(topic.name)) {
+      if (is_nameless(other)) continue;
+      if (fits(topic, other, "expects")) meets(topic, other, topic.quality, other.qos_profile(), "asks for");
+    }
+  }
+
+  void look_at_servers(const Called& called) {
+    // The types of clients are among these; which nodes are servers takes longer to find out.
+    const auto types = graph_->get_service_names_and_types()[called.service];
+    const auto is_other = [&](const std::string& type) { return type != called.type; };
+    if (std::none_of(types.begin(), types.end(), is_other)) return;
+    std::vector<std::string> others;
+    for (const auto& [node, space] : graph_->get_node_names_and_namespaces()) {
+      try {
+        const auto served = graph_->get_service_names_and_types_by_node(node, space)[called.service];
+        for (const std::string& type : served) {
+          if (!is_other(type)) return;
+          others.push_back(full_name(space, node) + " serves " + plain(type) + ", not " + plain(called.type));
+        }
+      } catch (const std::exception&) {
+        // The node has just gone.
       }
     }
-    for (const Topic& topic : commanded_) {
-      for (const auto& other : publishers_(topic.name)) {
-        if (!is_own(topic, other)) tell(topic.name + ": " + name(other) + " publishes it, too");
-      }
-      for (const auto& other : subscriptions_(topic.name)) {
-        if (fits(topic, other, "expects")) meets(topic, other, topic.quality, other.qos_profile(), "asks for");
-      }
-    }
+    for (const std::string& other : others) tell(called.name, other);
   }
 
   /// Whether both sides mean the same type.
   bool fits(const Topic& topic, const rclcpp::TopicEndpointInfo& other, const std::string& verb) {
     if (other.topic_type() == topic.type) return true;
-    tell(topic.name + ": " + name(other) + " " + verb + " " + other.topic_type() + ", not " + topic.type);
+    tell(topic.name, name(other) + " " + verb + " " + other.topic_type() + ", not " + topic.type);
     return false;
   }
 
@@ -87,7 +154,7 @@ class GraphMonitor {
              const rclcpp::QoS& asked, const std::string& verb) {
     const auto result = rclcpp::qos_check_compatible(offered, asked);
     if (result.compatibility == rclcpp::QoSCompatibility::Error) {
-      tell(topic.name + ": " + name(other) + " " + verb + " a quality of service that does not fit: " + result.reason);
+      tell(topic.name, name(other) + " " + verb + " a quality of service that does not fit: " + result.reason);
     }
   }
 
@@ -96,24 +163,45 @@ class GraphMonitor {
     return std::equal(gid.begin(), gid.end(), topic.own.data);
   }
 
-  static std::string name(const rclcpp::TopicEndpointInfo& other) {
-    const std::string& space = other.node_namespace();
-    return (space == "/" ? space : space + "/") + other.node_name();
+  bool is_self(const rclcpp::TopicEndpointInfo& other) const { return name(other) == self_; }
+
+  /// Whether it is not known, or not yet, of which node it is.
+  static bool is_nameless(const rclcpp::TopicEndpointInfo& other) {
+    return other.node_name().find("UNKNOWN") != std::string::npos;
   }
 
-  void tell(const std::string& text) {
+  static std::string name(const rclcpp::TopicEndpointInfo& other) {
+    return full_name(other.node_namespace(), other.node_name());
+  }
+
+  static std::string full_name(const std::string& space, const std::string& node) {
+    return (space == "/" ? space : space + "/") + node;
+  }
+
+  /// The type of an action by that of its service.
+  static std::string plain(const std::string& type) { return type.substr(0, type.find("_SendGoal")); }
+
+  void note(const std::string& name, const std::string& fault) {
+    auto& faults = faults_[name];
+    if (std::find(faults.begin(), faults.end(), fault) == faults.end()) faults.push_back(fault);
+  }
+
+  void tell(const std::string& name, const std::string& what) {
+    const std::string text = name + ": " + what;
+    note(name, text);
     if (told_.insert(text).second) RCLCPP_WARN(logger_, "%s", text.c_str());
   }
 
-  using Endpoints = std::function<std::vector<rclcpp::TopicEndpointInfo>(const std::string&)>;
-
   rclcpp::Logger logger_;
-  Endpoints publishers_;
-  Endpoints subscriptions_;
+  std::string self_;
+  rclcpp::node_interfaces::NodeGraphInterface::SharedPtr graph_;
+  rclcpp::node_interfaces::NodeServicesInterface::SharedPtr services_;
   std::vector<Topic> heard_;
   std::vector<Topic> commanded_;
+  std::vector<Called> called_;
+  std::map<std::string, std::vector<std::string>> faults_;
   std::set<std::string> told_;
-  int seconds_ = 0;
+  bool stopped_ = false;
   rclcpp::TimerBase::SharedPtr timer_;
 };
 

@@ -84,6 +84,7 @@ class ManagedNode : public ControllerNode<rclcpp_lifecycle::LifecycleNode> {
     timer_.reset();
     finish();
     disconnect();
+    durabilities_.reset();
     monitor_.reset();
   }
 };

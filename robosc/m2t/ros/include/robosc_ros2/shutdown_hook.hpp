@@ -41,9 +41,11 @@ class ShutdownHook {
         logger_(node.get_logger()),
         context_(node.get_node_base_interface()->get_context()) {
     timer_ = node.create_wall_timer(std::chrono::milliseconds(1), guard_([this, waits = std::move(waits)] {
+                                      if (finished_) return;  // An events executor had this call in its queue.
                                       served_ = true;
                                       run();
                                       if (waits()) return;
+                                      finished_ = true;
                                       timer_->cancel();
                                       done_.set_value();
                                     }));
@@ -83,6 +85,7 @@ class ShutdownHook {
   rclcpp::TimerBase::SharedPtr timer_;
   std::atomic<bool> started_{false};
   std::atomic<bool> served_{false};
+  bool finished_ = false;  ///< Only the executor of the node reads and sets it.
   std::promise<void> done_;
   CallbackGuard guard_;
 };

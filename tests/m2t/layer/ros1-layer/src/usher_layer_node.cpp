@@ -12,6 +12,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <nav2_msgs/NavigateToPoseAction.h>
@@ -27,7 +28,9 @@
 #include "robosc/component_status.hpp"
 #include "robosc/data.hpp"
 #include "robosc/event_log.hpp"
+#include "robosc/fields.hpp"
 #include "robosc/json.hpp"
+#include "robosc/throttle.hpp"
 #include "robosc/transitions.hpp"
 #include "robosc_ros1/action_proxy.hpp"
 #include "robosc_ros1/message_relay.hpp"
@@ -233,9 +236,11 @@ class Layer {
   bool pass_speed() {
     if (usher_perform(&supervisor_, usher_message_speed_c_trigger)) {
       usher_settle(&supervisor_);
+      speed_forwarded_ = true;
       return true;
     }
     block(usher_message_speed_c_trigger, "Drive.speed", against_speed());
+    if (std::exchange(speed_forwarded_, false)) send_speed();
     return false;
   }
 
@@ -268,11 +273,36 @@ class Layer {
     return false;
   }
 
+  // Goes out in the place of what is blocked; with default data where its own can't be sent.
+  void send_speed() {
+    if (!prepare_speed()) {
+      speed_message_ = std_msgs::Float32();
+    }
+    speed_relay_->publish(speed_message_);
+    log_.write(seconds(), "outside", usher_event_name(usher_message_speed_c_trigger));
+  }
+
+  bool prepare_speed() {
+    speed_message_ = std_msgs::Float32();
+    FieldWriter write(log_.active());
+    if (supervisor_.state.data_speed == usher_data_speed_d1) {
+      write.set("data", speed_message_.data, 0.25);
+    }
+    if (write.fault() != nullptr) {
+      ROS_WARN_THROTTLE(5.0, "%s is sent with default data: its %s would not be finite", "speed", write.fault());
+      return false;
+    }
+    if (log_.active()) log_.note(write);
+    return true;
+  }
+
   void block(usher_event event, const char* name, const BlockReasons& reasons) {
     blocked_report_.publish_text(reasons.report("Usher", seconds(), name, usher_event_name(event), components()));
     blocked_.insert(event);
     log_.write(seconds(), "blocked", usher_event_name(event));
-    ROS_WARN("%s is blocked: %s %s", name, reasons.kind(), to_json(reasons.texts()).c_str());
+    if (warnings_.due(event)) {
+      ROS_WARN("%s is blocked: %s %s", name, reasons.kind(), to_json(reasons.texts()).c_str());
+    }
   }
 
   // A period is over.
@@ -486,6 +516,9 @@ class Layer {
 
   std::set<usher_event> blocked_;  // Since the last report on /diagnostics.
   Report<std_msgs::String> blocked_report_;
+  Throttle<usher_event> warnings_;
+  std_msgs::Float32 speed_message_;
+  bool speed_forwarded_ = false;  // Since it was blocked last.
   std::unique_ptr<MessageRelay<std_msgs::Empty>> stop_relay_;
   std::unique_ptr<MessageRelay<std_msgs::Empty>> resume_relay_;
   std::unique_ptr<MessageRelay<std_msgs::Int16>> battery_relay_;

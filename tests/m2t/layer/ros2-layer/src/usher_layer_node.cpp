@@ -13,6 +13,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>
 #include <nav2_msgs/action/navigate_to_pose.hpp>
@@ -29,7 +30,9 @@
 #include "robosc/component_status.hpp"
 #include "robosc/data.hpp"
 #include "robosc/event_log.hpp"
+#include "robosc/fields.hpp"
 #include "robosc/json.hpp"
+#include "robosc/throttle.hpp"
 #include "robosc/transitions.hpp"
 #include "robosc_ros2/action_proxy.hpp"
 #include "robosc_ros2/guarded_node.hpp"
@@ -105,22 +108,28 @@ class Layer : public GuardedNode<rclcpp::Node> {
     usher_settle(&supervisor_);
 
     stop_relay_ = std::make_unique<MessageRelay<std_msgs::msg::Empty>>(
-        *this, guard_, "/stop", "~/controller/stop", rclcpp::QoS(10), rclcpp::QoS(10),
+        *this, guard_, "/stop", "~/controller/stop", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
+            rclcpp::QoS(10),
         [this](const auto& message) { return on_stop(message); });
     resume_relay_ = std::make_unique<MessageRelay<std_msgs::msg::Empty>>(
-        *this, guard_, "/resume", "~/controller/resume", rclcpp::QoS(10).best_effort(), rclcpp::QoS(10),
+        *this, guard_, "/resume", "~/controller/resume", rclcpp::QoS(10).best_effort(), rclcpp::QoS(10).best_effort()
+            .transient_local(), rclcpp::QoS(10),
         [this](const auto& message) { return on_resume(message); });
     battery_relay_ = std::make_unique<MessageRelay<std_msgs::msg::Int16>>(
-        *this, guard_, "battery", "~/controller/battery", rclcpp::QoS(10), rclcpp::QoS(10),
+        *this, guard_, "battery", "~/controller/battery", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
+            rclcpp::QoS(10),
         [this](const auto& message) { return on_battery(message); });
     scan_relay_ = std::make_unique<MessageRelay<sensor_msgs::msg::LaserScan>>(
-        *this, guard_, "/scan", "~/controller/scan", rclcpp::SensorDataQoS(), rclcpp::QoS(10),
+        *this, guard_, "/scan", "~/controller/scan", rclcpp::SensorDataQoS(), rclcpp::SensorDataQoS().reliable()
+            .transient_local(), rclcpp::QoS(10),
         [this](const auto& message) { return on_scan(message); });
     speed_relay_ = std::make_unique<MessageRelay<std_msgs::msg::Float32>>(
-        *this, guard_, "~/controller/speed", "/speed", rclcpp::QoS(10).keep_last(20).best_effort(), rclcpp::QoS(20),
+        *this, guard_, "~/controller/speed", "/speed", rclcpp::QoS(10).keep_last(20).best_effort(), rclcpp::QoS(10)
+            .keep_last(20).best_effort().transient_local(), rclcpp::QoS(20),
         [this](const auto&) { return pass_speed(); });
     label_relay_ = std::make_unique<MessageRelay<std_msgs::msg::String>>(
-        *this, guard_, "~/controller/label", "label", rclcpp::QoS(10), rclcpp::QoS(10),
+        *this, guard_, "~/controller/label", "label", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
+            rclcpp::QoS(10),
         [this](const auto&) { return pass_label(); });
     ServiceProxy<std_srvs::srv::SetBool>::Handlers light_handlers;
     light_handlers.call = [this](const auto&) { return pass_light(); };
@@ -237,9 +246,11 @@ class Layer : public GuardedNode<rclcpp::Node> {
   bool pass_speed() {
     if (usher_perform(&supervisor_, usher_message_speed_c_trigger)) {
       usher_settle(&supervisor_);
+      speed_forwarded_ = true;
       return true;
     }
     block(usher_message_speed_c_trigger, "Drive.speed", against_speed());
+    if (std::exchange(speed_forwarded_, false)) send_speed();
     return false;
   }
 
@@ -272,11 +283,37 @@ class Layer : public GuardedNode<rclcpp::Node> {
     return false;
   }
 
+  // Goes out in the place of what is blocked; with default data where its own can't be sent.
+  void send_speed() {
+    if (!prepare_speed()) {
+      speed_message_ = std_msgs::msg::Float32();
+    }
+    speed_relay_->publish(speed_message_);
+    log_.write(seconds(), "outside", usher_event_name(usher_message_speed_c_trigger));
+  }
+
+  bool prepare_speed() {
+    speed_message_ = std_msgs::msg::Float32();
+    FieldWriter write(log_.active());
+    if (supervisor_.state.data_speed == usher_data_speed_d1) {
+      write.set("data", speed_message_.data, 0.25);
+    }
+    if (write.fault() != nullptr) {
+      RCLCPP_WARN_THROTTLE(get_logger(), *get_clock(), 5000, "%s is sent with default data: its %s would not be finite",
+          "speed", write.fault());
+      return false;
+    }
+    if (log_.active()) log_.note(write);
+    return true;
+  }
+
   void block(usher_event event, const char* name, const BlockReasons& reasons) {
     blocked_report_.publish_text(reasons.report("Usher", seconds(), name, usher_event_name(event), components()));
     blocked_.insert(event);
     log_.write(seconds(), "blocked", usher_event_name(event));
-    RCLCPP_WARN(get_logger(), "%s is blocked: %s %s", name, reasons.kind(), to_json(reasons.texts()).c_str());
+    if (warnings_.due(event)) {
+      RCLCPP_WARN(get_logger(), "%s is blocked: %s %s", name, reasons.kind(), to_json(reasons.texts()).c_str());
+    }
   }
 
   // A period is over.
@@ -487,6 +524,9 @@ class Layer : public GuardedNode<rclcpp::Node> {
 
   std::set<usher_event> blocked_;  // Since the last report on /diagnostics.
   Report<std_msgs::msg::String> blocked_report_;
+  Throttle<usher_event> warnings_;
+  std_msgs::msg::Float32 speed_message_;
+  bool speed_forwarded_ = false;  // Since it was blocked last.
   std::unique_ptr<MessageRelay<std_msgs::msg::Empty>> stop_relay_;
   std::unique_ptr<MessageRelay<std_msgs::msg::Empty>> resume_relay_;
   std::unique_ptr<MessageRelay<std_msgs::msg::Int16>> battery_relay_;

@@ -485,6 +485,7 @@ class Controller : public ControllerNode {
     status.add("before", data_.Scanner.before);
     status.add("fourth", data_.Scanner.fourth);
     if (scan_watchdog_->silent()) status.warn("/scan is silent");
+    for (const std::string& fault : faults("/scan")) status.warn(fault);
     return status.made();
   }
 
@@ -499,6 +500,8 @@ class Controller : public ControllerNode {
     status.add("text", data_.Counter.text);
     if (count_watchdog_->silent()) status.warn("count is silent");
     if (word_watchdog_->silent()) status.warn("word is silent");
+    for (const std::string& fault : faults("count")) status.warn(fault);
+    for (const std::string& fault : faults("word")) status.warn(fault);
     return status.made();
   }
 
@@ -509,6 +512,11 @@ class Controller : public ControllerNode {
     status.add("request to ratio", verdict(courier_message_ratio_c_trigger, BlockReasons()));
     status.add("request to report", verdict(courier_message_report_c_trigger, against_report()));
     status.add("request to busy", verdict(courier_message_busy_c_trigger, BlockReasons()));
+    for (const std::string& fault : faults("target")) status.warn(fault);
+    for (const std::string& fault : faults("sum")) status.warn(fault);
+    for (const std::string& fault : faults("ratio")) status.warn(fault);
+    for (const std::string& fault : faults("report")) status.warn(fault);
+    for (const std::string& fault : faults("busy")) status.warn(fault);
     if (withheld_.count(courier_message_target_c_trigger) > 0) status.warn("target is withheld");
     if (withheld_.count(courier_message_ratio_c_trigger) > 0) status.warn("ratio is withheld");
     return status.made();

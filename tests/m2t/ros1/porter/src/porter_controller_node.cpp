@@ -544,6 +544,8 @@ class Controller : public ControllerNode {
     status.add("place", data_.Desk.place);
     if (order_watchdog_->silent()) status.warn("order is silent");
     if (stop_watchdog_->silent()) status.warn("/stop is silent");
+    for (const std::string& fault : faults("order")) status.warn(fault);
+    for (const std::string& fault : faults("/stop")) status.warn(fault);
     return status.made();
   }
 
@@ -567,6 +569,7 @@ class Controller : public ControllerNode {
     status.add("request to crawl", verdict(porter_message_crawl_c_trigger, against_crawl()));
     status.add("request to halt", verdict(porter_message_halt_c_trigger, against_halt()));
     status.add("request to travel", verdict(porter_action_travel_c_trigger, against_travel()));
+    for (const std::string& fault : faults("cmd_vel")) status.warn(fault);
     if (!travel_fault_.empty()) status.warn("/travel: " + travel_fault_);
     if (withheld_.count(porter_message_crawl_c_trigger) > 0) status.warn("crawl is withheld");
     if (withheld_.count(porter_action_travel_c_trigger) > 0) status.warn("travel is withheld");

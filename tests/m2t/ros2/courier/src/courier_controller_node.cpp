@@ -431,6 +431,7 @@ class Controller : public ControllerNode<rclcpp::Node> {
     status.add("before", data_.Scanner.before);
     status.add("fourth", data_.Scanner.fourth);
     if (scan_watchdog_->silent()) status.warn("/scan is silent");
+    for (const std::string& fault : faults("/scan")) status.warn(fault);
     return status.made();
   }
 
@@ -445,6 +446,8 @@ class Controller : public ControllerNode<rclcpp::Node> {
     status.add("text", data_.Counter.text);
     if (count_watchdog_->silent()) status.warn("count is silent");
     if (word_watchdog_->silent()) status.warn("word is silent");
+    for (const std::string& fault : faults("count")) status.warn(fault);
+    for (const std::string& fault : faults("word")) status.warn(fault);
     return status.made();
   }
 
@@ -455,6 +458,11 @@ class Controller : public ControllerNode<rclcpp::Node> {
     status.add("request to ratio", verdict(courier_message_ratio_c_trigger, BlockReasons()));
     status.add("request to report", verdict(courier_message_report_c_trigger, against_report()));
     status.add("request to busy", verdict(courier_message_busy_c_trigger, BlockReasons()));
+    for (const std::string& fault : faults("target")) status.warn(fault);
+    for (const std::string& fault : faults("sum")) status.warn(fault);
+    for (const std::string& fault : faults("ratio")) status.warn(fault);
+    for (const std::string& fault : faults("report")) status.warn(fault);
+    for (const std::string& fault : faults("busy")) status.warn(fault);
     if (withheld_.count(courier_message_target_c_trigger) > 0) status.warn("target is withheld");
     if (withheld_.count(courier_message_ratio_c_trigger) > 0) status.warn("ratio is withheld");
     return status.made();
@@ -509,15 +517,19 @@ class Controller : public ControllerNode<rclcpp::Node> {
     scan_watchdog_.emplace(parameter(*this, "watchdog_ms.scan", 0, 0, 86400000, "Longest silence of /scan; 0: any."),
         [this](const auto& watchdog) { on_silence("/scan", watchdog); }, *this, guard_);
     scan_subscription_ = subscribe<sensor_msgs::msg::LaserScan>(
-        "/scan", rclcpp::SensorDataQoS().keep_last(20).reliable(), [this](const auto& message) { on_scan(message); });
+        "/scan", rclcpp::SensorDataQoS().keep_last(20).reliable(), rclcpp::SensorDataQoS().keep_last(20).reliable()
+            .transient_local(),
+        [this](const auto& message) { on_scan(message); });
     count_watchdog_.emplace(parameter(*this, "watchdog_ms.count", 0, 0, 86400000, "Longest silence of count; 0: any."),
         [this](const auto& watchdog) { on_silence("count", watchdog); }, *this, guard_);
     count_subscription_ = subscribe<std_msgs::msg::Int16>(
-        "count", rclcpp::QoS(10), [this](const auto& message) { on_count(message); });
+        "count", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
+        [this](const auto& message) { on_count(message); });
     word_watchdog_.emplace(parameter(*this, "watchdog_ms.word", 0, 0, 86400000, "Longest silence of word; 0: any."),
         [this](const auto& watchdog) { on_silence("word", watchdog); }, *this, guard_);
     word_subscription_ = subscribe<std_msgs::msg::String>(
-        "word", rclcpp::QoS(10), [this](const auto& message) { on_word(message); });
+        "word", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
+        [this](const auto& message) { on_word(message); });
 
     warn_of_no_stop();
     start(period);
@@ -568,11 +580,11 @@ class Controller : public ControllerNode<rclcpp::Node> {
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr report_publisher_;
   rclcpp::Publisher<std_msgs::msg::Bool>::SharedPtr busy_publisher_;
   std::optional<Watchdog<Countdown>> scan_watchdog_;
-  rclcpp::Subscription<sensor_msgs::msg::LaserScan>::SharedPtr scan_subscription_;
+  Subscription<sensor_msgs::msg::LaserScan> scan_subscription_;
   std::optional<Watchdog<Countdown>> count_watchdog_;
-  rclcpp::Subscription<std_msgs::msg::Int16>::SharedPtr count_subscription_;
+  Subscription<std_msgs::msg::Int16> count_subscription_;
   std::optional<Watchdog<Countdown>> word_watchdog_;
-  rclcpp::Subscription<std_msgs::msg::String>::SharedPtr word_subscription_;
+  Subscription<std_msgs::msg::String> word_subscription_;
 };
 
 }  // namespace courier_controller

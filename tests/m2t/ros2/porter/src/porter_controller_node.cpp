@@ -99,7 +99,8 @@ class Controller : public ControllerNode<rclcpp::Node> {
   }
 
   // The reset that follows waits: see `before`.
-  void on_grip_error(const std::string& why) {
+  void on_grip_error(const std::string& cause) {
+    const std::string why = explained("/gripper/grip", cause);
     if (std::exchange(grip_fault_, why) != why) RCLCPP_WARN(get_logger(), "%s: %s", "/gripper/grip", why.c_str());
     grip_retry_->start();
     porter_begin(&supervisor_);
@@ -117,7 +118,8 @@ class Controller : public ControllerNode<rclcpp::Node> {
   }
 
   // The reset that follows waits: see `before`.
-  void on_release_error(const std::string& why) {
+  void on_release_error(const std::string& cause) {
+    const std::string why = explained("release", cause);
     if (std::exchange(release_fault_, why) != why) RCLCPP_WARN(get_logger(), "%s: %s", "release", why.c_str());
     release_retry_->start();
     porter_begin(&supervisor_);
@@ -143,7 +145,8 @@ class Controller : public ControllerNode<rclcpp::Node> {
   }
 
   // The reset that follows waits: see `before`.
-  void on_travel_error(const std::string& why) {
+  void on_travel_error(const std::string& cause) {
+    const std::string why = explained("/travel", cause);
     if (std::exchange(travel_fault_, why) != why) RCLCPP_WARN(get_logger(), "%s: %s", "/travel", why.c_str());
     travel_retry_->start();
     porter_begin(&supervisor_);
@@ -474,6 +477,8 @@ class Controller : public ControllerNode<rclcpp::Node> {
     status.add("place", data_.Desk.place);
     if (order_watchdog_->silent()) status.warn("order is silent");
     if (stop_watchdog_->silent()) status.warn("/stop is silent");
+    for (const std::string& fault : faults("order")) status.warn(fault);
+    for (const std::string& fault : faults("/stop")) status.warn(fault);
     return status.made();
   }
 
@@ -484,6 +489,8 @@ class Controller : public ControllerNode<rclcpp::Node> {
     status.add("grips", supervisor_.state.component_Gripper_grips);
     status.add("request to grip", verdict(porter_service_grip_c_trigger, against_grip()));
     status.add("request to release", verdict(porter_service_release_c_trigger, against_release()));
+    for (const std::string& fault : faults("/gripper/grip")) status.warn(fault);
+    for (const std::string& fault : faults("release")) status.warn(fault);
     if (!grip_fault_.empty()) status.warn("/gripper/grip: " + grip_fault_);
     if (!release_fault_.empty()) status.warn("release: " + release_fault_);
     return status.made();
@@ -497,6 +504,8 @@ class Controller : public ControllerNode<rclcpp::Node> {
     status.add("request to crawl", verdict(porter_message_crawl_c_trigger, against_crawl()));
     status.add("request to halt", verdict(porter_message_halt_c_trigger, against_halt()));
     status.add("request to travel", verdict(porter_action_travel_c_trigger, against_travel()));
+    for (const std::string& fault : faults("cmd_vel")) status.warn(fault);
+    for (const std::string& fault : faults("/travel")) status.warn(fault);
     if (!travel_fault_.empty()) status.warn("/travel: " + travel_fault_);
     if (withheld_.count(porter_message_crawl_c_trigger) > 0) status.warn("crawl is withheld");
     if (withheld_.count(porter_action_travel_c_trigger) > 0) status.warn("travel is withheld");
@@ -546,16 +555,19 @@ class Controller : public ControllerNode<rclcpp::Node> {
     cmd_vel_publisher_ = advertise<geometry_msgs::msg::Twist>("cmd_vel", rclcpp::QoS(10));
 
     grip_retry_.emplace(*this, guard_, retry, [this] { wake(); });
+    watch_servers<std_srvs::srv::SetBool>("/gripper/grip");
     grip_client_.emplace(*this, guard_, "/gripper/grip", rclcpp::ServicesQoS(), service_timeout,
         ServiceClient<std_srvs::srv::SetBool>::Handlers{
         [this](const auto& response) { on_grip_response(response); },
         [this](const std::string& why) { on_grip_error(why); }});
     release_retry_.emplace(*this, guard_, retry, [this] { wake(); });
+    watch_servers<std_srvs::srv::Trigger>("release");
     release_client_.emplace(*this, guard_, "release", rclcpp::ServicesQoS(), service_timeout,
         ServiceClient<std_srvs::srv::Trigger>::Handlers{
         [this](const auto& response) { on_release_response(response); },
         [this](const std::string& why) { on_release_error(why); }});
     travel_retry_.emplace(*this, guard_, retry, [this] { wake(); });
+    watch_servers<nav2_msgs::action::NavigateToPose::Impl::SendGoalService>("/travel", "/_action/send_goal");
     travel_client_.emplace(*this, guard_, "/travel", rclcpp::QoS(10), action_timeout,
         ActionClient<nav2_msgs::action::NavigateToPose>::Handlers{
         [this](const auto& feedback) { on_travel_feedback(feedback); },
@@ -578,11 +590,13 @@ class Controller : public ControllerNode<rclcpp::Node> {
     order_watchdog_.emplace(parameter(*this, "watchdog_ms.order", 0, 0, 86400000, "Longest silence of order; 0: any."),
         [this](const auto& watchdog) { on_silence("order", watchdog); }, *this, guard_);
     order_subscription_ = subscribe<std_msgs::msg::Float32>(
-        "order", rclcpp::QoS(10), [this](const auto& message) { on_order(message); });
+        "order", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
+        [this](const auto& message) { on_order(message); });
     stop_watchdog_.emplace(parameter(*this, "watchdog_ms.stop", 400, 0, 86400000, "Longest silence of /stop; 0: any."),
         [this](const auto& watchdog) { on_silence("/stop", watchdog); }, *this, guard_);
     stop_subscription_ = subscribe<std_msgs::msg::Empty>(
-        "/stop", rclcpp::QoS(10), [this](const auto& message) { on_stop(message); });
+        "/stop", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
+        [this](const auto& message) { on_stop(message); });
 
     start(period);
   }
@@ -632,9 +646,9 @@ class Controller : public ControllerNode<rclcpp::Node> {
   std::optional<ActionClient<nav2_msgs::action::NavigateToPose>> travel_client_;
   std::optional<Countdown> travel_retry_;
   std::optional<Watchdog<Countdown>> order_watchdog_;
-  rclcpp::Subscription<std_msgs::msg::Float32>::SharedPtr order_subscription_;
+  Subscription<std_msgs::msg::Float32> order_subscription_;
   std::optional<Watchdog<Countdown>> stop_watchdog_;
-  rclcpp::Subscription<std_msgs::msg::Empty>::SharedPtr stop_subscription_;
+  Subscription<std_msgs::msg::Empty> stop_subscription_;
 };
 
 }  // namespace porter_controller

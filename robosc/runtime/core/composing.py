@@ -1,0 +1,59 @@
+"""The data of messages, requests and goals, as `provide` statements say."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import reduce
+from typing import TYPE_CHECKING
+
+from robosc.metamodel import rosgraph
+from robosc.runtime.core.event_log import nested
+from robosc.runtime.core.node_data import bounded, fill, hand_on
+from robosc.semantics.messages import holds_objects, parts_with_headers
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from robosc.ros_types import Section
+    from robosc.runtime.core.json_text import Json
+    from robosc.runtime.core.node_data import NodeData
+    from robosc.runtime.core.port import ControllerPort, Message
+
+
+@dataclass(frozen=True)
+class Composer:
+    """Makes data of ROS with a port. `data`: what the node knows."""
+
+    port: ControllerPort
+    data: NodeData
+
+    def default(
+        self, sending: rosgraph.Sending, interface: rosgraph.Interface, section: Section, frame: str
+    ) -> Message:
+        """Data with ROS's defaults; unset headers get the time and a frame."""
+        message = self.port.create(interface, section)
+        for part in parts_with_headers(sending):
+            self.port.stamp(reduce(getattr, part, message), frame)
+        return message
+
+    def compose(
+        self, sending: rosgraph.Sending, interface: rosgraph.Interface, section: Section, frame: str
+    ) -> tuple[Message, Mapping[str, Json] | None]:
+        """The data by the `provide` statement that holds, else defaults; and what the event log has of them.
+
+        Raises NotFiniteError or UnreadableError where they can't be sent.
+        """
+        message = self.default(sending, interface, section, frame)
+        fields: dict[tuple[str, ...], Json] = {}
+        alternatives = sending.alternatives
+        chosen = next((data for data in alternatives if self.data.is_in(data.location)), None)
+        given = list(chosen.fields) if chosen is not None else []
+        values = [bounded(self.data.value(field.value), field.type) for field in given]
+        for field, value in zip(given, values, strict=True):
+            if isinstance(field.value, rosgraph.WireAccess) and holds_objects(field.type):
+                hand_on(self.port, message, field.path, value)
+                continue
+            fields[tuple(field.path)] = fill(self.port, message, field.path, value)
+        if not alternatives:
+            return message, None
+        return message, {"value": fields["data",] if list(fields) == [("data",)] else nested(fields)}

@@ -1,0 +1,44 @@
+"""Compiled nodes in an events executor of ROS 2: it queues the calls of timers that are up."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tests.ros.faults.partners import Peer
+from tests.ros.workspaces import middleware
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from tests.ros.workspaces import Workspace
+
+
+def test_a_countdown_that_was_started_again_or_stopped_is_not_up(ros2_workspace: Workspace, tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    with middleware(ros2_workspace, folder) as processes:
+        program = ros2_workspace.folder / "install/events_executor/lib/events_executor/countdowns"
+        countdowns = processes.start("countdowns", [program])
+        processes.wait_until(lambda: countdowns.poll() is not None, "all countdowns are over")
+        assert countdowns.returncode == 0, processes.logs()
+    assert (folder / "countdowns.log").read_text() == "early 0, in time 5, stopped 0\n"
+
+
+def test_a_component_stops_its_robot_and_ends_in_order(ros2_workspace: Workspace, tmp_path: Path) -> None:
+    install = ros2_workspace.folder / "install"
+    host = install / "events_executor/lib/events_executor/host"
+    library = install / "latch_controller/lib/liblatch_controller_component.so"
+    with middleware(ros2_workspace, tmp_path / "run") as processes:
+        world = Peer(processes, ros2_workspace.ros.python, 2, "world")
+        world.do("listen", topic="/cmd_vel", kind="geometry_msgs/Twist")
+        world.do("advertise", topic="/estop", kind="std_msgs/Bool", latched=True)
+        world.do("publish", topic="/estop", fields={"data": False})
+
+        def speeds() -> list[float]:
+            return [entry["data"]["linear"]["x"] for entry in world.all("heard", since)]
+
+        for number in range(6):
+            since = len(world.said)
+            node = processes.start(f"host{number}", [host, library])
+            processes.wait_until(lambda: 0.5 in speeds(), "the robot drives")
+            assert processes.stop(node) == 0, processes.logs()
+            processes.wait_until(lambda: speeds()[-1:] == [0.0], "the robot stops")
