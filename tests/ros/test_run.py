@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.ros.workspaces import middleware
+from tests.sharing import own_domain
 
 if TYPE_CHECKING:
     from tests.ros.running import Runner
@@ -96,3 +97,12 @@ def test_its_reports_can_be_listened_to_without_the_commands_of_ros_2(run_ros2: 
         assert topic == "/line_follower_controller/state"
         assert json.loads(report)["robot"] == "LineFollower"
         assert processes.stop(listener) == 0
+
+
+def test_a_stop_does_not_wait_behind_a_fast_topic(run_ros2: Runner) -> None:
+    with own_domain() as domain:
+        environment = run_ros2.environment() | {"ROS_DOMAIN_ID": str(domain)}
+        command = [run_ros2.ros.python, HERE / "take_ros2.py"]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert int(done.stdout) < 50

@@ -72,6 +72,6 @@ def test_generated_nodes_compare_too() -> None:
     for target in ("ros1", "ros2"):
         assert "!(lamp_handed_->data == lamp_message_.data)" in texts[target]
         assert "plain_handed_" not in texts[target]
-    assert texts["ros2"].count("rclcpp::QoS(10).transient_local()") == 1
+    assert texts["ros2"].count("rclcpp::QoS(10).transient_local());") == 1
     # No part in the layer.
     assert "_handed_" not in texts["ros2-layer"]
