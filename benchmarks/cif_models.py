@@ -30,7 +30,7 @@ from typing import Any
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.cif_models_page import agree, page, plot  # noqa: E402
+from benchmarks.cif_models_page import agree, page  # noqa: E402
 from benchmarks.families import FAMILIES  # noqa: E402
 from tests.cif.escet import SYNTHESIS, Tools, class_path, home  # noqa: E402
 
@@ -175,12 +175,11 @@ def main() -> int:
     parser.add_argument("--more", type=Path, nargs="*", default=[])
     parser.add_argument("--rounds", type=int, default=3, help="of synthesis in one process")
     parser.add_argument("--seconds", type=float, default=300, help="of the processor, for each command")
-    parser.add_argument("--machine", default=f"{os.cpu_count()} cores", help="where it runs, for the page")
     parser.add_argument("--output", type=Path)
     options = parser.parse_args()
     folder = home()
     cif = None if folder is None else Cif(folder, options.seconds)
-    results: Results = {"machine": options.machine, "rounds": options.rounds, "seconds": options.seconds, "models": {}}
+    results: Results = {"rounds": options.rounds, "seconds": options.seconds, "models": {}}
     failed = 0
     with tempfile.TemporaryDirectory() as scratch:
         asked = models(options.folder) | {path.stem.lower(): path for path in options.more}
@@ -196,7 +195,6 @@ def main() -> int:
     kept, pages = (options.output or ROOT / part for part in ("benchmarks", "docs"))
     (kept / "cif_models.json").write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
     (pages / "cif-models.md").write_text(page(results), encoding="utf-8")
-    (pages / "cif-models.svg").write_text(plot(results), encoding="utf-8")
     return int(failed > 0)
 
 

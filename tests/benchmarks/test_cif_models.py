@@ -1,10 +1,14 @@
 """The command that times models from CIF finds them by ESCET's scripts, and says where one has no answer."""
 
+import json
 from pathlib import Path
 
 import pytest
 
 from benchmarks.cif_models import models, robosc_measured
+from benchmarks.cif_models_page import page
+
+ROOT = Path(__file__).parents[2]
 
 
 def test_models_are_those_that_the_scripts_name(tmp_path: Path) -> None:
@@ -23,3 +27,23 @@ def test_each_is_counted_by_a_process_of_its_own(tmp_path: Path) -> None:
     assert said["states"] == 2
     path.write_text("controllable c")
     assert robosc_measured(path, 1, 60) is None
+
+
+def test_the_page_in_the_documentation_is_that_of_the_results() -> None:
+    results = json.loads((ROOT / "benchmarks" / "cif_models.json").read_text())
+    assert (ROOT / "docs" / "cif-models.md").read_text() == page(results)
+
+
+def test_the_page_names_the_models_that_are_slower() -> None:
+    def measured(cold: float) -> dict[str, float]:
+        return {"cold": cold, "seconds": cold, "states": 4, "operations": 7, "nodes": 9, "memory": 50}
+
+    pairs = {"fast": (1, 2), "slow": (3, 2), "endless": (5, None)}
+    found = {
+        name: {"robosc": measured(ours), "cif": {} if theirs is None else measured(theirs)}
+        for name, (ours, theirs) in pairs.items()
+    }
+    text = page({"escet": 2, "rounds": 1, "seconds": 30.0, "models": found})
+    assert "completes 2 of ESCET's 2 models, in 4 s" in text
+    assert "slower than CIF's tool on 1 of these 3 models (`slow`)" in text
+    assert "| endless | 4 | 5.00 | over 30 | 5.0 | over 30 | 7 | 9 | 50 |" in text
