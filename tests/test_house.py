@@ -1,10 +1,12 @@
 """docs/architecture.md is true: which package may import which, which library belongs to which, and what there is."""
 
 import ast
+import builtins
 import re
 import sys
 from collections.abc import Iterator
 from functools import cache
+from keyword import softkwlist
 from pathlib import Path
 
 import pytest
@@ -319,6 +321,21 @@ def test_what_the_page_names_is_there() -> None:
     named = set(re.findall(r"`((?:robosc|grammar|metamodel|docs|tests)/[\w./]+)`", PAGE))
     assert len(named) > 40
     assert sorted(path for path in named if not (ROOT / path).exists() and not (ROOT / f"{path}.py").exists()) == []
+
+
+def test_what_docstrings_of_packages_name_is_there() -> None:
+    """Each name in the docstring of a package is a module, a folder, a definition in it, or a word of Python."""
+    missing = []
+    for path in sorted(PACKAGE.rglob("__init__.py")):
+        docstring = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
+        texts = [module.read_text(encoding="utf-8") for module in path.parent.rglob("*.py")]
+        stems = {path.parent.name, *(inner.stem for inner in path.parent.rglob("*")), *dir(builtins), *softkwlist}
+        for name in re.findall(r"`(\w+(?:\.\w+)*)`", docstring):
+            whole = ROOT.joinpath(*name.split("."))
+            defined = re.compile(rf"^ *(?:def|class) {re.escape(name)}\b", re.MULTILINE)
+            if name not in stems and not (whole.exists() or whole.with_suffix(".py").exists()):
+                missing += [] if any(map(defined.search, texts)) else [f"{path.relative_to(ROOT)}: {name}"]
+    assert missing == []
 
 
 @pytest.mark.parametrize("folder", ["robosc", "tests", "benchmarks", "examples", "scripts"])

@@ -1,8 +1,8 @@
 """The simulator as a debug adapter: a supervised robot is stepped through, event by event, where its text is written.
 
-`protocol` has the messages of the Debug Adapter Protocol, `adapter` answers them. `launching` says what is run,
-`replay` is the run, forwards and backwards; `breakpoints` finds what of a model a run can stop at, `stops` says where
-it does, `views` what is seen there.
+`protocol` has the messages of the Debug Adapter Protocol, `adapter` answers them. `launching` finds what to run,
+`robosc.simulation.replay` runs it, forwards and backwards. `breakpoints` finds the elements of a model at which a run
+can stop, `stops` decides where it does, `views` shows its state there.
 """
 
 from robosc.debugger.adapter import Adapter

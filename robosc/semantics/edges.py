@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from robosc.metamodel import sct
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
 
 
 def edges_from(location: sct.Location, event: sct.Event | None = None) -> list[sct.Edge]:
@@ -26,18 +26,6 @@ def origin(edge: sct.Edge) -> sct.Location | None:
     """The location that an edge leaves; None where it leaves each of its plant's."""
     owner = edge.eContainer()
     return owner if isinstance(owner, sct.Location) else None
-
-
-def departures(plant: sct.Plant, edges: Sequence[sct.Edge]) -> list[tuple[sct.Location, sct.Edge]]:
-    """Edges of a plant, as `edges_of` orders them, with each location that they leave: location by location."""
-    shared = [edge for edge in edges if origin(edge) is None]
-    own: dict[sct.Location, list[sct.Edge]] = {}
-    for edge in edges:
-        location = origin(edge)
-        if location is not None:
-            own.setdefault(location, []).append(edge)
-    leaving = plant.locations if shared else own
-    return [(location, edge) for location in leaving for edge in [*own.get(location, ()), *shared]]
 
 
 def edges_by_event(plants: Iterable[sct.Plant]) -> dict[sct.Event, dict[sct.Plant, list[sct.Edge]]]:

@@ -26,11 +26,6 @@ _WINDOW = 4
 _LONGER = 1.25
 
 
-def total_span(order: Sequence[int], edges: Sequence[Sequence[int]]) -> int:
-    """The sum over all edges of the distance between their first and their last vertex in the order."""
-    return _Hypergraph(len(order), edges).span(_places(order))
-
-
 def variable_order(size: int, edges: Sequence[Sequence[int]]) -> list[int]:
     """An order of the vertices 0 … size-1 of a hypergraph with a small total span; the same for the same input.
 

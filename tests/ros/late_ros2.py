@@ -30,12 +30,12 @@ def spin(node, handler):
         if publisher.get_subscription_count():
             publisher.publish(Empty())
         node._spin_once()
-        handler.flush_log()
+        handler._log.flush()
         heard = log.read_text().count("message_scan.u_response")
     while heard != (heard := log.read_text().count("message_scan.u_response")):
         for _ in range(10):
             node._spin_once()
-        handler.flush_log()
+        handler._log.flush()
     publisher.publish(Empty())
     time.sleep(SLEEP)
     sys.stdout.write(f"on at {time.time()}\n")

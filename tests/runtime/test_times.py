@@ -24,7 +24,7 @@ def guard(tmp_path: Path) -> World:
 
 
 def events(world: World) -> list[dict[str, Any]]:
-    world.controller.flush_log()
+    world.controller._log.flush()
     return [json.loads(line) for line in world.log.read_text().splitlines()]
 
 

@@ -7,7 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robosc.synthesis.order import total_span, variable_order
+from robosc.synthesis.order import variable_order
+
+
+def total_span(order, edges):
+    """The sum over all edges of the distance between their first and their last vertex in the order."""
+    place = {vertex: position for position, vertex in enumerate(order)}
+    positions = [[place[vertex] for vertex in edge] for edge in edges]
+    return sum(max(edge) - min(edge) for edge in positions)
 
 
 def hypergraphs():

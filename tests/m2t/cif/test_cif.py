@@ -437,6 +437,7 @@ def test_what_is_asked_twice_stands_there_once_with_all_its_words() -> None:
         "requirement p.b disables p.e;",
         "requirement p.e needs not p.b;",
     ]
+    assert (text.count('"one"'), text.count('"other"')) == (1, 1)
     assert text.index("one") < text.index("two") < text.index("requirement p.e") < text.index("three")
     assert differences(given, rebuild(text)) == []
 
