@@ -45,6 +45,7 @@ from robosc import view
 from robosc.m2t.models import Models
 from robosc.simulation import Simulation
 from robosc.view import serving
+from robosc.view.server import application
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -121,7 +122,7 @@ def flooding(model: Path, port: int, seconds: float) -> None:
     robosc.synthesize(supervised)
     live = view.Live(Simulation(supervised, graph), graph, "/doors_controller")
     description = view.describe(Models(supervised, graph, loaded), {})
-    application = view.application([(description, live)], [f"127.0.0.1:{port}"])
+    served = application([(description, live)], [f"127.0.0.1:{port}"])
     states = ["closed"] * len(description["automata"])
 
     async def flood() -> None:
@@ -142,7 +143,7 @@ def flooding(model: Path, port: int, seconds: float) -> None:
         asyncio.get_running_loop().flood = asyncio.ensure_future(flood())  # type: ignore[attr-defined]  # keeps it
 
     live.heard(1)
-    serving.serve(application, serving.listen("127.0.0.1", port), ready)
+    serving.serve(served, serving.listen("127.0.0.1", port), ready)
 
 
 def flooded(browser: Any, model: Path, seconds: float) -> None:

@@ -324,5 +324,9 @@ def whole_state(model: sct.SupervisoryControlModel, codes: Codes) -> dict[str, V
 
 def counted(number: int, what: str) -> str:
     """A number of things: `1 state`, `1,234 states`, `1.27e+30 states`."""
-    text = f"{number:,}" if number < 10**_DIGITS else f"{Decimal(number):.2e}"
-    return f"{text} {what}" if number == 1 else f"{text} {what}s"
+    return f"{grouped(number)} {what}" if number == 1 else f"{grouped(number)} {what}s"
+
+
+def grouped(number: int) -> str:
+    """A number for people: `1,234`, `1.27e+30`."""
+    return f"{number:,}" if number < 10**_DIGITS else f"{Decimal(number):.2e}"

@@ -48,6 +48,8 @@ _COMMANDS = {
     "lsp": "Serve an editor: findings while typing, completion, and more.",
     "diagram": "Draw a model or a metamodel.",
 }
+#: How the names of models end.
+_MODELS = (".rscd", ".cif", ".xmi")
 #: Where a command stands in another module than that of its name: `report` collects findings.
 _MODULES = {"report": "safety_report"}
 
@@ -102,7 +104,8 @@ class _Commands(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if args and args[0] not in _COMMANDS and not args[0].startswith("-"):
             close = get_close_matches(args[0], _COMMANDS, n=1)
-            hint = f" Did you mean '{close[0]}'?" if close else ""
+            meant = f"robosc check {args[0]}" if args[0].endswith(_MODELS) else close[0] if close else ""
+            hint = f" Did you mean '{meant}'?" if meant else ""
             raise click.UsageError(f"No such command '{args[0]}'.{hint}", ctx)
         return super().resolve_command(ctx, args)
 

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import os
+from contextlib import suppress
 from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import wraps
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -15,8 +19,26 @@ if TYPE_CHECKING:
 
     from robosc.extensions import Extension
 
+
+class _File(click.Path):
+    """A file that must be there; if it is not, the error suggests one beside it with a similar name."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        try:
+            return super().convert(value, param, ctx)
+        except click.BadParameter as error:
+            path = Path(os.fsdecode(value))
+            names: list[str] = []
+            with suppress(OSError):
+                names = sorted(other.name for other in path.parent.iterdir())
+            close = get_close_matches(path.name, names, n=1)
+            if close and path.name not in names:
+                error.message = f"{error.message} Did you mean '{path.with_name(close[0])}'?"
+            raise
+
+
 #: A file that must be there.
-FILE = click.Path(exists=True, dir_okay=False, readable=True)
+FILE = _File(exists=True, dir_okay=False, readable=True)
 
 model = click.argument("model", type=FILE)
 

@@ -10,6 +10,7 @@ from threading import Event, Thread, Timer, current_thread, main_thread
 from typing import TYPE_CHECKING
 
 from robosc.cli import INTERRUPTED
+from robosc.metamodel import expression as ex
 from robosc.synthesis.memory import TooFewAddressesError
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
     from rich.status import Status
 
+    from robosc.metamodel import sct
     from robosc.synthesis import Statistics
 
 PATIENCE_SECONDS = 1.0
@@ -60,10 +62,10 @@ def progress(what: str | Callable[[], str]) -> Iterator[None]:
 
 
 @contextmanager
-def synthesizing() -> Iterator[Statistics]:
-    """Shows how far a synthesis is that is done in the `with` block and keeps these statistics.
+def synthesizing(model: sct.SupervisoryControlModel) -> Iterator[Statistics]:
+    """Show the progress of a model's synthesis in the `with` block, which keeps these statistics.
 
-    An interrupt ends it within a moment. Raises MemoryError with what helps where it lacks memory.
+    An interrupt ends it within a moment. Raises MemoryError with a hint where it lacks memory.
     """
     from robosc.synthesis import Statistics
 
@@ -74,7 +76,13 @@ def synthesizing() -> Iterator[Statistics]:
     except TooFewAddressesError:
         raise
     except MemoryError as error:
-        helps = "let `synthesize` or `transform` have more `--memory`, or give integers smaller ranges"
+        has_integers = any(
+            isinstance(element.type, ex.IntegerType)
+            for plant in model.plants
+            for element in (*plant.variables, *plant.inputs)
+        )
+        smaller = "give integers smaller ranges" if has_integers else "describe the robot with fewer states"
+        helps = f"let `synthesize` or `transform` have more `--memory`, or {smaller}"
         raise MemoryError(f"{str(error) or 'out of memory'}: {helps}") from error
 
 

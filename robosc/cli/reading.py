@@ -130,7 +130,7 @@ def supervise_models(models: Models, report: Report, *, memory: int | None = Non
     from robosc.synthesis import MEMORY
 
     if supervise_otherwise(models.sct, memory=memory) is None and models.sct.supervisor is None:
-        with synthesizing() as statistics:
+        with synthesizing(models.sct) as statistics:
             supervision = supervise(models.sct, memory=memory or MEMORY, statistics=statistics)
         report.add(supervision.findings)
         report.stop_on_errors()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from robosc.analysis.supervise import Diagnosis, EmptySupervisorError, supervise
-from robosc.analysis.system import counted
+from robosc.analysis.system import counted, grouped
 from robosc.analysis.wording import called, change
 from robosc.cli import EMPTY_SUPERVISOR, put, say
 from robosc.cli.options import Paths, chosen_synthesizer, memory, model, paths, synthesizer
@@ -77,7 +77,7 @@ def command(model: str, as_json: bool, counts: bool, count_inputs: bool, megabyt
             show(plants, Diagnosis(**vars(found)), times)
             return
         try:
-            with synthesizing() as statistics:
+            with synthesizing(plants) as statistics:
                 supervision = supervise(
                     plants, memory=megabytes << 20, statistics=statistics, weigh=True, effort=_EFFORT
                 )
@@ -91,7 +91,7 @@ def command(model: str, as_json: bool, counts: bool, count_inputs: bool, megabyt
 
 
 def _count(model: sct.SupervisoryControlModel, memory: int, times: int, *, as_json: bool) -> None:
-    with synthesizing() as statistics:
+    with synthesizing(model) as statistics:
         counted = count(model, memory=memory, statistics=statistics)
     if as_json:
         put(json.dumps(_counts(model, counted, statistics, times), indent=2))
@@ -183,11 +183,11 @@ def _event(event: sct.Event, guard: sct.EventGuard | None, synthesis: Synthesis)
     }
 
 
-def _states(model: sct.SupervisoryControlModel, counted: Counts | Synthesis, times: int) -> str:
+def _states(model: sct.SupervisoryControlModel, counts: Counts | Synthesis, times: int) -> str:
     """How many states there are, each counted so many times."""
-    without = counted.uncontrolled_states
-    beside = "" if without is None else f", of {without * times} without requirements"
-    return f"{model.name}: {counted.controlled_states * times} states{beside}"
+    without = counts.uncontrolled_states
+    beside = "" if without is None else f", of {grouped(without * times)} without requirements"
+    return f"{model.name}: {counted(counts.controlled_states * times, 'state')}{beside}"
 
 
 def _show(model: sct.SupervisoryControlModel, synthesis: Diagnosis, times: int) -> None:

@@ -46,7 +46,17 @@ def _into(_context: click.Context, _parameter: click.Parameter, name: str | None
 
 
 class _Command(click.Command):
-    """Lists the targets when help is asked for, with those of packages that are installed."""
+    """Lists the targets in its help, with those of installed packages. Explains how to name several of them."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        given = list(args)
+        try:
+            return super().parse_args(ctx, args)
+        except click.UsageError as error:
+            names = [name for name in (word.removeprefix("--to=") for word in given) if name in targets()]
+            if len(names) > 1 and "extra argument" in error.message:
+                error.message = f"{error.message}: write `--to {','.join(names)}`"
+            raise
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         lines = (f"  {target.name:<15} {target.description}" for target in targets().values())

@@ -178,8 +178,8 @@ def _serve(
     opens: bool,
     begin: Callable[[], Callable[[], None]] | None,
 ) -> None:
-    from robosc import view
     from robosc.view import serving
+    from robosc.view.server import application
 
     try:
         listening = serving.listen(address, port)
@@ -201,7 +201,7 @@ def _serve(
             webbrowser.open(path)
 
     try:
-        serving.serve(view.application(shown, hosts, token), listening, ready)
+        serving.serve(application(shown, hosts, token), listening, ready)
     finally:
         for end in ends:
             end()

@@ -296,7 +296,7 @@ def read(file: Path) -> Configuration:
         raise ModelError([_error(name, f"not UTF-8: {error.reason} at byte {error.start}")]) from error
     except JsonError as error:
         line, column = _position(text, error.position)
-        raise ModelError([_error(name, str(error), Span(line, column, line, column + 1))]) from error
+        raise ModelError([_error(name, str(error), Span(line, column, line, column + 1), error.hint)]) from error
     findings = [_error(name, f'the key "{key}" stands twice', span) for key, span in _duplicates(text, _skip(text, 0))]
     try:
         configuration = Configuration.model_validate(values, context=(name, text), by_alias=True, by_name=False)

@@ -12,16 +12,19 @@ _DEEPEST = 100
 _BRACKETS = {"{": 1, "[": 1, "]": -1, "}": -1}
 #: A string, which may have no end, or a bracket.
 _STRING_OR_BRACKET = re.compile(r'"(?:[^"\\]|\\.)*"?|[][{}]', re.DOTALL)
+#: What Python writes, and JSON.
+_WORDS = {"True": "true", "False": "false", "None": "null"}
 #: No number has more; Python itself refuses to read some thousand.
 _DIGITS = 1000
 
 
 class JsonError(ValueError):
-    """Text that is no JSON for us; `position` is where in it, in code points from 0."""
+    """Text that is no JSON for us; `position` is where in it, in code points from 0. `hint`: how to mend it."""
 
-    def __init__(self, message: str, position: int = 0) -> None:
+    def __init__(self, message: str, position: int = 0, hint: str | None = None) -> None:
         super().__init__(message)
         self.position = position
+        self.hint = hint
 
 
 def json_value(text: str) -> Any:
@@ -33,9 +36,31 @@ def json_value(text: str) -> Any:
     try:
         return json.loads(text, parse_constant=_refuse, parse_int=_integer, parse_float=_number)
     except json.JSONDecodeError as error:
-        raise JsonError(f"not JSON: {error.msg}", error.pos) from None
+        raise JsonError(f"not JSON: {error.msg}", error.pos, _hint(text, error.pos)) from None
     except ValueError as error:
         raise JsonError(f"not JSON: {error}") from None
+
+
+def _hint(text: str, position: int) -> str | None:
+    """How to mend a common mistake at a position; None for others."""
+    before, after = text[:position].rstrip(), text[position:].lstrip()
+    word = re.match(r"\w*", after)
+    assert word is not None
+    if before.endswith(",") and after[:1] in ("}", "]"):
+        return f"leave out the comma before `{after[0]}`"
+    if after.startswith(",") and after[1:].lstrip()[:1] in ("}", "]"):  # Python 3.13 points at the comma
+        return f"leave out the comma before `{after[1:].lstrip()[0]}`"
+    if after.startswith("'"):
+        return 'write texts in double quotes, as in "halt"'
+    if after.startswith(("//", "/*", "#")):
+        return "leave out the comment: JSON has none"
+    if word[0] in _WORDS:
+        return f"write `{_WORDS[word[0]]}`"
+    if before.endswith(("{", ",")) and re.match(r"\w+\s*:", after):
+        return f'write the key in double quotes: "{word[0]}"'
+    if after.startswith(('"', "{", "[")) and before[-1:] not in ("", "{", "[", ":", ","):
+        return "write a comma after the value before it"
+    return None
 
 
 def json_lines(text: str) -> list[str]:

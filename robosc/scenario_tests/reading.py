@@ -206,7 +206,9 @@ class _Reader:
         except JsonError as error:
             column = line.span.end_column - len(text) + error.position
             span = Span(line.span.line, column, line.span.line, line.span.end_column)
-            self.findings.append(Line(line.file, span).fault(str(error), "data is JSON, or the name of a literal"))
+            self.findings.append(
+                Line(line.file, span).fault(str(error), error.hint or "data is JSON, or the name of a literal")
+            )
             return None
 
 

@@ -134,7 +134,7 @@ class _Line:
         try:
             read = json_value(self._line[column:])
         except JsonError as error:
-            self._fault(column + error.position, str(error))
+            self._fault(column + error.position, str(error), error.hint)
             return None
         if not isinstance(read, dict):
             self._fault(column, "data is an object", f'write {{"value": {self._line[column:].strip()}}}')

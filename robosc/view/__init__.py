@@ -1,7 +1,7 @@
 """`robosc view`: a model, a log, a counterexample or a robot that runs in the browser, decision by decision.
 
 `Moments` are what has happened: of a `Record` that is played, or `Live` as a node tells. `describe` says what does not
-change, `application` serves both with the page, `export` writes them as files that open without a server. The page
+change, `server` serves both with the page, `export` writes them as files that open without a server. The page
 itself is TypeScript, in `web/`.
 """
 
@@ -11,6 +11,5 @@ from robosc.view.live import Live
 from robosc.view.moments import Moments
 from robosc.view.page import PageError
 from robosc.view.record import Record
-from robosc.view.server import application
 
-__all__ = ["Live", "Moments", "PageError", "Record", "application", "describe", "export"]
+__all__ = ["Live", "Moments", "PageError", "Record", "describe", "export"]

@@ -190,3 +190,32 @@ def test_a_reader_that_has_read_enough(door: Path) -> None:
         assert process.stderr is not None
         process.stdout.close()
         assert process.stderr.read() == ""
+
+
+@pytest.mark.parametrize(
+    ("call", "hint"),
+    [
+        (("door.rscd",), "Did you mean 'robosc check door.rscd'?"),
+        (("check", "dor.rscd"), "Did you mean 'door.rscd'?"),
+        (("transform", "door.rscd", "--to", "ros2", "ros1"), "write `--to ros2,ros1`"),
+        (("transform", "door.rscd", "--to=ros2", "cif", "ros1"), "write `--to ros2,cif,ros1`"),
+        (("explain", "door.rscd", "--event", "open", "--state", "Leaf=closed;x=1"), "commas: `Leaf=closed,x=1`"),
+    ],
+)
+def test_a_wrong_call_has_a_hint(run: Run, door: Path, call: tuple[str, ...], hint: str) -> None:  # noqa: ARG001
+    answer = run(*call)
+    assert answer.exit_code == 2
+    assert hint in answer.stderr
+
+
+def test_export_needs_no_server(door: Path) -> None:
+    """Whoever writes the page as files needs no packages of a server."""
+    program = f"""
+import sys
+sys.modules["starlette"] = sys.modules["uvicorn"] = None
+from robosc.cli import main
+main(["view", {str(door)!r}, "--export", "page"])
+"""
+    done = subprocess.run([sys.executable, "-c", program], cwd=door.parent, capture_output=True, text=True, check=False)
+    assert "starlette" not in done.stderr
+    assert done.returncode == 0 or "the page has not been built" in done.stderr, done.stderr

@@ -10,7 +10,9 @@ import pytest
 
 from robosc.cli import progress as module
 from robosc.cli.progress import progress, synthesizing
+from robosc.metamodel import sct
 from robosc.synthesis import Phase
+from tests.sct_models import model, plant
 
 
 class Terminal(io.StringIO):
@@ -75,11 +77,21 @@ def test_a_failure_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_how_far_a_synthesis_is(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stderr", terminal := Terminal())
     monkeypatch.setenv("COLUMNS", "200")
-    with synthesizing() as statistics:
+    with synthesizing(sct.SupervisoryControlModel()) as statistics:
         wait_for("synthesizing the supervisor", terminal)
         with statistics.during(Phase.FIXPOINT):
             statistics.rounds, statistics.states, statistics.operations, statistics.peak_nodes = 2, 34 * 10**29, 1234, 5
             wait_for("fixpoint, round 2 on 3.4e30 states, 1,234 operations, 5 nodes", terminal)
+
+
+@pytest.mark.parametrize(
+    ("variable", "hint"), [("0..9", "integers smaller ranges"), ("bool", "describe the robot with fewer states")]
+)
+def test_too_little_memory(variable: str, hint: str) -> None:
+    """The hint speaks of integers only if the model has some."""
+    given = model([plant("p", {"a": []}, variables={"v": variable})])
+    with pytest.raises(MemoryError, match=hint), synthesizing(given):
+        raise MemoryError
 
 
 #: One operation on decision diagrams that takes minutes: all bits of one number, then all of another.

@@ -139,3 +139,36 @@ def test_a_pipe_is_no_trace(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     with pytest.raises(TraceError, match="pipe is no regular file"):
         read_trace(str(tmp_path / "pipe"))
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ('{"a": 1,}', "leave out the comma before `}`"),
+        ("[1, 2, ]", "leave out the comma before `]`"),
+        ("{'a': 1}", "double quotes"),
+        ("{\"a\": 'b'}", "double quotes"),
+        ('{"a": 1, // one\n"b": 2}', "leave out the comment: JSON has none"),
+        ('{"a": 1 # one\n}', "leave out the comment: JSON has none"),
+        ('{"a": True}', "write `true`"),
+        ('{"a": None}', "write `null`"),
+        ("{a: 1}", 'write the key in double quotes: "a"'),
+        ('{"a": 1 "b": 2}', "write a comma after the value before it"),
+        ('{"a": ', None),
+        ('{"a": Truely}', None),
+    ],
+)
+def test_a_common_mistake_has_a_hint(text: str, hint: str | None) -> None:
+    with pytest.raises(JsonError) as error:
+        json_value(text)
+    assert (hint is None) == (error.value.hint is None)
+    assert hint is None or hint in str(error.value.hint)
+
+
+def test_a_configuration_has_the_hint(tmp_path: Path) -> None:
+    file = tmp_path / config.FILE_NAME
+    file.write_text('{"onShutdown": ["halt",]}')
+    with pytest.raises(ModelError) as error:
+        config.read(file)
+    [finding] = error.value.diagnostics
+    assert finding.hint == "leave out the comma before `]`"

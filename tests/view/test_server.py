@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from starlette.testclient import TestClient
 
-from robosc.view import application, page
+from robosc.view import page
 from robosc.view.page import FILES, POLICY
+from robosc.view.server import application
 
 from .robots import GATE, record
 

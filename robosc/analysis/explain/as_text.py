@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from robosc.analysis.blocking_in_words import blocking, counterexample_in_words, way_out
 from robosc.analysis.explain.answers import Emptiness, Explanation, Possibility, Reach
+from robosc.analysis.system import counted
 from robosc.analysis.wording import in_words, listed, name, what_is, words
 from robosc.engine import Blocked
 from robosc.metamodel import sct
@@ -202,9 +203,8 @@ class Renderer:
             lines = []
             for loosening in loosenings:
                 first = loosening.requirements[0]
-                states = "state" if loosening.states == 1 else "states"
-                text = listed([own.text or "a requirement" for own in loosening.requirements])
-                lines.append(f"{self._at(first)}: {text} ({loosening.states} {states} without it)")
+                text = listed(list(dict.fromkeys(own.text or "a requirement" for own in loosening.requirements)))
+                lines.append(f"{self._at(first)}: {text} ({counted(loosening.states, 'state')} without it)")
             yield from self._section("It would help to loosen, or to leave out, one of these:", lines)
 
     def _notes(self, notes: Iterable[Note]) -> Iterator[str]:

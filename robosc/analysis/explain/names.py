@@ -149,6 +149,8 @@ def _pairs(model: sct.SupervisoryControlModel, given: str) -> list[tuple[str, An
             return list(_reported(model, read))
         inner = read.get("state", read)
         return list((inner if isinstance(inner, dict) else read).items())
+    if ";" in given:
+        raise NamingError("a state has no `;`", f"separate its parts by commas: `{given.replace(';', ',')}`")
     pairs = []
     for pair in given.split(","):
         name, equals, chosen = pair.partition("=")
