@@ -16,6 +16,7 @@ from robosc.metamodel.places import place
 from robosc.synthesis import MEMORY, Phase, Solution, Statistics, Synthesis, solve
 
 if TYPE_CHECKING:
+    from robosc.diagnostics import Span
     from robosc.metamodel import sct
 
 
@@ -47,7 +48,7 @@ class EmptySupervisorError(ModelError):
         assert synthesis.reason is not None
         reason = synthesis.reason
         trace = f"; a shortest trace: {in_words(reason.trace, model)}" if reason.trace else ""
-        file, span = place(reason.event or model)
+        file, span = _place(model, reason)
         message = f"the supervisor is empty: {blocking(reason)}{trace}"
         if reason.requirements and not (reason.event and reason.event.controllable):
             message += f"; from there on {forbid(reason.requirements, 'something')}"
@@ -56,6 +57,14 @@ class EmptySupervisorError(ModelError):
             " tells more"
         )
         super().__init__([Diagnostic(file, span, Severity.ERROR, "empty-supervisor", message, hint)])
+
+
+def _place(model: sct.SupervisoryControlModel, reason: Reason) -> tuple[str, Span]:
+    """Return the place of the event at fault, or of the first requirement at fault if the event is a library's."""
+    own, _ = place(model)
+    elements = [element for element in (reason.event, *reason.violated, *reason.requirements) if element is not None]
+    places = [place(element) for element in elements] or [place(model)]
+    return next((found for found in places if found[0] == own), places[0])
 
 
 def diagnose(

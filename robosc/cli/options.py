@@ -33,7 +33,7 @@ class _File(click.Path):
                 names = sorted(other.name for other in path.parent.iterdir())
             close = get_close_matches(path.name, names, n=1)
             if close and path.name not in names:
-                error.message = f"{error.message} Did you mean '{path.with_name(close[0])}'?"
+                self.fail(f"{error.message} Did you mean '{path.with_name(close[0])}'?", param, ctx)
             raise
 
 

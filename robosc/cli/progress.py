@@ -76,11 +76,9 @@ def synthesizing(model: sct.SupervisoryControlModel) -> Iterator[Statistics]:
     except TooFewAddressesError:
         raise
     except MemoryError as error:
-        has_integers = any(
-            isinstance(element.type, ex.IntegerType)
-            for plant in model.plants
-            for element in (*plant.variables, *plant.inputs)
-        )
+        types = [variable.type for plant in model.plants for variable in plant.variables]
+        types += [given.type for plant in model.plants for given in plant.inputs]
+        has_integers = any(isinstance(kind, ex.IntegerType) for kind in types)
         smaller = "give integers smaller ranges" if has_integers else "describe the robot with fewer states"
         helps = f"let `synthesize` or `transform` have more `--memory`, or {smaller}"
         raise MemoryError(f"{str(error) or 'out of memory'}: {helps}") from error

@@ -55,7 +55,7 @@ class _Command(click.Command):
         except click.UsageError as error:
             names = [name for name in (word.removeprefix("--to=") for word in given) if name in targets()]
             if len(names) > 1 and "extra argument" in error.message:
-                error.message = f"{error.message}: write `--to {','.join(names)}`"
+                raise click.UsageError(f"{error.message}: write `--to {','.join(names)}`", ctx) from error
             raise
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

@@ -69,8 +69,9 @@ def command(
         if junit:
             refuse(junit)
         supervise_models(models, report)
-        with progress("verifying"):
-            verdicts = verify(models, settings)
+        steps = [""]
+        with progress(lambda: f"verifying {steps[-1]}; robots with very many states take minutes"):
+            verdicts = verify(models, settings, steps.append)
     if junit:
         interruption.check()
         write_file(junit, as_junit(models.sct, verdicts, model))

@@ -104,6 +104,6 @@ def _started(name: str, graph: rosgraph.RosGraph, *, shows: bool) -> str:
         ("calls", [client.identifier for client in graph.serviceClients]),
         ("starts", [client.identifier for client in graph.actionClients]),
     )
-    connected = "; ".join(f"{verb} {', '.join(names)}" for verb, names in parts if names)
+    connected = "; ".join(f"{verb} {', '.join(dict.fromkeys(names))}" for verb, names in parts if names)
     look = " `robosc view` shows it decide." if shows else ""
     return f"{name} runs{f': {connected}' if connected else ''}.{look} Ctrl-C ends it."

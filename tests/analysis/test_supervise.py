@@ -1,8 +1,36 @@
 """A supervisor becomes the model's own, unless something of it is missing."""
 
-from robosc.analysis.supervise import supervise
+from pathlib import Path
+
+import pytest
+
+import robosc
+from robosc.analysis.supervise import EmptySupervisorError, supervise
 from robosc.diagnostics import has_errors
 from tests.synthesis.classics import philosophers
+
+LIBRARY = """\
+library StopLibrary {
+  component Stop {
+    outgoing message pressed with identifier: "/pressed", type: none
+
+    behaviour {
+      initial marked state released { on response from pressed goto pressed }
+      state pressed {}
+    }
+  }
+}
+"""
+ROBOT = """\
+robot Robot {
+  component Stop from StopLibrary import Stop
+  component Base {
+    incoming message move with identifier: "/move", type: none
+  }
+
+  REQUIREMENT
+}
+"""
 
 
 def test_a_supervisor_without_all_its_guards_is_nobodys() -> None:
@@ -14,3 +42,15 @@ def test_a_supervisor_without_all_its_guards_is_nobodys() -> None:
     assert supervision.synthesis.unwritten
     assert not has_errors(supervision.findings)
     assert short.supervisor is None
+
+
+def test_an_empty_supervisor_is_reported_in_the_robots_own_file(tmp_path: Path) -> None:
+    """The event at fault is that of a library: the finding stands at the requirement."""
+    (tmp_path / "StopLibrary.rscd").write_text(LIBRARY)
+    text = ROBOT.replace("REQUIREMENT", "requirement R: never Stop.pressed")
+    robot = robosc.load(str(tmp_path / "robot.rscd"), text=text)
+    with pytest.raises(EmptySupervisorError) as error:
+        supervise(robosc.to_sct(robot))
+    [finding] = error.value.diagnostics
+    line = text.splitlines().index("  requirement R: never Stop.pressed") + 1
+    assert (Path(finding.file).name, finding.span.line) == ("robot.rscd", line)

@@ -243,3 +243,15 @@ def test_a_saved_model_is_explained_as_its_text_is(run: Run) -> None:
     assert run("transform", "tank.rscd", "--to", "xmi", "-o", "saved").exit_code == 0
     arguments = ("--event", "refill", "--state", "Valve=open")
     assert run("explain", "saved/Tank.sct.xmi", *arguments).stdout == run("explain", "tank.rscd", *arguments).stdout
+
+
+def test_idle_services_stand_in_one_line(run: Run, tmp_path: Path) -> None:
+    services = "".join(
+        f'    service {name} with identifier: "/{name}", request: none, response: none\n' for name in ("load", "drop")
+    )
+    (tmp_path / "arm.rscd").write_text(
+        f"robot Arm {{\n  component Arm {{\n{services}\n    behaviour {{\n      "
+        "initial marked state up { on request to load goto low }\n      marked state low {}\n    }\n  }\n}\n"
+    )
+    shown = run("explain", "arm.rscd", "--event", "drop").stdout
+    assert "  `Arm` is in `up`\n  `Arm.load` and `Arm.drop` are in `idle`\n" in shown

@@ -28,6 +28,8 @@ _BY = {
     Blocked.REQUIREMENT: "its requirements forbid it",
     Blocked.SYNTHESIS: "no requirement forbids it, but synthesis does, because of what could follow",
 }
+#: The plants of what components send, call and start.
+_COMMUNICATIONS = {sct.PlantKind.message, sct.PlantKind.service, sct.PlantKind.action}
 #: Of a supervisor of another tool.
 NEEDLESS = "only this supervisor forbids it, neither the robot nor a requirement, nor would synthesis"
 _ELSE = "Without requirements it would, after"
@@ -88,14 +90,24 @@ class Renderer:
         yield from self._state(situation)
 
     def _state(self, situation: Situation) -> Iterator[str]:
+        """The state: first components and requirement automata, then services and actions; idle ones in one line."""
+        others, idle = [], []
         for plant in self._model.plants:
             if plant.kind == sct.PlantKind.data:
                 continue
             elements: list[Element] = [plant] if len(plant.locations) > 1 else []
             elements += plant.variables
-            if elements:
-                values = [what_is(element, value(element, situation.codes[element])) for element in elements]
-                yield f"  {listed(values)}"
+            values = [what_is(element, value(element, situation.codes[element])) for element in elements]
+            if plant.kind not in _COMMUNICATIONS:
+                yield from [f"  {listed(values)}"] if values else []
+            elif elements == [plant] and plant.locations[situation.codes[plant]].initial:
+                idle.append((str(plant.locations[situation.codes[plant]].name), f"`{name(plant)}`"))
+            elif values:
+                others.append(f"  {listed(values)}")
+        yield from others
+        for location in dict.fromkeys(location for location, _ in idle):
+            names = [plant for where, plant in idle if where == location]
+            yield f"  {listed(names)} {'is' if len(names) == 1 else 'are'} in `{location}`"
 
     def _refused(self, refusal: Explanation | None) -> Iterator[str]:
         if refusal is None:

@@ -14,7 +14,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.system import GuardedSystem
-from robosc.analysis.verify import c_validation, cif_validation
+from robosc.analysis.verify import c_validation, cif_validation, controller_reading, model_reading
 from robosc.analysis.verify.c_exploration import Effort
 from robosc.analysis.verify.c_validation import validate_c, validate_generated_c, validate_loop
 from robosc.analysis.verify.cif_validation import validate_cif
@@ -51,16 +51,25 @@ __all__ = [
 ]
 
 
-def verify(models: Models, configuration: Configuration) -> list[Verdict]:
-    """Examines a supervised model, and gives a verdict for each property.
+def verify(
+    models: Models, configuration: Configuration, begin: Callable[[str], None] = lambda _: None
+) -> list[Verdict]:
+    """Examine a supervised model, and give a verdict for each property.
+
+    `begin` is called with the name of each step before it.
 
     Examined are the model's properties (`verify_system`), its plants and its controller against the robot's text
     (skipped where `models.robosc` is None), and the C and CIF that are generated with this configuration (`validate`).
     Raises ValueError without a supervisor, MemoryError where decision diagrams take more than 4 GB.
     """
+    begin(model_reading.PROPERTY)
     read = timed(validate_model, models.robosc, models.sct)
+    begin(controller_reading.PROPERTY)
     controllers = [] if is_from_cif(models.sct) else [timed(validate_controller, models)]
-    return [*verify_system(models.sct), read, *controllers, *validate(models, configuration)]
+    begin("properties")
+    system = verify_system(models.sct)
+    begin("generated C and CIF")
+    return [*system, read, *controllers, *validate(models, configuration)]
 
 
 def verify_system(model: sct.SupervisoryControlModel, *, memory: int = MEMORY) -> list[Verdict]:
