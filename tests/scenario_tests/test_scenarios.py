@@ -178,5 +178,5 @@ def test_a_generated_loop_that_differs_is_told(monkeypatch: pytest.MonkeyPatch) 
     generate = robosc.generate
     monkeypatch.setattr(robosc, "generate", forgetful)
     [(line, _, message)] = findings(GOOD, "--engine", "c")
-    assert GOOD.splitlines()[line - 1].strip() == "wait 0.2 s"
+    assert GOOD.splitlines()[line - 1].strip() == "canceled from dock"
     assert message.startswith("in the control loop of the generated C")
