@@ -1,6 +1,7 @@
-// Countdowns whose expiry is in the queue of an events executor when they are started again, or stopped.
+// Countdowns whose expiry waits in an executor when they are started again, or stopped.
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <thread>
 
 #include <rclcpp/experimental/executors/events_executor/events_executor.hpp>
@@ -22,17 +23,21 @@ int main(int argc, char** argv) {
   robosc::Countdown ended(*node, guard, 50ms, [&] { ++stopped; });
   rclcpp::experimental::executors::EventsExecutor executor;
   executor.add_node(node);
-  int rounds = 0;
-  const auto busy = node->create_wall_timer(300ms, [&] {
-    if (++rounds > 5) return executor.cancel();
-    restarted.start();
-    ended.start();
-    std::this_thread::sleep_for(100ms);  // both are up, and wait in the queue
-    start = std::chrono::steady_clock::now();
-    restarted.start();
-    ended.stop();
-  });
-  executor.spin();
+  std::thread spinning([&] { executor.spin(); });
+  for (int round = 0; round < 5; ++round) {
+    {
+      const auto busy = guard.hold();  // no callback runs
+      restarted.start();
+      ended.start();
+      std::this_thread::sleep_for(200ms);  // both are up, and wait
+      start = std::chrono::steady_clock::now();
+      restarted.start();
+      ended.stop();
+    }
+    std::this_thread::sleep_for(500ms);
+  }
+  executor.cancel();
+  spinning.join();
   std::printf("early %d, in time %d, stopped %d\n", early, late, stopped);
   rclcpp::shutdown();
 }
