@@ -23,7 +23,15 @@ class RunningGoal:
     handlers: GoalHandlers
 
     def cancel(self) -> None:
-        """Accept the request; the goal has not ended."""
+        """Take the request; the goal has not ended."""
+
+    def is_canceling(self) -> bool:
+        """Return False: an end that is played is the end."""
+        return False
+
+    def is_gone(self) -> bool:
+        """Return False: the robot stays."""
+        return False
 
 
 class Robot:

@@ -283,7 +283,7 @@ class Tour(Drive):
         return unreadable[1]
 
     def _end_canceled(self, client: rosgraph.ActionClient) -> None:
-        self._robot.goals.pop(client).handlers.ended(Outcome.CANCELLED, None, "")
+        self._robot.goals.pop(client).handlers.ended(Outcome.CANCELED, None, "")
 
     def _message(self, kind: Incoming, found: Class) -> tuple[Any, dict[str, Any]]:
         """Data of a class that came in least often until now."""

@@ -119,7 +119,7 @@ class Player(Drive):
             self._acts[action.feedback.event] = (action.feedback.event, self._fed_back(action))
             self._acts[action.response.event] = (action.response.event, self._ended(action, Outcome.SUCCEEDED))
             self._acts[action.error.event] = (action.response.event, self._ended(action, Outcome.ABORTED))
-            self._acts[action.canceled.event] = (action.response.event, self._ended(action, Outcome.CANCELLED))
+            self._acts[action.canceled.event] = (action.response.event, self._ended(action, Outcome.CANCELED))
 
     @property
     def trace(self) -> list[str]:

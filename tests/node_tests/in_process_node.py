@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from robosc.ros_types import RosDistribution
     from robosc.runtime.core.port import CallHandlers, GoalHandlers
 
-_OUTCOMES = {"succeeded": Outcome.SUCCEEDED, "aborted": Outcome.ABORTED, "canceled": Outcome.CANCELLED}
+_OUTCOMES = {"succeeded": Outcome.SUCCEEDED, "aborted": Outcome.ABORTED, "canceled": Outcome.CANCELED}
 
 
 class _Goal(RunningGoal):

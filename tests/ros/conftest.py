@@ -34,6 +34,7 @@ RUNS = (
     "simulated",
     "graph",
     "model_workspace",
+    "base",
 )
 KINDS = ("nodes", "controller", "kind", "name")
 SIMULATOR = HERE.parents[1] / "examples" / "simulator"

@@ -201,6 +201,33 @@ def test_a_managed_node_that_fails_is_still_and_can_be_configured_again(graph: G
     assert graph.processes.stop(node) == 0
 
 
+def test_a_managed_node_is_not_activated_while_a_goal_of_its_own_has_not_ended(graph: Graph) -> None:
+    """Nor cleaned up: it would forget the goal."""
+    server = Peer(graph.processes, graph.workspace.ros.python, 2, "server")
+    server.do("accept_at_once", accept=True)
+    server.do("on_cancel", answer="refuse")
+    server.do("act", name="/navigate", kind="nav2_msgs/NavigateToPose")
+    graph.world.do("advertise", topic="/wanted", kind="std_msgs/Bool")
+    node, log = graph.start("managed_carrier", "carrier")
+    change = partial(graph.change, "/carrier")
+    assert change(CONFIGURE, ACTIVATE) == [True, True]
+    graph.processes.wait_until(lambda: graph.world.do("listeners", topic="/wanted") > 0, "the node listens")
+    graph.world.do("publish", topic="/wanted", fields={"data": True})
+    number = server.wait("goal")["goal"]
+    server.do("progress", number=number, fields={})
+    graph.processes.wait_until(lambda: bool(log_of(log, "action_navigate.u_feedback")), "the goal is accepted")
+    assert change(DEACTIVATE) == [True]
+    server.wait("cancel", value=number)
+    assert change(ACTIVATE, CLEAN_UP) == [False, False]
+    output = (graph.folder / "carrier.log").read_text()
+    assert "not activated: a goal of this node has not ended" in output
+    assert "not cleaned up: a goal of this node has not ended" in output
+    server.do("end", number=number, how="succeeded")
+    graph.processes.wait_until(lambda: bool(log_of(log, "action_navigate.u_response")), "the goal has ended")
+    assert change(ACTIVATE) == [True]
+    assert graph.processes.stop(node) == 0
+
+
 def test_a_managed_node_that_is_not_active_ends_without_a_word(graph: Graph) -> None:
     node, log = graph.start("managed_porter", "porter_at_rest")
     assert graph.manage("change", "/porter_at_rest", CONFIGURE)

@@ -420,9 +420,10 @@ class Trial:
             self.step("cancelled by the controller before there is a server")
         self.robot.deciding.clear()
         self.ask("go_to", 10.0)
-        self.ended()
+        self.ros.receive(3.0)
         self.robot.deciding.set()
         self.got("cancel", True)
+        self.ended()
         self.step("accepted too late")
         self.robot.deaf = True
         self.start(11.0)

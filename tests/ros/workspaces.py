@@ -82,6 +82,8 @@ def _packages(target: str) -> list[Package]:
             "porter_controller", CPP / "porter.rscd", target, CPP / "porter-config.json", with_tests=True, typed=True
         ),
         Package("scout_controller", HERE / "faults" / "scout.rscd", target),
+        Package("carrier_controller", HERE / "ends" / "carrier.rscd", target),
+        Package("carrier_layer", HERE / "ends" / "carrier.rscd", f"{target}-layer"),
         Package("cruise_controller", HERE.parent / "runtime" / "cruise.rscd", target),
         Package("patience_controller", HERE / "times" / "patience.rscd", target),
         Package("keeper_controller", HERE / "kept" / "keeper.rscd", target),
@@ -113,6 +115,8 @@ ROS1_PACKAGES = [
 ]
 ROS2_PACKAGES = [
     *_packages("ros2"),
+    Package("careless_controller", HERE / "ends" / "careless.rscd", "ros2"),
+    Package("managed_carrier", HERE / "ends" / "carrier.rscd", "ros2", HERE / "ends" / "managed-config.json"),
     Package("managed_porter", CPP / "porter.rscd", "ros2", CPP / "managed-porter-config.json", with_tests=True),
     Package("managed_watch", MANAGED / "watch.rscd", "ros2", MANAGED / "controller-config.json"),
 ]

@@ -54,9 +54,18 @@ class FakeGoal:
     handlers: GoalHandlers
     data: Record | None = None
     cancels: int = 0
+    #: Whether the server says that it is canceling the goal.
+    canceling: bool = False
+    served: Callable[[], bool] = lambda: True
 
     def cancel(self) -> None:
         self.cancels += 1
+
+    def is_canceling(self) -> bool:
+        return self.canceling
+
+    def is_gone(self) -> bool:
+        return not self.served()
 
 
 @dataclass
@@ -111,7 +120,7 @@ class FakePort:
         self.calls.append(handlers)
 
     def send_goal(self, client: object, goal: Record, handlers: GoalHandlers) -> FakeGoal:
-        self.goals.append(FakeGoal(handlers, goal))
+        self.goals.append(FakeGoal(handlers, goal, served=lambda: self.served))
         return self.goals[-1]
 
     def publish_report(self, name: str, text: str) -> None:

@@ -15,7 +15,7 @@ from jsonschema import Draft202012Validator
 
 from robosc.configuration import NO_STOP, NO_STOP_ON_SILENCE, Configuration
 from robosc.files.resources import locate
-from robosc.runtime.core.port import Endpoint, Outcome
+from robosc.runtime.core.port import CancelAnswer, Endpoint, Outcome
 from tests.runtime.fake import Record, World
 from tests.searching import examples
 
@@ -27,6 +27,10 @@ COURIER = TESTS / "m2t" / "cpp" / "courier.rscd"
 SCOUT = TESTS / "ros" / "faults" / "scout.rscd"
 LINE = TESTS.parent / "examples" / "line_follower" / "line_follower.rscd"
 MAZE = TESTS.parent / "examples" / "maze_solver" / "maze_solver.rscd"
+
+UNANSWERED = "the server does not answer the request to cancel the goal within 5000 ms"
+#: A goal that is reached while it is being canceled.
+ENDS = ("c_trigger", "c_cancel", "u_feedback", "u_response", "c_reset")
 
 
 @pytest.fixture
@@ -218,19 +222,32 @@ def test_stopping_cancels_goals_then_sends_the_last_messages_and_nothing_more(ma
     assert world.port.goals[0].cancels == 1
     assert len(world.port.sent) == count + 1
     assert world.controller.busy
-    world.port.goals[0].handlers.ended(Outcome.CANCELLED, None, "")
+    world.port.goals[0].handlers.ended(Outcome.CANCELED, None, "")
     world.wait(2)
     assert not world.controller.busy
     assert len(world.port.sent) == count + 1
     assert [line["event"] for line in events(world) if line["direction"] == "outside"] == ["message_halt.c_trigger"]
 
 
-@pytest.mark.parametrize(("accepted", "ended"), [(True, 4.5), (False, 5.5)])
-def test_the_end_waits_for_the_answer_to_a_goal_and_cancels_it(
-    make: Callable[..., World], monkeypatch: pytest.MonkeyPatch, accepted: bool, ended: float
+@pytest.mark.parametrize(
+    ("case", "report"),
+    [
+        ((4.0, 6.0, 6.5), "the goal has not ended when this node ends: the server cancels the goal"),
+        ((4.0, None, 9.0), f"the goal has not ended when this node ends: {UNANSWERED}"),
+        ((None, None, 5.0), "the goal may still begin when this node ends: not accepted within 5000 ms"),
+    ],
+)
+def test_the_end_waits_for_acceptance_then_for_the_answer_to_the_cancel_then_a_little_for_the_end(
+    make: Callable[..., World],
+    monkeypatch: pytest.MonkeyPatch,
+    case: tuple[float | None, float | None, float],
+    report: str,
 ) -> None:
+    accepts, cancels, seconds = case
     world = make()
-    monkeypatch.setattr("robosc.runtime.core.controller.time", SimpleNamespace(monotonic=lambda: world.port.time))
+    for module in ("clients", "cancel_requests"):
+        steady = SimpleNamespace(monotonic=lambda: world.port.time)
+        monkeypatch.setattr(f"robosc.runtime.core.{module}.time", steady)
     world.port.types = {}
     world.hear("scan", ranges=[3.0, 0.3])
     world.hear("travel_order", data=True)
@@ -239,13 +256,55 @@ def test_the_end_waits_for_the_answer_to_a_goal_and_cancels_it(
     start = world.port.time
     world.controller.stop()
     while world.controller.busy:
-        if accepted and world.port.time >= start + 4.0:
+        if world.port.time - start == accepts:
             goal.handlers.accepted()
+        if world.port.time - start == cancels:
+            goal.handlers.cancel_answered(CancelAnswer.ACCEPTED)
         world.wait(0.125)
-    assert world.port.time - start == pytest.approx(ended, abs=0.2)
-    assert goal.cancels == accepted
+    assert world.port.time - start == pytest.approx(seconds, abs=0.3)
     world.controller.close()
+    assert world.port.said[-1] == f"/travel: {report}"
+    assert goal.cancels >= 1
+
+
+def test_a_refused_goal_is_canceling_and_the_diagnostics_warn(make: Callable[..., World]) -> None:
+    """No other goal is sent before it has ended, whatever is ordered; its feedback and its success happen."""
+
+    def message() -> str:
+        return next(status.message for status in world.port.statuses[-1] if status.component == "Navigator")
+
+    world = make(diagnosticsMs=100)
+    travelling(world)
+    (goal,) = world.port.goals
+    world.hear("travel_order", data=False)
     assert goal.cancels == 1
+    goal.handlers.cancel_answered(CancelAnswer.REFUSED)
+    world.wait(0.3)
+    assert message().endswith("; /travel: the server refuses to cancel the goal")
+    world.wait(0.3)
+    assert goal.cancels == 2, "after retryMs"
+    goal.handlers.cancel_answered(CancelAnswer.ACCEPTED)
+    world.hear("travel_order", data=True)
+    goal.handlers.feedback(Record(distance_remaining=1.5, number_of_recoveries=0))
+    world.wait(20)
+    assert (message().count(";"), len(world.port.goals), goal.cancels) == (0, 1, 2)
+    goal.handlers.ended(Outcome.SUCCEEDED, Record(), "")
+    world.wait(0.2)
+    told = [line["event"] for line in events(world) if line["event"].startswith("action_travel")]
+    assert told == [f"action_travel.{event}" for event in ENDS]
+
+
+def test_a_goal_that_the_node_itself_cancels_is_canceled_by_the_plant(make: Callable[..., World]) -> None:
+    """In `executing` its end is an error, in `canceling` it is `canceled`."""
+    world = make(watchdogMs={"scan": 500}, watchdogStops=True)
+    travelling(world)
+    world.wait(1)
+    assert world.port.goals[0].cancels == 1
+    world.port.goals[0].handlers.ended(Outcome.CANCELED, None, "")
+    world.wait(0.1)
+    names = [line["event"] for line in events(world)]
+    assert ("action_travel.u_error" in names) != ("action_travel.u_canceled" in names)
+    assert ("action_travel.c_cancel" in names) == ("action_travel.u_canceled" in names)
 
 
 def test_wiring_is_reported_by_name_and_once(make: Callable[..., World]) -> None:

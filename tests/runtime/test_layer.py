@@ -14,6 +14,7 @@ from robosc.configuration.parameters import layer_parameters
 from robosc.files.resources import locate
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.layer import Layer
+from robosc.runtime.core.port import Failure
 from robosc.runtime.core.settings import SafeMessages, Settings
 from robosc.semantics.messages import message_named
 from tests.runtime.fake import FakePort, Record, supervised
@@ -45,11 +46,15 @@ class Bench:
         (self.action,) = self.graph.actionClients
         (self.service,) = self.graph.serviceClients
         self.cancelled = 0
-        self.layer.cancels[self.action.cancel] = self._cancel
+        self.trouble, self.waits = "", False
+        self.layer.goals[self.action.cancel] = self
         self.layer.start()
 
-    def _cancel(self) -> None:
+    def cancel(self) -> None:
         self.cancelled += 1
+
+    def leave(self) -> None:
+        self.left = True
 
     def hear(self, topic: str, **fields: Any) -> None:
         subscription = next(known for known in self.graph.subscriptions if known.topic == topic)
@@ -121,15 +126,23 @@ def test_a_canceled_goal_has_ended_when_the_robot_says_so(bench: Bench) -> None:
     assert bench.passes("go_to")
     bench.hear("/stop")
     assert not bench.passes("go_to"), "it has not ended"
-    bench.layer.cancel_ended(bench.action)
+    bench.layer.end_canceled(bench.action, Failure.CANCELED, "canceled")
     assert bench.directions()[-1] == ("in", "action_go_to.u_canceled")
+    assert bench.port.said[-1].startswith("Navigation.go_to is blocked"), "a cancel of its own is no failure"
+
+
+def test_a_goal_that_someone_else_has_canceled_is_an_error(bench: Bench) -> None:
+    assert bench.passes("go_to")
+    bench.layer.end_canceled(bench.action, Failure.CANCELED, "canceled")
+    assert ("in", "action_go_to.u_error") in bench.directions()
+    assert bench.port.said == ["/go_to: canceled"]
 
 
 def test_answers_and_failures_move_the_supervisor_and_it_settles(bench: Bench) -> None:
     assert bench.passes("light")
     bench.layer.respond(bench.service, Record(success=True))
     assert bench.passes("light"), "the reset has run"
-    bench.layer.fail(bench.service, "no server within 5000 ms")
+    bench.layer.fail(bench.service, Failure.UNAVAILABLE, "no server within 5000 ms")
     assert bench.passes("light")
     assert bench.port.said == ["/lamp/light: no server within 5000 ms"]
     told = [line for line in bench.directions() if line[1].startswith("service")]

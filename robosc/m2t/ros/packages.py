@@ -68,6 +68,7 @@ _HEADERS = {
     "robosc_ros{ros}/run_layer": {"layer", "ros1"},
     "robosc_ros{ros}/service_client": {"controller", "services"},
     "robosc_ros{ros}/service_proxy": {"layer", "services"},
+    "robosc_ros{ros}/shutdown_hook": {"layer", "actions", "ros2"},
     "robosc_ros{ros}/unit_quaternions": {"composes", "defaults", "ros1"},
 }
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from robosc.runtime.core.port import CallHandlers, GoalHandlers, Outcome
+from robosc.runtime.core.cancel_requests import CANCELING, FAREWELL, CancelRequests, GoalTimes
+from robosc.runtime.core.port import CallHandlers, CancelAnswer, Failure, GoalHandlers, Outcome
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -17,23 +19,24 @@ if TYPE_CHECKING:
 
 #: Seconds from one look for a server to the next.
 POLL = 0.05
-#: Seconds after its time for acceptance is over in which a goal may still begin; then it counts as lost.
+#: Seconds without a word of a goal that was not accepted in time, after which it counts as lost.
 LOST = 30.0
-REFUSED = "the server refuses to cancel the goal"
 LOST_RESULT = "the goal has ended, but its result did not come"
+UNKNOWN_GOAL = "the server does not know the goal"
 
 
 @dataclass(frozen=True)
 class Answers:
-    """What a client calls, never before what was asked of it returns. `error` gets the reason.
+    """What a client calls, never before what was asked of it returns: any number of `feedback`, then one of the others.
 
-    Of an action: any number of `feedback`, then one of the others; `ended`: the goal that was cancelled is over.
+    `error` gets the reason, a text, and the result that came with the end of a goal, None where none came. `canceled`
+    gets the same, with the reason that counts where the model did not cancel the goal.
     """
 
     response: Callable[[Message], None]
-    error: Callable[[str], None]
+    error: Callable[[Failure, str, Message], None]
     feedback: Callable[[Message], None] = lambda _: None
-    ended: Callable[[], None] = lambda: None
+    canceled: Callable[[Failure, str, Message], None] = lambda *_: None
 
 
 class ServiceClient:
@@ -52,7 +55,7 @@ class ServiceClient:
         self._answers = answers
         self._number = 0
         self._deadline: Timer | None = None
-        self._unanswered = ""
+        self._missing = (Failure.UNAVAILABLE, "no server")
 
     @property
     def waiting(self) -> bool:
@@ -63,11 +66,8 @@ class ServiceClient:
         """Calls the service; a call that is still under way is given up."""
         self.give_up()
         number = self._number
-        self._unanswered = "no server"
-        within = f"within {round(self._timeout * 1000)} ms"
-        self._deadline = self._event_loop.call_later(
-            self._timeout, lambda: self._fail(number, f"{self._unanswered} {within}")
-        )
+        self._missing = (Failure.UNAVAILABLE, "no server")
+        self._deadline = self._event_loop.call_later(self._timeout, lambda: self._expire(number))
         self._poll(number, request)
 
     def _poll(self, number: int, request: Message) -> None:
@@ -77,11 +77,11 @@ class ServiceClient:
         if not self._port.is_served(self._client):
             self._event_loop.call_later(POLL, lambda: self._poll(number, request))
             return
-        self._unanswered = "no answer"
+        self._missing = (Failure.TIMEOUT, "no answer")
         handlers = CallHandlers(
             lambda response: self._event_loop.post(lambda: self._succeed(number, response)),
             lambda why: self._event_loop.post(
-                lambda: self._fail(number, f"the call failed: {why}" if why else "the call failed")
+                lambda: self._fail(number, Failure.FAILED, f"the call failed: {why}" if why else "the call failed")
             ),
         )
         try:
@@ -101,10 +101,14 @@ class ServiceClient:
             self.give_up()
             self._answers.response(response)
 
-    def _fail(self, number: int, why: str) -> None:
+    def _expire(self, number: int) -> None:
+        reason, missing = self._missing
+        self._fail(number, reason, f"{missing} within {round(self._timeout * 1000)} ms")
+
+    def _fail(self, number: int, reason: Failure, why: str) -> None:
         if number == self._number and self.waiting:
             self.give_up()
-            self._answers.error(why)
+            self._answers.error(reason, why, None)
 
 
 class _Phase(Enum):
@@ -116,80 +120,99 @@ class _Phase(Enum):
 
 
 class ActionClient:
-    """A client of one action, with one goal at a time.
-
-    `timeout`, in seconds, bounds the search for a server together with the wait for acceptance, never the goal's work.
-    """
+    """A client of one action, with one goal at a time. Each goal comes to one end, which is told once it is known."""
 
     def __init__(
         self,
         port: ControllerPort,
         event_loop: EventLoop,
         client: rosgraph.ActionClient,
-        timeout: float,
+        times: GoalTimes,
         answers: Answers,
     ) -> None:
         self._port = port
         self._event_loop = event_loop
         self._client = client
-        self._timeout = timeout
+        self._times = times
         self._answers = answers
         self._number = 0
         self._phase = _Phase.IDLE
         self._goal: Goal | None = None
         self._lost: dict[int, Goal] = {}
-        self._cancelling = False
-        self._asked = False
+        self._canceling = self._late = False
+        self._requests = self._new_requests()
         self._deadline: Timer | None = None
         self._until = 0.0
 
+    def _new_requests(self) -> CancelRequests:
+        return CancelRequests(self._event_loop, self._times, self._send_cancel, self._warn)
+
+    def _send_cancel(self) -> None:
+        assert self._goal is not None
+        self._goal.cancel()
+
+    def _warn(self, text: str) -> None:
+        self._port.warn(f"{self._client.identifier}: {text}")
+
     @property
     def busy(self) -> bool:
-        """Whether there is a goal that has not ended yet; until then no other may start."""
+        """Whether there is a goal whose end is not known."""
         return self._phase is not _Phase.IDLE
 
     @property
-    def unanswered(self) -> float:
-        """Seconds that are left for the goal to be accepted or rejected; 0 where none was sent."""
-        left = self._until - self._event_loop.clock() if self._phase is _Phase.SENT else 0.0
-        return min(max(0.0, left), self._timeout)
+    def trouble(self) -> str:
+        """Why the goal has not ended though it should have; empty where nothing is wrong."""
+        return self._not_accepted if self._late and self._phase is _Phase.SENT else self._requests.trouble
+
+    @property
+    def waits(self) -> bool:
+        """Whether the end of the node waits: for the goal's acceptance, for the answer to a cancel, for its end."""
+        if self._phase is _Phase.ACCEPTED:
+            return self._requests.waits
+        return self.busy and time.monotonic() < self._until
+
+    @property
+    def _not_accepted(self) -> str:
+        return f"not accepted {self._times.within}"
 
     def start(self, goal: Message) -> None:
-        """Sends a goal as soon as there is a server. A goal that has not ended is given up."""
-        self.give_up()
+        """Sends a goal as soon as there is a server. No other goal may be under way."""
+        assert not self.busy
         self._phase = _Phase.LOOKING
-        self._until = self._event_loop.clock() + self._timeout
+        self._until = time.monotonic() + self._times.timeout
         self._set_deadline(self._expire)
         self._poll(self._number, goal)
 
-    def cancel(self, *, expected: bool = True) -> None:
-        """Cancels the goal, where it was not accepted yet as soon as it is.
-
-        `expected`: the model knows of it, and `ended` follows; else the end of the goal is an error to the model.
-        """
-        if not self.busy or self._asked:
+    def cancel(self) -> None:
+        """Cancels the goal, where it was not accepted yet as soon as it is."""
+        if not self.busy:
             return
-        self._asked, self._cancelling = True, expected
-        number = self._number
+        self._canceling = True
         if self._phase is _Phase.LOOKING:
-            self._event_loop.post(lambda: self._if_current(number, lambda: self._end(_OWN)))
+            number, why = self._number, "canceled before it was sent"
+            end = lambda: self._end_canceled(why, None)  # noqa: E731
+            self._event_loop.post(lambda: self._if_current(number, end))
         elif self._phase is _Phase.ACCEPTED:
-            self._ask_to_cancel()
+            self._requests.ask()
+            self._requests.extend()
 
-    def give_up(self) -> None:
-        """Abandons the goal: what comes of it is dropped; a server that has it, or may have it, is asked to cancel."""
-        unasked = self._phase is _Phase.ACCEPTED and not self._asked
-        if (unasked or self._phase is _Phase.SENT) and self._goal is not None:
+    def leave(self) -> None:
+        """Abandons the goal as the node ends, and reports what becomes of it."""
+        if self._phase in (_Phase.SENT, _Phase.ACCEPTED):
+            running = "the goal may still begin" if self._phase is _Phase.SENT else "the goal has not ended"
+            why = CANCELING if self._requests.accepted else self.trouble or "the server has not answered"
+            self._warn(f"{running} when this node ends: {why}")
+        if self._goal is not None and not self._requests.sent and self._phase is not _Phase.OVER:
             self._goal.cancel()
         self._reset()
 
     def _reset(self) -> None:
-        if self._phase is _Phase.SENT and self._goal is not None:
-            self._lost[self._number] = self._goal  # should it be accepted after all, it is cancelled
         self._number += 1
         self._phase = _Phase.IDLE
         self._goal = None
-        self._cancelling = self._asked = False
+        self._canceling = self._late = False
+        self._requests.stop()
+        self._requests = self._new_requests()
         self._set_deadline(None)
 
     def _set_deadline(self, action: Callable[[], None] | None, seconds: float | None = None) -> None:
@@ -197,7 +220,7 @@ class ActionClient:
             self._deadline.cancel()
             self._deadline = None
         if action is not None:
-            self._deadline = self._event_loop.call_later(self._timeout if seconds is None else seconds, action)
+            self._deadline = self._event_loop.call_later(self._times.timeout if seconds is None else seconds, action)
 
     def _is_current(self, number: int) -> bool:
         return number == self._number and self.busy
@@ -206,99 +229,128 @@ class ActionClient:
         """Sends the goal as soon as there is a server; then watches that it stays."""
         if not self._is_current(number):
             return
-        served = self._port.is_served(self._client)
-        if self._phase is _Phase.LOOKING and served and not self._asked:
-            self._phase = _Phase.SENT
-            try:
-                self._goal = self._port.send_goal(self._client, goal, self._handlers(number))
-            except Exception as error:  # whatever the middleware raises is a goal that was not sent
-                why = f"the goal can't be sent: {error}"
-                self._event_loop.post(lambda: self._if_current(number, lambda: self._end(why)))
-        elif self._phase is not _Phase.LOOKING and not served:
-            self._end("the server is gone")
+        if self._phase is _Phase.LOOKING:
+            if not self._canceling and self._port.is_served(self._client):
+                self._send(number, goal)
+        elif self._goal is not None and self._goal.is_gone():
+            self._lose("the server is gone")
             return
         self._event_loop.call_later(POLL, lambda: self._poll(number, goal))
+
+    def _send(self, number: int, goal: Message) -> None:
+        self._phase = _Phase.SENT
+        try:
+            self._goal = self._port.send_goal(self._client, goal, self._handlers(number))
+        except Exception as error:  # whatever the middleware raises is a goal that was not sent
+            why = f"the goal can't be sent: {error}"
+            fail = lambda: self._fail(Failure.UNAVAILABLE, why)  # noqa: E731
+            self._event_loop.post(lambda: self._if_current(number, fail))
 
     def _handlers(self, number: int) -> GoalHandlers:
         def later(action: Callable[[], None]) -> None:
             self._event_loop.post(lambda: self._if_current(number, action))
 
+        def last(action: Callable[[], None]) -> None:
+            self._event_loop.post(lambda: self._if_current(number, action, over=True))
+
         return GoalHandlers(
-            accepted=lambda: self._event_loop.post(lambda: self._accepted(number)),
-            rejected=lambda: later(lambda: self._end("rejected")),
+            accepted=lambda: later(self._accept),
+            rejected=lambda: last(lambda: self._fail(Failure.REJECTED, "rejected")),
             feedback=lambda feedback: later(lambda: self._feedback(feedback)),
             over=lambda: later(self._await_result),
-            ended=lambda outcome, result, text: later(lambda: self._finish(outcome, result, text)),
-            refused=lambda: later(self._refused),
+            ended=lambda outcome, result, text: last(lambda: self._finish(outcome, result, text)),
+            cancel_answered=lambda answer: later(lambda: self._cancel_answered(answer)),
         )
 
-    def _if_current(self, number: int, action: Callable[[], None]) -> None:
+    def _if_current(self, number: int, action: Callable[[], None], *, over: bool = False) -> None:
+        """Does something with the goal at hand; a goal that counted as lost is canceled, unless it is `over`."""
         if self._is_current(number):
             action()
-
-    def _accepted(self, number: int) -> None:
-        if self._is_current(number):
-            self._accept()
-        elif number in self._lost:
-            self._lost.pop(number).cancel()
+            return
+        lost = self._lost.pop(number, None)
+        if lost is not None and not over:
+            lost.cancel()
 
     def _accept(self) -> None:
         if self._phase is _Phase.SENT:
             self._phase = _Phase.ACCEPTED
             self._set_deadline(None)
-            if self._asked:
-                self._ask_to_cancel()
-
-    def _ask_to_cancel(self) -> None:
-        assert self._goal is not None
-        self._set_deadline(self._refused)
-        self._goal.cancel()
+            if self._canceling:
+                self._requests.ask()
 
     def _feedback(self, feedback: Message) -> None:
         self._accept()  # feedback may overtake the acceptance
         self._answers.feedback(feedback)
 
+    def _cancel_answered(self, answer: CancelAnswer) -> None:
+        if answer is CancelAnswer.ACCEPTED:
+            self._requests.accept()
+            self._accept()
+        elif self._phase is _Phase.ACCEPTED and not self._requests.accepted:
+            match answer:
+                case CancelAnswer.REFUSED:
+                    self._requests.refuse()
+                case CancelAnswer.TERMINATED:
+                    self._await_result()
+                case CancelAnswer.UNKNOWN:
+                    self._lose(UNKNOWN_GOAL)
+
     def _await_result(self) -> None:
         self._phase = _Phase.OVER
-        self._set_deadline(lambda: self._end(f"{LOST_RESULT} within {round(self._timeout * 1000)} ms"))
+        self._until = time.monotonic() + FAREWELL
+        self._requests.stop()
+        self._set_deadline(self._result_missing)
 
-    def _refused(self) -> None:
-        if self._phase is _Phase.OVER:
-            return
-        self._set_deadline(None)
-        self._port.warn(f"{self._client.identifier}: {REFUSED}")
+    def _result_missing(self) -> None:
+        if self._goal is not None and self._goal.is_canceling():
+            # Somebody else had it canceled before: a server calls that terminated, too.
+            self._phase = _Phase.ACCEPTED
+            self._requests = self._new_requests()
+            self._requests.accept()
+        else:
+            self._lose(f"{LOST_RESULT} {self._times.within}")
 
     def _expire(self) -> None:
-        within = f"within {round(self._timeout * 1000)} ms"
         if self._phase is _Phase.LOOKING:
-            self._end(f"no server {within}")
+            self._fail(Failure.UNAVAILABLE, f"no server {self._times.within}")
             return
-        # The server might still accept it: then it is cancelled. Until it is over, or lost, no other goal starts.
-        self._set_deadline(lambda: self._end("lost"), LOST)
-        if not self._cancelling:
-            self._asked = self._cancelling = True
-            self._answers.error(f"not accepted {within}")
+        # The server might still accept it: then it is canceled.
+        self._warn(self._not_accepted)
+        self._late = self._canceling = True
+        if self._goal is not None:
+            self._goal.cancel()  # it may have accepted it already
+        self._set_deadline(lambda: self._lose("neither accepted nor rejected"), LOST)
 
     def _finish(self, outcome: Outcome, result: Message, text: str) -> None:
         said = f": {text}" if text else ""
-        if outcome is Outcome.SUCCEEDED:
-            self._reset()
-            self._answers.response(result)
-            return
-        if self._cancelling and outcome is not Outcome.CANCELLED:
-            self._cancelling = False
-        own = outcome is Outcome.CANCELLED and self._asked
-        self._end(f"{_OWN if own else _UNASKED[outcome]}{said}")
+        match outcome:
+            case Outcome.SUCCEEDED:
+                self._reset()
+                self._answers.response(result)
+            case Outcome.CANCELED:
+                own = "canceled by the controller itself, an error to the model"
+                self._end_canceled(f"{own if self._canceling else 'canceled by someone else'}{said}", result)
+            case Outcome.ABORTED:
+                self._fail(Failure.ABORTED, f"aborted{said}", result)
+            case Outcome.LOST:
+                self._lose(f"the server has lost the goal{said}")
 
-    def _end(self, why: str) -> None:
-        cancelling = self._cancelling
+    def _end_canceled(self, why: str, result: Message) -> None:
+        late = self._late
         self._reset()
-        if cancelling:
-            self._answers.ended()
+        if late:
+            self._answers.canceled(Failure.TIMEOUT, "accepted too late, then canceled", result)
         else:
-            self._answers.error(why)
+            self._answers.canceled(Failure.CANCELED, why, result)
 
+    def _fail(self, reason: Failure, why: str, result: Message = None) -> None:
+        if self._late and reason is Failure.ABORTED:
+            reason, why = Failure.TIMEOUT, f"accepted too late, then {why}"
+        self._reset()
+        self._answers.error(reason, why, result)
 
-#: What a goal comes to that the node has cancelled without a cancel of the model's: it has stopped the robot.
-_OWN = "cancelled by the controller itself, an error to the model"
-_UNASKED = {Outcome.SUCCEEDED: "succeeded", Outcome.CANCELLED: "cancelled by someone else", Outcome.ABORTED: "aborted"}
+    def _lose(self, why: str) -> None:
+        """Nobody knows what becomes of the goal: should it be heard of again, it is canceled."""
+        if self._goal is not None:
+            self._lost[self._number] = self._goal
+        self._fail(Failure.LOST, why)

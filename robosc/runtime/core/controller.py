@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial, reduce
@@ -12,6 +11,7 @@ from robosc.configuration import NO_STOP, NO_STOP_ON_SILENCE
 from robosc.configuration.parameters import topic_words, watchdog
 from robosc.engine import Settings as LoopSettings
 from robosc.ros_types import Section
+from robosc.runtime.core.cancel_requests import GoalTimes
 from robosc.runtime.core.clients import ActionClient, Answers, ServiceClient
 from robosc.runtime.core.composing import Composer
 from robosc.runtime.core.event_handler import EventHandler
@@ -29,12 +29,9 @@ if TYPE_CHECKING:
     from robosc.metamodel import rosgraph, sct
     from robosc.runtime.core.event_loop import EventLoop, Timer
     from robosc.runtime.core.json_text import Json
-    from robosc.runtime.core.port import Client, ControllerPort, Message
+    from robosc.runtime.core.port import Client, ControllerPort, Failure, Message
     from robosc.runtime.core.settings import Settings
     from robosc.semantics.component_parts import Parts
-
-#: Seconds that the end of the node waits for goals which it has cancelled.
-_FAREWELL = 0.5
 
 
 @dataclass
@@ -46,7 +43,6 @@ class _Sender:
     section: Section
     frame: str
     send: Callable[[Message], None]
-    client: ActionClient | None = None
     message: Message = None
     logged: Mapping[str, Json] | None = None
     #: What was handed over last, as long as it could have been sent again; of what is sent on change.
@@ -97,12 +93,12 @@ class Controller(EventHandler):
         self._watchdogs: dict[rosgraph.Subscription, Watchdog] = {}
         self._watchdog_stops = bool(settings.parameters["watchdog_stops"])
         self._stopping = False
-        self._patience = self._farewell = 0.0
         self._senders: dict[sct.Event, _Sender] = {}
         self._on_change: list[_Sender] = []
         self._failures: dict[Client, _Failure] = {}
         self._resets: dict[sct.Event, _Failure] = {}
         self._cancels: dict[sct.Event, ActionClient] = {}
+        self._starters: dict[Client, ActionClient] = {}
         self._publishers = {sending: publisher for publisher in graph.publishers for sending in publisher.sendings}
         for publisher in graph.publishers:
             for sending in publisher.sendings:
@@ -112,13 +108,13 @@ class Controller(EventHandler):
             caller = ServiceClient(port, event_loop, service, timeout, answers)
             self._add_sender(service, service.identifier, service.request, Section.REQUEST, caller.call)
         for action in graph.actionClients:
-            answers = Answers(*self._ends(action), partial(self.feed_back, action), partial(self.cancel_ended, action))
-            starter = ActionClient(port, event_loop, action, settings.seconds("action_timeout_ms"), answers)
+            answers = Answers(*self._ends(action), partial(self.feed_back, action), partial(self.end_canceled, action))
+            times = GoalTimes(settings.seconds("action_timeout_ms"), settings.seconds("retry_ms"))
+            starter = ActionClient(port, event_loop, action, times, answers)
             self._add_sender(action, action.identifier, action.request, Section.GOAL, starter.start)
-            self._senders[action.request.event].client = starter
-            self._cancels[action.cancel] = starter
+            self._starters[action] = self._cancels[action.cancel] = starter
 
-    def _ends(self, client: Client) -> tuple[Callable[[Message], None], Callable[[str], None]]:
+    def _ends(self, client: Client) -> tuple[Callable[[Message], None], Callable[[Failure, str, Message], None]]:
         """What is done with a response of a service or action, and with a failure."""
         self._failures[client] = self._resets[client.reset] = _Failure()
         return partial(self.respond, client), partial(self.fail, client)
@@ -180,24 +176,16 @@ class Controller(EventHandler):
         if not self._stopping:
             self._stopping = True
             self._halt()
-            self._patience = time.monotonic() + max((goal.unanswered for goal in self._cancels.values()), default=0.0)
-            self._farewell = time.monotonic() + _FAREWELL
 
     @property
     def busy(self) -> bool:
-        """Whether the end has to wait: until a goal that was sent is accepted and cancelled, then a little for its end.
-
-        What is left of the timeout bounds it, on the steady clock: simulated time may stand still.
-        """
-        now = time.monotonic()
-        if now < self._patience and any(client.unanswered for client in self._cancels.values()):
-            self._farewell = now + _FAREWELL
-        return now < self._farewell and any(client.busy for client in self._cancels.values())
+        """Whether the end has to wait: for the acceptance of a goal, the answer to its cancel, its end, each a time."""
+        return any(client.waits for client in self._cancels.values())
 
     def close(self) -> None:
         """Gives up all goals and closes the log; nothing may happen any more."""
         for client in self._cancels.values():
-            client.give_up()
+            client.leave()
         super().close()
 
     def _watch(self, topic: str, seconds: float) -> Watchdog:
@@ -216,8 +204,8 @@ class Controller(EventHandler):
         """Cancels running actions, then sends the last messages, whatever the requirements on them say."""
         with self._batch():
             for event, client in self._cancels.items():
-                if client.busy and not self._control.perform(event_name(event)):
-                    client.cancel(expected=False)
+                self._control.perform(event_name(event))
+                client.cancel()
         self._send_outside(self._safe.on_shutdown)
 
     def _send_outside(self, messages: Sequence[rosgraph.Sending]) -> None:
@@ -272,7 +260,7 @@ class Controller(EventHandler):
         sender, name = self._senders.get(event), event_name(event)
         if sender is None:
             return event not in self._resets or self._resets[event].pause is None
-        if self._halted or self._unheard or (sender.client is not None and sender.client.busy):
+        if self._halted or self._unheard:
             return False
         if not self._prepare(sender):
             if name not in self._withheld:
@@ -290,9 +278,6 @@ class Controller(EventHandler):
             return f"it waits for {_topics(self._unheard)}"
         if self._halted:
             return "the node is not active" if self._stopping else "a topic is silent"
-        client = self._senders[event].client
-        if client is not None and client.busy:
-            return "its last goal has not ended"
         return "its data can't be sent" if event_name(event) in self._withheld else None
 
     def _faults(self, parts: Parts) -> list[str]:
@@ -301,6 +286,9 @@ class Controller(EventHandler):
         commanded = dict.fromkeys(self._publishers.get(sending) for sending in parts.commands)
         watched = [*parts.topics, *(publisher for publisher in commanded if publisher is not None), *parts.clients]
         failed = [(client.identifier, self._failures[client].why) for client in parts.clients]
+        failed += [
+            (client.identifier, self._starters[client].trouble) for client in parts.clients if client in self._starters
+        ]
         withheld = [sending.name for sending in parts.commands if event_name(sending.event) in self._withheld]
         return [
             *(f"{topic.topic} is silent" for topic in silent),

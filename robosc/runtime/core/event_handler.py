@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from robosc.metamodel import rosgraph, sct
     from robosc.runtime.core.event_loop import EventLoop
     from robosc.runtime.core.json_text import Json
-    from robosc.runtime.core.port import Client, Message, Port
+    from robosc.runtime.core.port import Client, Failure, Message, Port
     from robosc.runtime.core.settings import Settings
     from robosc.semantics.component_parts import Parts
 
@@ -165,20 +165,23 @@ class EventHandler:
             else:
                 self._note_success(client)
 
-    def fail(self, client: Client, why: str) -> None:
-        """A call or goal has failed."""
+    def fail(self, client: Client, reason: Failure, why: str, result: Message = None) -> None:  # noqa: ARG002
+        """A call or goal has failed. `result` is what came with the end of a goal, None where nothing came."""
         self._note_failure(client, why)
         with self._batch():
-            self._end_goal(client.error.event)
+            self._end(client.error.event)
 
-    def cancel_ended(self, client: rosgraph.ActionClient) -> None:
-        """The goal has ended because the controller asked the server to cancel it."""
+    def end_canceled(self, client: rosgraph.ActionClient, reason: Failure, why: str, result: Message = None) -> None:
+        """A goal has ended because of a cancel: an error, for a reason, where the model has not canceled it."""
+        if not self._control.enabled(event_name(client.canceled.event)):
+            self.fail(client, reason, why, result)
+            return
         self._note_success(client)
         with self._batch():
-            self._end_goal(client.canceled.event)
+            self._end(client.canceled.event)
 
-    def _end_goal(self, event: sct.Event) -> None:
-        """Lets an end without data happen; it happens in any case, or the component would wait forever."""
+    def _end(self, event: sct.Event) -> None:
+        """Lets an end happen. It happens in any case, or the component would wait forever."""
         fault = self._perform(event)
         if fault is not None:
             self._warn(event, f"{event_name(event)}: {fault}")

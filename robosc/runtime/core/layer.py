@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from robosc.engine import Settings as LoopSettings
-from robosc.metamodel import engine
+from robosc.metamodel import engine, rosgraph
 from robosc.ros_types import Section
 from robosc.runtime.core.composing import Composer
 from robosc.runtime.core.event_handler import EventHandler
@@ -17,21 +17,39 @@ from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name, plant_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
-    from robosc.metamodel import rosgraph, sct
+    from robosc.metamodel import sct
     from robosc.runtime.core.event_loop import EventLoop
     from robosc.runtime.core.port import ControllerPort
     from robosc.runtime.core.settings import Settings
     from robosc.semantics.component_parts import Parts
 
 
+class ForwardedGoals(Protocol):
+    """The goals of one action that the layer has forwarded, one at a time."""
+
+    def cancel(self) -> None:
+        """Cancels the goal at hand."""
+
+    @property
+    def trouble(self) -> str:
+        """Why the goal has not ended though it should have; empty where nothing is wrong."""
+
+    @property
+    def waits(self) -> bool:
+        """Whether the end of the layer waits for what becomes of the goal."""
+
+    def leave(self) -> None:
+        """Reports a goal that the layer has canceled and that has not ended when the layer ends."""
+
+
 class Layer(EventHandler):
     """The layer of a robot. It decides, others forward. Of `safe` it sends `on_blocked`.
 
     What the robot sends moves the supervisor before it is forwarded (`receive`, `respond`, `fail`, `feed_back`); what
-    the controller sends is forwarded where `passes` allows it. `cancels`: what cancels the goal of an action, by event;
-    set by whoever forwards.
+    the controller sends is forwarded where `passes` allows it. `goals` are the goals of the actions, by the event that
+    cancels them; set by whoever forwards.
     """
 
     def __init__(
@@ -55,7 +73,7 @@ class Layer(EventHandler):
         }
         #: Of `on_blocked`, the messages that the layer forwarded last: it sends one when it blocks the next.
         self._forwarded: set[rosgraph.Sending] = set()
-        self.cancels: dict[sct.Event, Callable[[], None]] = {}
+        self.goals: dict[sct.Event, ForwardedGoals] = {}
 
     def start(self) -> None:
         """Publishes its definition, and its state from now on."""
@@ -70,6 +88,17 @@ class Layer(EventHandler):
         if self._statuses.publish():
             self._blocked.clear()
         self._event_loop.call_later(self._period, self._publish_state)
+
+    @property
+    def busy(self) -> bool:
+        """Whether the end has to wait: for what becomes of goals that the layer cancels."""
+        return any(goals.waits for goals in self.goals.values())
+
+    def close(self) -> None:
+        """Reports goals that the layer has canceled and that have not ended, and closes the log."""
+        for goals in self.goals.values():
+            goals.leave()
+        super().close()
 
     # From the controller
 
@@ -124,7 +153,13 @@ class Layer(EventHandler):
         self._warn(event, f"{name} is blocked: {reason} {json_text(because)}")
 
     def _faults(self, parts: Parts) -> list[str]:
-        return [f"{sending.name} was blocked" for sending in parts.commands if sending.event in self._blocked]
+        blocked = [f"{sending.name} was blocked" for sending in parts.commands if sending.event in self._blocked]
+        troubles = [
+            (client.identifier, self.goals[client.cancel].trouble)
+            for client in parts.clients
+            if isinstance(client, rosgraph.ActionClient) and client.cancel in self.goals
+        ]
+        return [*blocked, *(f"{name}: {trouble}" for name, trouble in troubles if trouble)]
 
     # What happens
 
@@ -136,6 +171,6 @@ class Layer(EventHandler):
             super()._after(name)
 
     def _act(self, event: sct.Event) -> tuple[str, Mapping[str, Json] | None] | None:
-        if event in self.cancels:
-            self.cancels[event]()
+        if event in self.goals:
+            self.goals[event].cancel()
         return ("out", None) if event in self._outgoing else None

@@ -135,7 +135,7 @@ class Node(ControllerPort, ABC):
             proxy = ServiceProxy(self, self.event_loop, service, layer, settings.seconds("service_timeout_ms"))
             self._serve(self._types[service.interface], self.inside(service.identifier), proxy.call)
         for action in self._graph.actionClients:
-            layer.cancels[action.cancel] = self._proxy(action, layer, settings.seconds("action_timeout_ms")).cancel
+            layer.goals[action.cancel] = self._proxy(action, layer, settings.seconds("action_timeout_ms"))
 
     def spin(self, handler: EventHandler) -> None:
         """Lets somebody act until the user interrupts it; it stops before the node ends."""

@@ -19,11 +19,37 @@ Client: TypeAlias = "rosgraph.ServiceClient | rosgraph.ActionClient"
 
 
 class Outcome(StrEnum):
-    """How a goal has ended."""
+    """How a goal has ended. `LOST`: its server does not know it any more."""
 
     SUCCEEDED = "succeeded"
-    CANCELLED = "cancelled"
+    CANCELED = "canceled"
     ABORTED = "aborted"
+    LOST = "lost"
+
+
+class Failure(StrEnum):
+    """Why a service or an action has failed: the values of the predefined enum `Failure`."""
+
+    UNAVAILABLE = "unavailable"
+    REJECTED = "rejected"
+    TIMEOUT = "timeout"
+    LOST = "lost"
+    ABORTED = "aborted"
+    CANCELED = "canceled"
+    FAILED = "failed"
+    UNREADABLE = "unreadable"
+
+
+class CancelAnswer(StrEnum):
+    """A server's answer to a request to cancel a goal.
+
+    `TERMINATED`: the goal has ended or is being canceled; `UNKNOWN`: the server does not know it.
+    """
+
+    ACCEPTED = "accepted"
+    REFUSED = "refused"
+    TERMINATED = "terminated"
+    UNKNOWN = "unknown"
 
 
 @dataclass(frozen=True)
@@ -38,8 +64,8 @@ class CallHandlers:
 class GoalHandlers:
     """What becomes of a goal, called from any thread.
 
-    `over`: it has ended, and its result may be yet to come; `ended` gets the result and the server's own text;
-    `refused`: the server does not cancel the goal.
+    `over`: it has ended, and its result may be yet to come; `ended` gets the result, None where none came, and the
+    server's own text.
     """
 
     accepted: Callable[[], None]
@@ -47,7 +73,7 @@ class GoalHandlers:
     feedback: Callable[[Message], None]
     over: Callable[[], None]
     ended: Callable[[Outcome, Message, str], None]
-    refused: Callable[[], None]
+    cancel_answered: Callable[[CancelAnswer], None]
 
 
 class Goal(Protocol):
@@ -55,6 +81,12 @@ class Goal(Protocol):
 
     def cancel(self) -> None:
         """Asks the server to cancel it; a server that does not know it yet may take no notice (ROS 2)."""
+
+    def is_canceling(self) -> bool:
+        """Whether the server says that the goal is being canceled."""
+
+    def is_gone(self) -> bool:
+        """Whether the server that has the goal is gone; asked again and again."""
 
 
 @dataclass(frozen=True)
@@ -97,6 +129,9 @@ class Port(Protocol):
     def hear(self) -> None:
         """Handles what has arrived already: it is not to wait behind a time that is up."""
 
+    def create(self, interface: rosgraph.Interface, section: Section) -> Message:
+        """Data with every field at its ROS default; a ROS 1 quaternion is one of length 1."""
+
     def is_served(self, client: Client) -> bool:
         """Whether there is a server."""
 
@@ -106,9 +141,6 @@ class Port(Protocol):
 
 class ControllerPort(Port, Protocol):
     """A ROS node, as far as a controller needs one. Names of topics and servers are resolved as the node's are."""
-
-    def create(self, interface: rosgraph.Interface, section: Section) -> Message:
-        """Data with every field at its ROS default; a ROS 1 quaternion is one of length 1."""
 
     def stamp(self, message: Message, frame: str) -> None:
         """Gives the header of a message or a part of one, where it has one, the node's time and a frame."""

@@ -6,7 +6,9 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
-from robosc.runtime.core.clients import POLL, Answers, ServiceClient
+from robosc.runtime.core.cancel_requests import CANCELING, CancelRequests, GoalTimes
+from robosc.runtime.core.clients import LOST, LOST_RESULT, POLL, UNKNOWN_GOAL, Answers, ServiceClient
+from robosc.runtime.core.port import CancelAnswer, Failure, Outcome
 
 if TYPE_CHECKING:
     from robosc.metamodel import rosgraph
@@ -53,8 +55,8 @@ class ServiceProxy:
         if waiting is not None:
             waiting.give(response)
 
-    def _fail(self, why: str) -> None:
-        self._layer.fail(self._service, why)
+    def _fail(self, reason: Failure, why: str, _: Message) -> None:
+        self._layer.fail(self._service, reason, why)
         waiting, self._waiting = self._waiting, None
         if waiting is not None:
             waiting.fail(why)
@@ -62,13 +64,19 @@ class ServiceProxy:
 
 @dataclass(eq=False)
 class ProxiedGoal:
-    """A goal of the controller's: `request` is what it sent. `cancelled`: by the supervisor."""
+    """A goal of the controller's: `request` is what it sent.
+
+    `canceled`: the layer cancels it. `late`: the robot has not accepted it in time. `over`: it has ended, and its
+    result is yet to come.
+    """
 
     identifier: Any
     request: Message
     sent: bool = False
     accepted: bool = False
-    cancelled: bool = False
+    canceled: bool = False
+    late: bool = False
+    over: bool = False
 
 
 _Goal = TypeVar("_Goal", bound=ProxiedGoal)
@@ -77,20 +85,32 @@ _Goal = TypeVar("_Goal", bound=ProxiedGoal)
 class ActionProxy(ABC, Generic[_Goal]):
     """An action for the controller behind which stands the robot's one, with one goal at a time.
 
-    Goals keep their identity. `timeout`, in seconds, bounds the search for a server with the wait for acceptance, and
-    how long the server may be gone while it has the goal.
+    Goals keep their identity. The timeout also bounds how long the server may be gone while it has the goal.
     """
 
     def __init__(
-        self, port: Port, event_loop: EventLoop, action: rosgraph.ActionClient, layer: Layer, timeout: float
+        self,
+        port: Port,
+        event_loop: EventLoop,
+        action: rosgraph.ActionClient,
+        layer: Layer,
+        times: GoalTimes,
     ) -> None:
         self._port = port
         self._event_loop = event_loop
         self._action = action
         self._layer = layer
-        self._timeout = timeout
+        self._times = times
         self._goal: _Goal | None = None
         self._deadline = 0.0
+        self._requests = self._new_requests()
+
+    def _new_requests(self) -> CancelRequests:
+        def send() -> None:
+            if self._goal is not None:
+                self._send_cancel(self._goal)
+
+        return CancelRequests(self._event_loop, self._times, send, self._warn)
 
     # What the middleware does
 
@@ -107,22 +127,48 @@ class ActionProxy(ABC, Generic[_Goal]):
         """Asks the robot to cancel the goal."""
 
     @abstractmethod
-    def _end(self, goal: _Goal, why: str) -> None:
-        """Tells the controller of the end of a goal that the robot says nothing of; one that was sent is cancelled."""
+    def _is_canceling(self, goal: _Goal) -> bool:
+        """Whether the robot says that the goal is being canceled."""
 
-    def _watch(self, goal: _Goal, now: float) -> None:  # noqa: ARG002  # ROS 1 looks at the goal
-        """The server is there and has the goal."""
-        self._deadline = now + self._timeout
+    @abstractmethod
+    def _end(self, goal: _Goal, why: str) -> None:
+        """Tells the controller of the end of a goal that the robot says nothing of; one that was sent is canceled."""
 
     # What the layer does
 
     def cancel(self) -> None:
         """Cancels the goal at hand, before the robot has accepted it as soon as it does."""
         goal = self._goal
-        if goal is not None and not goal.cancelled:
-            goal.cancelled = True
-            if goal.accepted:
-                self._send_cancel(goal)
+        if goal is not None:
+            goal.canceled = True
+            if goal.accepted and not goal.over:
+                self._requests.ask()
+
+    @property
+    def trouble(self) -> str:
+        """Why the goal has not ended though it should have; empty where nothing is wrong."""
+        waiting = self._goal is not None and self._goal.late and not self._goal.accepted
+        return self._not_accepted if waiting else self._requests.trouble
+
+    @property
+    def waits(self) -> bool:
+        """Whether the end of the layer waits: for the acceptance of a goal that it cancels, the answer, the end."""
+        goal = self._goal
+        if goal is None or not goal.canceled or goal.over:
+            return False
+        return self._requests.waits or (not goal.accepted and not goal.late)
+
+    def leave(self) -> None:
+        """Reports a goal that the layer has canceled and that has not ended when the layer ends."""
+        goal = self._goal
+        if goal is not None and goal.canceled and not goal.over:
+            running = "the goal has not ended" if goal.accepted else "the goal may still begin"
+            why = CANCELING if self._requests.accepted else self.trouble or "the server has not answered"
+            self._warn(f"{running} when this layer ends: {why}")
+
+    @property
+    def _not_accepted(self) -> str:
+        return f"not accepted {self._times.within}"
 
     def _receive_goal(self, goal: _Goal) -> None:
         """A goal of the controller's, which is forwarded where the layer lets it pass."""
@@ -131,8 +177,9 @@ class ActionProxy(ABC, Generic[_Goal]):
             self._end(goal, "blocked: another goal has not ended")
             return
         self._goal = goal
+        self._requests = self._new_requests()
         if self._layer.passes(self._action.request):
-            self._deadline = self._event_loop.clock() + self._timeout
+            self._deadline = self._event_loop.clock() + self._times.timeout
             self._poll(goal)
         else:
             self._goal = None
@@ -142,6 +189,41 @@ class ActionProxy(ABC, Generic[_Goal]):
         """The goal at hand, if it is the one with this identifier."""
         return self._goal if self._goal is not None and self._goal.identifier == identifier else None
 
+    def _accept(self, goal: _Goal) -> None:
+        """The robot has accepted the goal."""
+        if not goal.accepted:
+            goal.accepted = True
+            self._deadline = self._event_loop.clock() + self._times.timeout
+            if goal.canceled:
+                self._requests.ask()
+
+    def _cancel_answered(self, goal: _Goal, answer: CancelAnswer) -> None:
+        """The robot has answered a request of the layer's to cancel a goal."""
+        if self._goal is not goal:
+            return
+        if answer is CancelAnswer.ACCEPTED:
+            self._requests.accept()
+        elif goal.accepted and not goal.over and not self._requests.accepted:
+            match answer:
+                case CancelAnswer.REFUSED:
+                    self._requests.refuse()
+                case CancelAnswer.TERMINATED:
+                    self._await_result(goal)
+                case CancelAnswer.UNKNOWN:
+                    self._give_up(goal, Failure.LOST, UNKNOWN_GOAL)
+
+    def _await_result(self, goal: _Goal) -> None:
+        """The goal has ended; its result is yet to come."""
+        if not goal.over:
+            goal.over = True
+            self._requests.stop()
+            self._deadline = self._event_loop.clock() + self._times.timeout
+
+    def _resume(self, goal: _Goal) -> None:
+        """The goal has not ended after all."""
+        goal.over = False
+        self._requests = self._new_requests()
+
     def _receive_feedback(self, identifier: Any, feedback: Message) -> bool:
         """Feedback of the robot's; whether it is forwarded."""
         goal = self._at_hand(identifier)
@@ -149,45 +231,67 @@ class ActionProxy(ABC, Generic[_Goal]):
             self._layer.feed_back(self._action, feedback)
         return goal is not None
 
-    def _receive_end(self, goal: _Goal, result: Message, failure: str | None) -> None:
-        """The robot has ended the goal at hand: it has failed, for a reason, or succeeded with a result."""
-        if failure is None:
-            self._layer.respond(self._action, result)
-        else:
-            self._fail(goal, failure)
-        self._goal = None
+    def _receive_end(self, goal: _Goal, outcome: Outcome, result: Message) -> None:
+        """The robot has ended the goal at hand."""
+        self._forget()
+        late = Failure.TIMEOUT if goal.late else None
+        match outcome:
+            case Outcome.SUCCEEDED:
+                self._layer.respond(self._action, result)
+            case Outcome.CANCELED:
+                self._layer.end_canceled(self._action, late or Failure.CANCELED, "canceled", result)
+            case _:
+                self._layer.fail(self._action, late or Failure.ABORTED, "aborted", result)
 
-    def _fail(self, goal: _Goal, why: str) -> None:
-        if goal.cancelled and why.startswith("cancelled"):
-            self._layer.cancel_ended(self._action)
+    def _give_up(self, goal: _Goal, reason: Failure, why: str) -> None:
+        """The goal has ended without a result, or nobody knows what becomes of it."""
+        self._forget()
+        if reason is Failure.CANCELED:
+            self._layer.end_canceled(self._action, reason, why)
         else:
-            self._layer.fail(self._action, why)
-
-    def _give_up(self, goal: _Goal, why: str) -> None:
-        """Nobody waits for the goal any more."""
-        self._fail(goal, why)
-        self._goal = None
+            self._layer.fail(self._action, reason, why)
         self._end(goal, why)
+
+    def _forget(self) -> None:
+        self._goal = None
+        self._requests.stop()
 
     def _poll(self, goal: _Goal) -> None:
         """Sends the goal as soon as there is a server; then watches that it is accepted and stays."""
         if self._goal is not goal:
             return
         now = self._event_loop.clock()
-        if goal.cancelled and not goal.sent:
-            self._give_up(goal, "cancelled before it was sent")
+        if goal.canceled and not goal.sent:
+            self._give_up(goal, Failure.CANCELED, "canceled before it was sent")
             return
         served = self._is_served(goal)
         if served and not goal.sent and self._send(goal):
             goal.sent = True
-        elif served and goal.accepted:
-            self._watch(goal, now)
+        elif served and goal.accepted and not goal.over:
+            self._deadline = now + self._times.timeout
         elif now >= self._deadline:
-            within = f" within {round(self._timeout * 1000)} ms"
-            missing = ("not accepted" if goal.sent else "no server") + within
-            self._give_up(goal, "the server is gone" if goal.accepted else missing)
-            return
+            self._expire(goal, now)
         self._event_loop.call_later(POLL, lambda: self._poll(goal))
+
+    def _expire(self, goal: _Goal, now: float) -> None:
+        if goal.over and self._is_canceling(goal):
+            # Somebody else had it canceled before: a server calls that terminated, too.
+            self._resume(goal)
+            self._requests.accept()
+        elif goal.over:
+            self._give_up(goal, Failure.LOST, f"{LOST_RESULT} {self._times.within}")
+        elif goal.accepted:
+            self._give_up(goal, Failure.LOST, "the server is gone")
+        elif goal.late:
+            self._give_up(goal, Failure.LOST, "neither accepted nor rejected")
+        elif goal.sent:
+            # The robot might still accept it: then it is canceled.
+            self._warn(self._not_accepted)
+            goal.late = goal.canceled = True
+            self._deadline = now + LOST
+            self._send_cancel(goal)  # it may have accepted it already
+        else:
+            self._give_up(goal, Failure.UNAVAILABLE, f"no server {self._times.within}")
 
     def _warn(self, why: str) -> None:
         self._port.warn(f"{self._action.identifier}: {why}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.runtime.core.node import StartError
-from robosc.runtime.core.port import Goal, GoalHandlers, Outcome
+from robosc.runtime.core.port import CancelAnswer, Goal, GoalHandlers, Outcome
 
 try:
     import actionlib
@@ -15,13 +15,20 @@ except ImportError as error:
     raise StartError(f"actionlib is not there for this Python: {error}", "apt install python3-actionlib") from error
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from robosc.runtime.core.port import Message
 
 _OUTCOMES = {
     GoalStatus.SUCCEEDED: Outcome.SUCCEEDED,
-    GoalStatus.PREEMPTED: Outcome.CANCELLED,
-    GoalStatus.RECALLED: Outcome.CANCELLED,
+    GoalStatus.PREEMPTED: Outcome.CANCELED,
+    GoalStatus.RECALLED: Outcome.CANCELED,
+    GoalStatus.LOST: Outcome.LOST,
 }
+
+
+#: Looks in which a server may be missing.
+_PATIENCE = 10
 
 
 class ActionClient:
@@ -37,16 +44,40 @@ class ActionClient:
 
     def send(self, goal: Message, handlers: GoalHandlers) -> Goal:
         """Sends a goal; the handlers are called from rospy's threads."""
-        sent: Goal = self._client.send_goal(
+        handle = self._client.send_goal(
             goal, lambda handle: _follow(handle, handlers), lambda _, feedback: handlers.feedback(feedback)
         )
-        return sent
+        return _SentGoal(handle, self.is_served)
+
+
+class _SentGoal:
+    """A goal that was sent; `is_served`: whether a server is there."""
+
+    def __init__(self, handle: Any, is_served: Callable[[], bool]) -> None:
+        self._handle = handle
+        self._is_served = is_served
+        self._missed = 0
+
+    def cancel(self) -> None:
+        """Asks the server to cancel it."""
+        self._handle.cancel()
+
+    def is_canceling(self) -> bool:
+        """A server of ROS 1 has ended a goal where it says so."""
+        return False
+
+    def is_gone(self) -> bool:
+        """Whether no server was there in several looks: of one that came back, parts are missing for a moment."""
+        self._missed = 0 if self._is_served() else self._missed + 1
+        return self._missed > _PATIENCE
 
 
 def _follow(handle: Any, handlers: GoalHandlers) -> None:
     state = handle.get_comm_state()
     if state == actionlib.CommState.ACTIVE:
         handlers.accepted()
+    elif state in (actionlib.CommState.RECALLING, actionlib.CommState.PREEMPTING):
+        handlers.cancel_answered(CancelAnswer.ACCEPTED)
     elif state == actionlib.CommState.WAITING_FOR_RESULT:
         handlers.over()
     elif state == actionlib.CommState.DONE:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 
-from robosc.runtime.core.clients import LOST_RESULT, REFUSED
+from robosc.runtime.core.cancel_requests import GoalTimes
+from robosc.runtime.core.port import CancelAnswer, Failure, Outcome
 from robosc.runtime.core.proxies import ActionProxy, ProxiedGoal
 
 if TYPE_CHECKING:
@@ -17,19 +18,19 @@ if TYPE_CHECKING:
     from robosc.runtime.core.port import Message
     from robosc.runtime.ros1.node import Ros1Node
 
-_CANCELLED = (GoalStatus.PREEMPTED, GoalStatus.RECALLED)
+_OUTCOMES = {
+    GoalStatus.SUCCEEDED: Outcome.SUCCEEDED,
+    GoalStatus.PREEMPTED: Outcome.CANCELED,
+    GoalStatus.RECALLED: Outcome.CANCELED,
+}
+_CANCELING = (GoalStatus.PREEMPTING, GoalStatus.RECALLING)
 _UNDER_WAY = (GoalStatus.PENDING, GoalStatus.ACTIVE, GoalStatus.PREEMPTING, GoalStatus.RECALLING)
 
 
 @dataclass(eq=False)
 class _Goal(ProxiedGoal):
-    """A goal of the controller's; `cancels` are its own requests to cancel it before it was sent.
+    """A goal of the controller's; `cancels` are its own requests to cancel it before it was sent."""
 
-    `over`: the robot, which had accepted it, tells that it has ended, or tells of it no more.
-    """
-
-    refused: bool = False
-    over: bool = False
     cancels: list[Message] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -40,7 +41,8 @@ class Ros1ActionProxy(ActionProxy[_Goal]):
     """`kind` is the class of the action's type with `Action` at its end."""
 
     def __init__(self, node: Ros1Node, kind: Any, action: rosgraph.ActionClient, layer: Layer, timeout: float) -> None:
-        super().__init__(node, node.event_loop, action, layer, timeout)
+        # There is no answer to a request to cancel in ROS 1, and so no refusal that another one would follow.
+        super().__init__(node, node.event_loop, action, layer, GoalTimes(timeout, None))
         self._ended = ""
         made = kind()
         goal, result, feedback = (type(part) for part in (made.action_goal, made.action_result, made.action_feedback))
@@ -82,10 +84,12 @@ class Ros1ActionProxy(ActionProxy[_Goal]):
         goal, status = self._at_hand(message.status.goal_id.id), message.status.status
         if goal is None:
             return
-        rejected = "rejected" if status == GoalStatus.REJECTED else "aborted"
-        failure = None if status == GoalStatus.SUCCEEDED else "cancelled" if status in _CANCELLED else rejected
-        self._receive_end(goal, message.result, failure)
         self._ended = goal.identifier
+        if status == GoalStatus.REJECTED:
+            self._forget()
+            self._layer.fail(self._action, Failure.REJECTED, "rejected", message.result)
+        else:
+            self._receive_end(goal, _OUTCOMES.get(status, Outcome.ABORTED), message.result)
         self._results.publish(message)
 
     def _on_status(self, message: Message) -> None:
@@ -101,20 +105,17 @@ class Ros1ActionProxy(ActionProxy[_Goal]):
                     goal.status.status = status.status
                 if status.status not in (GoalStatus.PENDING, GoalStatus.RECALLING, GoalStatus.REJECTED):
                     self._accept(goal)
-            if goal.accepted:
-                over = all(status.status not in _UNDER_WAY for status in own)
-                if over and not goal.over:
-                    self._deadline = self._event_loop.clock() + self._timeout
-                goal.over = over
+                if status.status in _CANCELING:
+                    self._cancel_answered(goal, CancelAnswer.ACCEPTED)
+            # The robot had accepted it and says that it has ended, or says nothing of it any more.
+            if goal.accepted and all(status.status not in _UNDER_WAY for status in own):
+                self._await_result(goal)
+            elif goal.over:
+                self._resume(goal)
+                if goal.canceled:
+                    self._requests.ask()
             told.status_list.append(goal.status)  # even one that the robot does not know: the controller hears its end
         self._statuses.publish(told)
-
-    def _accept(self, goal: _Goal) -> None:
-        if not goal.accepted:
-            goal.accepted = True
-            self._deadline = self._event_loop.clock() + self._timeout
-            if goal.cancelled:
-                self._send_cancel(goal)
 
     # What the layer does
 
@@ -129,18 +130,11 @@ class Ros1ActionProxy(ActionProxy[_Goal]):
         return True
 
     def _send_cancel(self, goal: _Goal) -> None:
-        self._deadline = self._event_loop.clock() + self._timeout
         self._cancels.publish(GoalID(id=goal.identifier))  # without a time, which would cancel other goals, too
 
-    def _watch(self, goal: _Goal, now: float) -> None:
-        if goal.over:
-            if now >= self._deadline:
-                self._give_up(goal, f"{LOST_RESULT} within {round(self._timeout * 1000)} ms")
-        elif not goal.cancelled:
-            super()._watch(goal, now)
-        elif now >= self._deadline and not goal.refused and goal.status.status == GoalStatus.ACTIVE:
-            goal.refused = True
-            self._warn(REFUSED)
+    def _is_canceling(self, goal: _Goal) -> bool:
+        del goal
+        return False  # a robot of ROS 1 has ended a goal where it says so
 
     def _end(self, goal: _Goal, why: str) -> None:
         if goal.sent:  # a robot that has it, or gets it yet, is told to cancel it

@@ -11,8 +11,9 @@ from action_msgs.msg import GoalInfo, GoalStatus
 from rclpy.action.client import ClientGoalHandle
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
-from robosc.runtime.core.clients import LOST, REFUSED
-from robosc.runtime.core.port import GoalHandlers, Outcome
+from robosc.runtime.core.cancel_requests import GoalTimes
+from robosc.runtime.core.clients import LOST
+from robosc.runtime.core.port import CancelAnswer, Failure, GoalHandlers, Outcome
 from robosc.runtime.core.proxies import ActionProxy, ProxiedGoal
 
 if TYPE_CHECKING:
@@ -23,7 +24,19 @@ if TYPE_CHECKING:
     from robosc.runtime.core.port import Message
     from robosc.runtime.ros2.node import Ros2Node
 
-_OUTCOMES = {GoalStatus.STATUS_SUCCEEDED: Outcome.SUCCEEDED, GoalStatus.STATUS_CANCELED: Outcome.CANCELLED}
+_OUTCOMES = {GoalStatus.STATUS_SUCCEEDED: Outcome.SUCCEEDED, GoalStatus.STATUS_CANCELED: Outcome.CANCELED}
+#: How many looks for a server there are for each at the graph.
+LOOKS = 4
+
+
+def cancel_answer(response: Message) -> CancelAnswer:
+    """What a server has answered to a request to cancel one goal."""
+    match response.return_code:
+        case response.ERROR_GOAL_TERMINATED:
+            return CancelAnswer.TERMINATED
+        case response.ERROR_UNKNOWN_GOAL_ID:
+            return CancelAnswer.UNKNOWN
+    return CancelAnswer.ACCEPTED if response.goals_canceling else CancelAnswer.REFUSED
 
 
 def settle(answered: Callable[[Message], None], failed: Callable[[str], None], future: Any) -> None:
@@ -37,10 +50,18 @@ def settle(answered: Callable[[Message], None], failed: Callable[[str], None], f
 
 
 class SentGoal:
-    """A goal that a controller has sent to an action server."""
+    """A goal that a controller has sent to an action server.
 
-    def __init__(self, client: Any, goal: Message, handlers: GoalHandlers) -> None:
+    `servers` gives the servers that are there, as the graph knows them.
+    """
+
+    def __init__(
+        self, client: Any, goal: Message, handlers: GoalHandlers, servers: Callable[[], frozenset[bytes]]
+    ) -> None:
         self._handlers = handlers
+        self._servers = servers
+        self._sent_to = servers()
+        self._looks = 0
         identifier = GoalInfo().goal_id
         identifier.uuid = list(uuid4().bytes)
         self._handle = ClientGoalHandle(client, identifier, None)
@@ -50,7 +71,17 @@ class SentGoal:
     def cancel(self) -> None:
         """Asks the server to cancel it."""
         answer = self._handle.cancel_goal_async()
-        answer.add_done_callback(partial(settle, self._cancelling, lambda _: self._handlers.refused()))
+        answered = lambda response: self._handlers.cancel_answered(cancel_answer(response))  # noqa: E731
+        answer.add_done_callback(partial(settle, answered, lambda _: None))
+
+    def is_canceling(self) -> bool:
+        """Whether the server says that the goal is being canceled."""
+        return bool(self._handle.status == GoalStatus.STATUS_CANCELING)
+
+    def is_gone(self) -> bool:
+        """Whether none of the servers is left that were there for the goal: one that dies can't say so."""
+        self._looks += 1
+        return self._looks % LOOKS == 0 and not self._sent_to & self._servers()
 
     def _decided(self, handle: Any) -> None:
         if not handle.accepted:
@@ -64,11 +95,7 @@ class SentGoal:
         self._handlers.ended(_OUTCOMES.get(answer.status, Outcome.ABORTED), answer.result, "")
 
     def _failed(self, why: str) -> None:
-        self._handlers.ended(Outcome.ABORTED, None, why)
-
-    def _cancelling(self, answer: Any) -> None:
-        if not answer.goals_canceling:
-            self._handlers.refused()
+        self._handlers.ended(Outcome.LOST, None, why)
 
 
 class LateAnswer:
@@ -103,6 +130,10 @@ class _Goal(ProxiedGoal):
 
     answer: LateAnswer | None = None
     result: Any = None
+    status: int = GoalStatus.STATUS_UNKNOWN
+    sent_to: frozenset[bytes] = frozenset()
+    looks: int = 0
+    served: bool = True
     waiting: list[LateAnswer] = field(default_factory=list)
 
 
@@ -110,7 +141,7 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
     """`types` has the types of the action's services and topics."""
 
     def __init__(self, port: Ros2Node, types: Any, action: rosgraph.ActionClient, layer: Layer, timeout: float) -> None:
-        super().__init__(port, port.event_loop, action, layer, timeout)
+        super().__init__(port, port.event_loop, action, layer, GoalTimes(timeout, timeout))
         self._ended: tuple[bytes, Any] | None = None
         self._statuses: Any = types.GoalStatusMessage()
         self._types = types
@@ -118,6 +149,7 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
         lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         node = port.node
         self._goals = node.create_client(types.SendGoalService, f"{outside}/send_goal")
+        self._servers = partial(port.servers, action.identifier)
         self._results = node.create_client(types.GetResultService, f"{outside}/get_result")
         self._cancels = node.create_client(types.CancelGoalService, f"{outside}/cancel_goal")
         quality = port.quality(action.identifier)
@@ -160,19 +192,18 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
         assert goal.answer is not None
         if self._goal is not goal:
             if response.accepted:
-                self._send_cancel(goal)  # too late: nobody waits for it
+                self._send_cancel(goal)  # it counted as lost
         elif not response.accepted:
-            self._give_up(goal, "rejected")
+            self._give_up(goal, Failure.REJECTED, "rejected")
         else:
-            goal.accepted = True
             goal.answer.give(response)
             request = self._types.GetResultService.Request()
             request.goal_id.uuid = list(goal.identifier)
             goal.result = self._ask(self._results, request, partial(self._on_result, goal))
-            if goal.cancelled or not goal.result:
-                self._send_cancel(goal)
+            self._accept(goal)
             if not goal.result:
-                self._give_up(goal, "its result can't be asked for")
+                self._send_cancel(goal)
+                self._give_up(goal, Failure.LOST, "its result can't be asked for")
 
     def _on_feedback(self, message: Message) -> None:
         if self._receive_feedback(_bytes(message.goal_id), message.feedback):
@@ -180,9 +211,7 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
 
     def _on_result(self, goal: _Goal, response: Message) -> None:
         if self._goal is goal:
-            cancelled = "cancelled" if response.status == GoalStatus.STATUS_CANCELED else "aborted"
-            succeeded = response.status == GoalStatus.STATUS_SUCCEEDED
-            self._receive_end(goal, response.result, None if succeeded else cancelled)
+            self._receive_end(goal, _OUTCOMES.get(response.status, Outcome.ABORTED), response.result)
             self._finish(goal, response)
 
     def _on_status(self, message: Message) -> None:
@@ -190,7 +219,10 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
         self._statuses = self._types.GoalStatusMessage()
         for status in message.status_list:
             identifier = _bytes(status.goal_info.goal_id)
-            running = self._at_hand(identifier) is not None
+            goal = self._at_hand(identifier)
+            running = goal is not None
+            if goal is not None:
+                goal.status = status.status
             if running and status.status > GoalStatus.STATUS_CANCELING:
                 status.status = GoalStatus.STATUS_EXECUTING
             if running or (self._ended is not None and self._ended[0] == identifier):
@@ -200,26 +232,30 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
     # What the layer does
 
     def _is_served(self, goal: _Goal) -> bool:
-        return bool((self._results if goal.accepted else self._goals).service_is_ready())
+        if not goal.accepted:
+            return bool(self._goals.service_is_ready())
+        goal.looks += 1
+        # A server that has died and one that has come in its place offer the same services.
+        if goal.looks % LOOKS == 0:
+            goal.served = bool(goal.sent_to & self._servers())
+        return goal.served
 
     def _send(self, goal: _Goal) -> bool:
-        return bool(self._ask(self._goals, goal.request, partial(self._on_accepted, goal), self._timeout + LOST))
+        goal.sent_to = self._servers()
+        return bool(self._ask(self._goals, goal.request, partial(self._on_accepted, goal), self._times.timeout + LOST))
 
     def _send_cancel(self, goal: _Goal) -> None:
         request = self._types.CancelGoalService.Request()
         request.goal_info.goal_id.uuid = list(goal.identifier)
-        within = f"within {round(self._timeout * 1000)} ms"
-        late = f"the server does not answer the request to cancel the goal {within}"
-        if not self._ask_to_cancel(request, self._on_cancelling, lambda: self._warn(late)):
-            self._warn("the request to cancel the goal can't be sent")
+        self._ask_to_cancel(request, lambda response: self._cancel_answered(goal, cancel_answer(response)))
 
-    def _ask_to_cancel(self, request: Message, answered: Callable[[Message], None], late: Callable[[], None]) -> bool:
-        return bool(self._ask(self._cancels, request, answered, self._timeout, late))
+    def _is_canceling(self, goal: _Goal) -> bool:
+        return bool(goal.status == GoalStatus.STATUS_CANCELING)
 
-    def _on_cancelling(self, response: Message) -> None:
-        nothing = response.return_code == response.ERROR_NONE and not response.goals_canceling
-        if nothing or response.return_code == response.ERROR_REJECTED:
-            self._warn(REFUSED)
+    def _ask_to_cancel(
+        self, request: Message, answered: Callable[[Message], None], late: Callable[[], None] = lambda: None
+    ) -> bool:
+        return bool(self._ask(self._cancels, request, answered, self._times.timeout, late))
 
     def _end(self, goal: _Goal, why: str) -> None:
         del why

@@ -393,7 +393,12 @@ class Ros2Node(Node):
         return rclpy.action.ActionClient(self.node, kind, action.identifier, feedback_sub_qos_profile=quality)
 
     def send_goal(self, client: rosgraph.ActionClient, goal: Message, handlers: GoalHandlers) -> Goal:
-        return SentGoal(self._clients[client], goal, handlers)
+        return SentGoal(self._clients[client], goal, handlers, partial(self.servers, client.identifier))
+
+    def servers(self, action: str) -> frozenset[bytes]:
+        """The servers of an action, as the graph knows them; each has another identity when it comes back."""
+        found = self.node.get_publishers_info_by_topic(f"{action}/_action/status")
+        return frozenset(bytes(publisher.endpoint_gid) for publisher in found)
 
     def _proxy(self, action: rosgraph.ActionClient, layer: Layer, timeout: float) -> ActionProxy[Any]:
         return Ros2ActionProxy(self, self._types[action.interface].Impl, action, layer, timeout)

@@ -40,7 +40,7 @@ struct Client final : CallClient<Countdown, int> {
   using CallClient::succeed;
 
   void forget() override { ++forgotten; }
-  std::string missing() override { return "no server"; }
+  Missing missing() override { return {Failure::unavailable, "no server"}; }
 
   int forgotten = 0;
 };
@@ -48,10 +48,13 @@ struct Client final : CallClient<Countdown, int> {
 void a_call_has_one_end() {
   std::vector<std::string> told;
   Client client({[&](const int& response) { told.push_back(std::to_string(response)); },
-                 [&](const std::string& why) { told.push_back(why); }});
+                 [&](Failure reason, const std::string& why) {
+                   told.push_back(why);
+                   CHECK(reason == Failure::unavailable);
+                 }});
   const std::uint64_t first = client.begin();
   client.succeed(first, 1);
-  client.fail(first, "late");
+  client.fail(first, Failure::failed, "late");
   Countdown::last_over()();
   CHECK(told == std::vector<std::string>{"1"});
 
@@ -74,13 +77,13 @@ void a_call_from_a_handler_is_another_one() {
   std::string told;
   Client* again = nullptr;
   Client client({[](const int&) {},
-                 [&](const std::string& why) {
+                 [&](Failure, const std::string& why) {
                    told += why;
                    if (next == 0) next = again->begin();
                  }});
   again = &client;
-  client.fail(client.begin(), "first ");
-  client.fail(next, "second");
+  client.fail(client.begin(), Failure::failed, "first ");
+  client.fail(next, Failure::failed, "second");
   CHECK(told == "first second");
 }
 
@@ -103,7 +106,10 @@ void each_caller_is_answered_once() {
   std::string heard;
   Proxy proxy({[](const int& request) { return request > 0; }, [&] { ++busy; },
                [&](const int& response) { heard += std::to_string(response); },
-               [&](const std::string& why) { heard += why; }});
+               [&](Failure reason, const std::string& why) {
+                 heard += why;
+                 CHECK(reason == Failure::timeout);
+               }});
   const auto robot = proxy.answers<Client::Handlers>();
   using Answers = decltype(proxy.answered);
 
@@ -115,7 +121,7 @@ void each_caller_is_answered_once() {
   robot.response(7);
   CHECK((proxy.answered == Answers{{1, std::nullopt}, {3, std::nullopt}, {2, 7}}));
   proxy.called(4, 8);
-  robot.error("!");
+  robot.error(Failure::timeout, "!");
   CHECK(heard == "7!" && proxy.answered.back() == std::make_pair(4, std::optional<int>()));
 }
 

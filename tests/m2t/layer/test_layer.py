@@ -218,7 +218,7 @@ def test_leaves_out_what_is_not_asked_for(usher: robosc.Models, tmp_path: Path) 
             f"{ros}/durabilities",
             f"{ros}/guarded_node",
         }
-        names |= own if target == "ros2-layer" else {f"{ros}/run_layer"}
+        names |= own if target == "ros2-layer" else {f"{ros}/run_layer", f"{ros}/interruption"}
         assert headers == {f"include/{name}.hpp" for name in (*names, "ear_layer/definition")}
 
 

@@ -169,6 +169,10 @@ class Peer:
         """Ends a goal that was accepted: `succeeded`, `aborted`, `cancelled`; with fields of its result."""
         self.goals[number].end(how, fields or {})
 
+    def cancel_elsewhere(self, number):
+        """Has another client cancel a goal that was accepted; it goes on until it is ended."""
+        self.goals[number].cancel_elsewhere()
+
 
 def main(version, name):
     lock = threading.Lock()

@@ -2,10 +2,11 @@
 
 import importlib
 import threading
+import time
 
 import actionlib
 import rospy
-from actionlib_msgs.msg import GoalStatus
+from actionlib_msgs.msg import GoalID, GoalStatus
 from topics import fill
 
 
@@ -47,10 +48,11 @@ class Ros:
 
     def act(self, name, kind, asked, cancelled):
         goals = {}
+        cancels = rospy.Publisher(f"{name}/cancel", GoalID, queue_size=10)
         types = [_find(kind + part, "msg") for part in ("Result", "Feedback")]
 
         def begin(handle):
-            goal = goals[handle.get_goal_id().id] = _Goal(handle, *types)
+            goal = goals[handle.get_goal_id().id] = _Goal(handle, cancels, *types)
             goal.cancelled = cancelled
             asked(goal, handle.get_goal())
             threading.Thread(target=goal.decide, daemon=True).start()
@@ -66,8 +68,9 @@ class Ros:
 
 
 class _Goal:
-    def __init__(self, handle, result, feedback):
+    def __init__(self, handle, cancels, result, feedback):
         self.handle = handle
+        self.cancels = cancels
         self.result = result
         self.feedback = feedback
         self.accepted = threading.Event()
@@ -106,3 +109,10 @@ class _Goal:
             "cancelled": self.handle.set_canceled,
         }
         set_end[how](fill(self.result(), fields or {}))
+
+    def cancel_elsewhere(self):
+        """Another client asks for it."""
+        self.accepted.wait()
+        self.cancels.publish(GoalID(id=self.handle.get_goal_id().id))
+        while not self.cancel_requested():
+            time.sleep(0.01)

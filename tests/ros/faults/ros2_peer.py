@@ -151,7 +151,11 @@ class _Goal:
     def end(self, how, fields=None):
         self.accepted.wait()
         if how == "cancelled" and not self.handle.is_cancel_requested:
-            # Only a client can have a goal cancelled: another one cancels all that there are.
-            self.foreign = True
-            self.cancel_all.call(CancelGoal.Request())
+            self.cancel_elsewhere()
         self.ends.put((how, fields or {}))
+
+    def cancel_elsewhere(self):
+        """Only a client can have a goal canceled: another one cancels all that there are."""
+        self.accepted.wait()
+        self.foreign = True
+        self.cancel_all.call(CancelGoal.Request())

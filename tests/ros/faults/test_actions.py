@@ -11,8 +11,8 @@ from tests.ros.faults.conftest import ACCEPTANCE_SECONDS
 if TYPE_CHECKING:
     from tests.ros.faults.partners import Moment, Peer, Scout
 
-TRIGGER, RESPONSE, FEEDBACK, ERROR, CANCEL = (
-    f"action_travel.{event}" for event in ("c_trigger", "u_response", "u_feedback", "u_error", "c_cancel")
+TRIGGER, RESPONSE, FEEDBACK, ERROR, CANCEL, CANCELED = (
+    f"action_travel.{event}" for event in ("c_trigger", "u_response", "u_feedback", "u_error", "c_cancel", "u_canceled")
 )
 
 
@@ -43,7 +43,7 @@ def test_goal_rejected(scout: Scout, server: Peer) -> None:
 
 
 @pytest.mark.parametrize(
-    ("how", "text"), [("aborted", "/travel: aborted"), ("cancelled", "/travel: cancelled by someone else")]
+    ("how", "text"), [("aborted", "/travel: aborted"), ("cancelled", "/travel: canceled by someone else")]
 )
 def test_goal_ends_otherwise(scout: Scout, server: Peer, how: str, text: str) -> None:
     since, number = travel(scout, server)
@@ -62,24 +62,27 @@ def test_result_after_cancel(scout: Scout, server: Peer) -> None:
     scout.send("/travel_order", data=False)
     scout.until_event(since, CANCEL)
     server.wait("cancel", value=number)
-    # It goes on, and nobody listens to it; another goal waits for its end.
+    # It goes on, and what it says happens; another goal waits for its end.
     server.do("progress", number=number, fields={"distance_remaining": 9.0})
-    scout.until_state("Navigator", "home")
+    scout.until(lambda: scout.variable("Navigator", "distance") == 9.0, "feedback arrives")
     scout.send("/travel_order", data=True)
+    scout.until_event(since, "message_travel_order.u_response", count=3)
     scout.nothing(0.5)
     assert len(scout.events(since, TRIGGER)) == 1
+    assert scout.state("Navigator") == "stopping"
     server.do("end", number=number, how="succeeded")
-    second = server.wait("goal", value=number + 1)["goal"]
-    assert scout.events(since, RESPONSE) == scout.events(since, FEEDBACK) == scout.events(since, ERROR) == []
-    succeed(scout, server, second)
+    scout.until_event(since, RESPONSE)
+    assert scout.events(since, CANCELED) == scout.events(since, ERROR) == []
+    scout.until_state("Navigator", "arrived")
 
 
-def test_cancelled_before_acceptance(scout: Scout, server: Peer) -> None:
+def test_canceled_before_acceptance(scout: Scout, server: Peer) -> None:
     since, number = travel(scout, server, accept=None)
     scout.send("/travel_order", data=False)
     scout.until_event(since, CANCEL)
     server.do("decide", number=number, accept=True)
     server.wait("cancel", value=number)
+    scout.until_event(since, CANCELED)
     scout.until_state("Navigator", "home")
     scout.send("/travel_order", data=True)
     succeed(scout, server, number + 1)
@@ -97,7 +100,8 @@ def test_rejected_after_cancel(scout: Scout, server: Peer) -> None:
     scout.until_event(since, "message_travel_order.u_response", count=3)
     server.do("decide", number=number, accept=False)
     succeed(scout, server, number + 1)
-    assert scout.events(since, ERROR) == []
+    scout.until_event(since, ERROR)
+    assert scout.events(since, CANCELED) == []
 
 
 def test_cancel_refused(scout: Scout, server: Peer) -> None:
@@ -110,9 +114,15 @@ def test_cancel_refused(scout: Scout, server: Peer) -> None:
     if scout.version == 2:
         # A server of ROS 1 can't refuse, it can only go on.
         scout.until_says(since, "/travel: the server refuses to cancel the goal")
+        heard = len(server.said)
+        server.wait("cancel", heard, value=number)
+        scout.until_diagnosed("Navigator", "stopping; /travel: the server refuses to cancel the goal")
+    assert scout.state("Navigator") == "stopping"
     server.do("end", number=number, how="succeeded")
-    scout.nothing(0.3)
-    assert scout.events(since, RESPONSE) == scout.events(since, ERROR) == []
+    scout.until_event(since, RESPONSE)
+    assert scout.events(since, ERROR) == scout.events(since, CANCELED) == []
+    if scout.version == 2:
+        assert scout.says(since, "/travel: the server refuses to cancel the goal") == 1
 
 
 def travel(scout: Scout, server: Peer, accept: bool | None = True) -> tuple[Moment, int]:

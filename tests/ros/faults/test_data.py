@@ -138,9 +138,9 @@ def test_feedback_out_of_range(scout: Scout, sent: int, stored: int, cancelled: 
     server.do("progress", number=number, fields={"distance_remaining": math.nan, "number_of_recoveries": sent})
     scout.until_event(since, "action_travel.u_feedback")
     if cancelled:
-        # It counts as 3: the requirement on the action falls, and `on cancel` forgets the number.
+        # It counts as 3: the requirement on the action falls, and `on canceled` forgets the number.
         server.wait("cancel", heard, value=number)
-        scout.until_event(since, "action_travel.c_cancel")
+        scout.until_event(since, "action_travel.u_canceled")
     else:
         server.do("end", number=number, how="succeeded")
         scout.until_state("Navigator", "arrived")

@@ -44,6 +44,16 @@ def test_shutdown_while_driving(guarded: Scout, number: signal.Signals) -> None:
     assert "Traceback" not in guarded.output()
 
 
+def test_shutdown_while_the_goal_brakes(guarded: Scout) -> None:
+    server, goal = under_way(guarded)
+    server.do("on_cancel", answer="ignore")
+    os.kill(guarded.process.pid, signal.SIGINT)
+    assert guarded.process.wait(PATIENCE) == 0
+    server.wait("cancel", value=goal)
+    guarded.until_says(None, "/travel: the goal has not ended when this node ends: …")
+    server.do("end", number=goal, how="cancelled")
+
+
 def test_shutdown_before_acceptance(guarded: Scout) -> None:
     guarded.rest()
     server = guarded.serve()

@@ -45,8 +45,8 @@ def test_silent_with_watchdog_that_stops(guarded: Scout) -> None:
     scout.world.do("silence", topic="/scan")
     scout.until_says(since, "/scan: silent for 500 ms")
     server.wait("cancel", heard, value=number)
-    scout.until_says(since, "/travel: cancelled by the controller itself, an error to the model")
-    assert scout.says(since, "/travel: cancelled by someone else") == 0
+    scout.until_says(since, "/travel: canceled by the controller itself, an error to the model")
+    assert scout.says(since, "/travel: canceled by someone else") == 0
     # The server may hear of the cancel before the node has got to its last message.
     scout.until(lambda: [entry for entry in scout.log(since) if entry["direction"] == "outside"], "it sends onShutdown")
     outside = [entry for entry in scout.log(since) if entry["direction"] == "outside"]

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "robosc/failure.hpp"
 #include "robosc/version.hpp"
 
 namespace robosc {
@@ -23,7 +24,8 @@ class CallClient {
   /// Exactly one of them follows a call, never from inside it.
   struct Handlers {
     std::function<void(const ResponseType&)> response;
-    std::function<void(const std::string& why)> error;  ///< No server, a failed call, no answer in time.
+    std::function<void(Failure reason, const std::string& why)>
+        error;  ///< No server, no answer in time, a failed call.
   };
 
   CallClient(const CallClient&) = delete;
@@ -31,20 +33,29 @@ class CallClient {
   virtual ~CallClient() = default;
 
  protected:
+  /// What a call waits for, as "no server", and why it has failed where that does not come.
+  struct Missing {
+    Failure reason;
+    std::string what;
+  };
+
   /// `timeout`: from a call to its answer; the server, too, may appear in this time. `place`: what a countdown begins
   /// with.
   template <typename... Place>
   CallClient(std::chrono::milliseconds timeout, Handlers handlers, Place&... place)
       : handlers_(std::move(handlers)),
         within_(" within " + std::to_string(timeout.count()) + " ms"),
-        deadline_(place..., timeout, [this] { fail(number_, missing() + within_); }) {}
+        deadline_(place..., timeout, [this] {
+          const Missing missed = missing();
+          fail(number_, missed.reason, missed.what + within_);
+        }) {}
 
   // What the middleware does.
 
   /// Forgets the call that is under way, if there is one.
   virtual void forget() = 0;
-  /// What the call still waits for, as "no server".
-  virtual std::string missing() = 0;
+  /// What the call still waits for.
+  virtual Missing missing() = 0;
 
   // What comes of it.
 
@@ -69,8 +80,8 @@ class CallClient {
   }
 
   /// It was not.
-  void fail(std::uint64_t number, const std::string& why) {
-    if (ends(number)) handlers_.error(why);
+  void fail(std::uint64_t number, Failure reason, const std::string& why) {
+    if (ends(number)) handlers_.error(reason, why);
   }
 
  private:

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "robosc/failure.hpp"
 #include "robosc/version.hpp"
 
 namespace robosc {
@@ -22,7 +23,7 @@ class CallProxy {
     std::function<bool(const RequestType&)> call;       ///< Whether a call goes on.
     std::function<void()> busy;                         ///< A call is turned away because another one waits.
     std::function<void(const ResponseType&)> response;  ///< The robot has answered.
-    std::function<void(const std::string&)> error;      ///< It has not, and why.
+    std::function<void(Failure reason, const std::string& why)> error;  ///< It has not.
   };
 
   CallProxy(const CallProxy&) = delete;
@@ -58,8 +59,8 @@ class CallProxy {
           handlers_.response(response);
           finish(response);
         },
-        [this](const std::string& why) {
-          handlers_.error(why);
+        [this](Failure reason, const std::string& why) {
+          handlers_.error(reason, why);
           finish(std::nullopt);
         },
     };

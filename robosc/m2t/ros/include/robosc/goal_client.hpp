@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "robosc/cancel_requests.hpp"
+#include "robosc/failure.hpp"
 #include "robosc/version.hpp"
 
 namespace robosc {
@@ -20,56 +22,68 @@ inline namespace ROBOSC_VERSION {
 template <typename Countdown, typename FeedbackType, typename ResultType>
 class GoalClient {
  public:
-  /// Any number of feedbacks follows a start, then exactly one of the others; never from inside `start`, `cancel` or
-  /// `interrupt`.
+  /// Why a goal has ended without success, and the result that came with its end, else a default one.
+  using Ended = std::function<void(Failure reason, const std::string& why, const ResultType& result)>;
+
+  /// Any number of feedbacks follows a start, then exactly one of the others; never from inside `start` or `cancel`.
   struct Handlers {
     std::function<void(const FeedbackType&)> feedback;
-    std::function<void(const ResultType&)> response;    ///< The goal has succeeded.
-    std::function<void(const std::string& why)> error;  ///< No server, not accepted in time, ended in any other way.
-    std::function<void()> ended;  ///< A goal that was cancelled, or not accepted in time, is over.
+    std::function<void(const ResultType&)> response;  ///< The goal has succeeded.
+    Ended error;                                      ///< It was not carried out, aborted or lost.
+    Ended canceled;  ///< It has ended because of a cancel; the reason counts where the model did not cancel it.
   };
 
   GoalClient(const GoalClient&) = delete;
   GoalClient& operator=(const GoalClient&) = delete;
   virtual ~GoalClient() = default;
 
-  /// Whether a goal has not ended, be it one that was given up; until then no other may start.
+  /// Whether there is a goal whose end is not known; until then no other may start.
   bool busy() const { return phase_ != Phase::idle; }
 
-  /// Whether the server may still accept the goal in time; where simulated time stands still, the steady clock bounds
-  /// it.
+  /// Whether the end of the node waits: for the goal's acceptance, for the answer to a cancel, then a little for its
+  /// end. The steady clock bounds it: simulated time may stand still.
   bool waits() const {
-    return phase_ == Phase::sent && deadline_.running() && std::chrono::steady_clock::now() < latest_;
+    const bool undecided = busy() && phase_ != Phase::accepted;
+    return requests_.waits() || (undecided && std::chrono::steady_clock::now() < until_);
   }
 
-  /// Cancels the goal: where the server does not know it yet, as soon as it does. What it still says is dropped.
+  /// Why the goal has not ended though it should have; empty where nothing is wrong.
+  std::string trouble() const { return late_ && phase_ == Phase::sent ? not_accepted_ : requests_.trouble(); }
+
+  /// Cancels the goal: where the server does not know it yet, as soon as it does.
   void cancel() {
     if (!busy()) return;
-    dropped_ = true;
-    interrupt();
+    canceling_ = true;
+    if (known_ && phase_ != Phase::over) requests_.ask();
+    requests_.extend();
   }
 
-  /// Cancels the goal, but hands on what comes of it; that it ends as cancelled is an error.
-  void interrupt() {
-    if (!busy()) return;
-    ending_ = true;
-    // Not again while it is to answer: rclcpp_action may be about to tell of the answer, with a lock that asking takes.
-    if (known_ && !(asked_ && deadline_.running())) ask_to_cancel();
+  /// Reports a goal that has not ended when the node ends, once.
+  void leave() {
+    if ((phase_ != Phase::sent && phase_ != Phase::accepted) || std::exchange(left_, true)) return;
+    warn(left_behind(phase_ == Phase::accepted, requests_.accepted(), trouble(), "node"));
   }
 
  protected:
   enum class Phase { idle, waiting, sent, accepted, over };
 
   /// `timeout`: of the search for a server together with the wait for its acceptance, never of the goal's work; of a
-  /// cancel; from the end of a goal to its result. `place`: what a countdown begins with.
+  /// cancel, which is repeated after `retry`, or never where that is 0; from the end of a goal to its result. `place`:
+  /// what a countdown begins with.
   template <typename... Place>
-  GoalClient(std::chrono::milliseconds timeout, Handlers handlers, Place&... place)
+  GoalClient(std::chrono::milliseconds timeout, std::chrono::milliseconds retry, Handlers handlers, Place&... place)
       : handlers_(std::move(handlers)),
         timeout_(timeout),
         within_(" within " + std::to_string(timeout.count()) + " ms"),
+        not_accepted_("not accepted" + within_),
         deadline_(place..., timeout, [this] { expire(); }),
         poll_(place..., std::chrono::milliseconds(50), [this] { poll(); }),
-        until_lost_(place..., std::chrono::seconds(30), [this] { fail("lost"); }) {}
+        until_lost_(place..., std::chrono::seconds(30),
+                    [this] { fail(Failure::lost, "neither accepted nor rejected"); }),
+        requests_(timeout, retry,
+                  typename CancelRequests<Countdown>::Actions{[this] { request_cancel(); },
+                                                              [this](const std::string& text) { warn(text); }},
+                  place...) {}
 
   // What the middleware does.
 
@@ -77,6 +91,8 @@ class GoalClient {
   virtual bool is_served() = 0;
   /// Whether the server that has the goal is gone; asked after `is_served`.
   virtual bool is_gone() = 0;
+  /// Whether the server says that the goal is being canceled.
+  virtual bool is_canceling() = 0;
   /// Sends the goal; false: that is not possible now.
   virtual bool send() = 0;
   /// Asks the server to cancel the goal, if that is possible yet.
@@ -92,76 +108,88 @@ class GoalClient {
   /// Begins to look for a server, for a new goal.
   void begin() {
     phase_ = Phase::waiting;
+    left_ = false;
     unsent_ = "no server";
-    latest_ = std::chrono::steady_clock::now() + timeout_;
+    until_ = std::chrono::steady_clock::now() + timeout_;
+    requests_.reset();
     deadline_.start();
     poll();
   }
 
-  /// The server knows the goal: it can be cancelled.
+  /// The server knows the goal: it can be canceled.
   void know() {
-    if (!std::exchange(known_, true) && ending_) ask_to_cancel();
+    if (!std::exchange(known_, true) && canceling_) requests_.ask();
   }
 
   void accept() {
     if (phase_ != Phase::sent) return;
     phase_ = Phase::accepted;
-    if (!asked_) deadline_.stop();
+    deadline_.stop();
     until_lost_.stop();
     know();
   }
 
-  /// The server cancels the goal, or refuses to.
-  void cancel_answered(bool cancels) {
-    deadline_.stop();
-    if (!cancels) warn("the server refuses to cancel the goal");
+  void cancel_answered(CancelAnswer answer) {
+    if (answer == CancelAnswer::accepted) {
+      if (!busy()) return;
+      requests_.accept();
+      accept();
+    } else if (phase_ == Phase::accepted && !requests_.accepted()) {
+      if (answer == CancelAnswer::refused) requests_.refuse();
+      if (answer == CancelAnswer::terminated) await_result();
+      if (answer == CancelAnswer::unknown) fail(Failure::lost, "the server does not know the goal");
+    }
   }
+
+  void hear(const FeedbackType& feedback) { handlers_.feedback(feedback); }
 
   /// The goal is over, its result is not there yet.
   void await_result() {
     phase_ = Phase::over;
+    until_ = std::chrono::steady_clock::now() + kFarewell;
+    until_lost_.stop();
+    requests_.stop();
     deadline_.start();
   }
 
   void succeed(const ResultType& result) {
-    dropped_ = false;
-    finish([this, &result] { handlers_.response(result); });
+    forget();
+    handlers_.response(result);
   }
 
-  /// The goal has ended as cancelled. `more`: what the server says about it.
-  void cancelled(const std::string& more = "") {
-    const std::string why =
-        (ending_ ? "cancelled by the controller itself, an error to the model" : "cancelled by someone else") + more;
-    finish([this, why] { handlers_.error(why); });
+  /// The goal has ended as canceled. `more`: what the server says about it.
+  void canceled(const std::string& more = "", const ResultType& result = ResultType()) {
+    const std::string by =
+        canceling_ ? "canceled by the controller itself, an error to the model" : "canceled by someone else";
+    finish(handlers_.canceled, Failure::canceled, late_ ? "canceled" : by + more, result);
   }
 
-  /// The goal has ended, not as it should have.
-  void fail(const std::string& why) {
-    dropped_ = false;
-    finish([this, why] { handlers_.error(why); });
+  void abort(const std::string& more = "", const ResultType& result = ResultType()) {
+    finish(handlers_.error, Failure::aborted, "aborted" + more, result);
   }
+
+  /// Nothing is known of a result.
+  void fail(Failure reason, const std::string& why) { finish(handlers_.error, reason, why, ResultType()); }
 
   void forget() {
     ++number_;
     phase_ = Phase::idle;
-    dropped_ = ending_ = asked_ = known_ = false;
+    canceling_ = known_ = late_ = false;
     deadline_.stop();
     until_lost_.stop();
+    requests_.stop();
     reset();
   }
 
   Phase phase() const { return phase_; }
   /// Which goal this is: what comes of another one has another number.
   std::uint64_t number() const { return number_; }
-  /// Whether nobody wants to know what comes of the goal.
-  bool dropped() const { return dropped_; }
-  const Handlers& handlers() const { return handlers_; }
 
  private:
   void poll() {
     const bool served = is_served();
-    if (phase_ == Phase::waiting && ending_) {
-      cancelled();
+    if (phase_ == Phase::waiting && canceling_) {
+      finish(handlers_.canceled, Failure::canceled, "canceled before it was sent", ResultType());
     } else if (phase_ == Phase::waiting && served) {
       phase_ = Phase::sent;
       if (!send()) {
@@ -169,70 +197,63 @@ class GoalClient {
         unsent_ = "the goal can't be sent";
       }
     } else if (busy() && phase_ != Phase::waiting && is_gone()) {
-      fail("the server is gone");
+      fail(Failure::lost, "the server is gone");
     }
     if (busy() || keeps_looking()) poll_.start();
   }
 
-  void ask_to_cancel() {
-    asked_ = true;
-    deadline_.start();
-    request_cancel();
-  }
-
   void expire() {
     switch (phase_) {
-      case Phase::idle:
-        break;
       case Phase::waiting:
-        fail(unsent_ + within_);
+        fail(Failure::unavailable, unsent_ + within_);
         break;
       case Phase::sent:
-        // It may still begin, and is cancelled then. So long after this it is lost.
+        // It may still begin, and is canceled then.
+        warn(not_accepted_);
+        late_ = canceling_ = true;
         until_lost_.start();
-        ending_ = true;
         request_cancel();
-        if (!std::exchange(dropped_, true)) {
-          handlers_.error("not accepted" + within_);
-        } else if (asked_) {
-          cancel_answered(false);
-        }
-        break;
-      case Phase::accepted:
-        cancel_answered(false);
         break;
       case Phase::over:
-        fail("no result" + within_ + " of its end");
+        if (is_canceling()) {
+          // Somebody else had it canceled before: a server calls that terminated, too.
+          phase_ = Phase::accepted;
+          requests_.reset();
+          requests_.accept();
+        } else {
+          fail(Failure::lost, "the goal has ended, but its result did not come" + within_);
+        }
+        break;
+      case Phase::idle:
+      case Phase::accepted:
         break;
     }
   }
 
-  /// The goal is over; `tell` says how, where that matters.
-  template <typename Tell>
-  void finish(Tell tell) {
-    const bool dropped = dropped_;
+  /// The goal is over.
+  void finish(const Ended& told, Failure reason, const std::string& why, const ResultType& result) {
+    const bool late = late_ && (reason == Failure::canceled || reason == Failure::aborted);
+    const std::string text = late ? "accepted too late, then " + why : why;
     forget();
-    if (dropped) {
-      handlers_.ended();
-    } else {
-      tell();
-    }
+    told(late ? Failure::timeout : reason, text, result);
   }
 
   const Handlers handlers_;
   const std::chrono::milliseconds timeout_;
   const std::string within_;
+  const std::string not_accepted_;
   std::string unsent_;  ///< Why the goal was not sent yet.
-  std::chrono::steady_clock::time_point latest_;
+  std::chrono::steady_clock::time_point until_;
   Phase phase_ = Phase::idle;
-  bool known_ = false;    ///< To the server.
-  bool ending_ = false;   ///< Somebody here wants it to end,
-  bool asked_ = false;    ///< and the server was asked to cancel it;
-  bool dropped_ = false;  ///< nobody wants to know how.
+  bool known_ = false;      ///< To the server.
+  bool canceling_ = false;  ///< Somebody here wants it to end.
+  bool late_ = false;       ///< It was not accepted in time.
+  bool left_ = false;       ///< It was reported as left behind.
   std::uint64_t number_ = 0;
   Countdown deadline_;
   Countdown poll_;
   Countdown until_lost_;
+  CancelRequests<Countdown> requests_;
 };
 
 }  // namespace ROBOSC_VERSION

@@ -2,10 +2,13 @@
 #ifndef ROBOSC_GOAL_PROXY_HPP_
 #define ROBOSC_GOAL_PROXY_HPP_
 
+#include <chrono>
 #include <functional>
 #include <string>
 #include <utility>
 
+#include "robosc/cancel_requests.hpp"
+#include "robosc/failure.hpp"
 #include "robosc/version.hpp"
 
 namespace robosc {
@@ -13,18 +16,21 @@ inline namespace ROBOSC_VERSION {
 
 /// What stands between a controller and the robot's action. One goal runs at a time; another one is rejected until that
 /// has ended. A derived class hands on what both sides say, one by one, so that goals keep their identity.
-template <typename Goal, typename Feedback, typename Result>
+template <typename Countdown, typename Goal, typename Feedback, typename Result>
 class GoalProxy {
  public:
+  /// Why a goal has ended without success, and the result that came with its end, else a default one.
+  using Ended = std::function<void(Failure reason, const std::string& why, const Result& result)>;
+
   /// What the supervisor has to say and to hear.
   struct Handlers {
-    std::function<bool(const Goal&)> goal;            ///< Whether a goal goes on.
-    std::function<void()> busy;                       ///< A goal is rejected because another one has not ended.
-    std::function<void(const Feedback&)> feedback;    ///< The goal at hand goes on.
-    std::function<void(const Result&)> response;      ///< It has succeeded.
-    std::function<void(const std::string&)> error;    ///< It has not, and why.
-    std::function<void()> canceled;                   ///< It has ended because of a cancel of the supervisor's.
-    std::function<void(const std::string&)> refused;  ///< The robot does not cancel it.
+    std::function<bool(const Goal&)> goal;          ///< Whether a goal goes on.
+    std::function<void()> busy;                     ///< A goal is rejected because another one has not ended.
+    std::function<void(const Feedback&)> feedback;  ///< The goal at hand goes on.
+    std::function<void(const Result&)> response;    ///< It has succeeded.
+    Ended error;                                    ///< It was not carried out, aborted or lost.
+    Ended canceled;  ///< It has ended because of a cancel; the reason counts where the model did not cancel it.
+    std::function<void(const std::string&)> warn;  ///< The goal at hand has not ended though it should have.
   };
 
   GoalProxy(const GoalProxy&) = delete;
@@ -33,30 +39,50 @@ class GoalProxy {
 
   /// Cancels the goal at hand, if there is one; before the robot has accepted it, as soon as it does.
   void cancel() {
-    if (!running_ || cancelled_) return;
-    cancelled_ = true;
-    if (accepted_) send_cancel();
+    if (!running_) return;
+    canceling_ = true;
+    if (accepted_ && !over_) requests_.ask();
+  }
+
+  /// Why the goal at hand has not ended though it should have; empty where nothing is wrong.
+  std::string trouble() const { return late_ && !accepted_ ? "not accepted" + within_ : requests_.trouble(); }
+
+  /// Whether the end of the layer waits: for the acceptance of a goal that it cancels, for the answer, for its end.
+  bool waits() const { return running_ && canceling_ && !over_ && (requests_.waits() || (!accepted_ && !late_)); }
+
+  /// Reports a goal that the layer has canceled and that has not ended when the layer ends, once.
+  void leave() {
+    if (!running_ || !canceling_ || over_ || std::exchange(left_, true)) return;
+    handlers_.warn(left_behind(accepted_, requests_.accepted(), trouble(), "layer"));
   }
 
  protected:
-  /// `within`: the time for acceptance, as " within 5000 ms".
-  GoalProxy(std::string within, Handlers handlers) : handlers_(std::move(handlers)), within_(std::move(within)) {}
+  /// `timeout`: for acceptance, for the answer to a cancel, which is repeated after `retry`, or never where that is 0,
+  /// for a server that is missing, and for the result of a goal that has ended. `place`: what a countdown begins with.
+  template <typename... Place>
+  GoalProxy(std::chrono::milliseconds timeout, std::chrono::milliseconds retry, Handlers handlers, Place&... place)
+      : handlers_(std::move(handlers)),
+        within_(" within " + std::to_string(timeout.count()) + " ms"),
+        requests_(timeout, retry,
+                  typename CancelRequests<Countdown>::Actions{
+                      [this] { send_cancel(); }, [this](const std::string& text) { handlers_.warn(text); }},
+                  place...) {}
 
   // What the middleware does.
 
   /// Whether the robot can be asked for what comes next.
   virtual bool is_served() = 0;
+  /// Whether the robot says that the goal at hand is being canceled.
+  virtual bool is_canceling() = 0;
   /// Hands the goal on to the robot; false: that is not possible now.
   virtual bool send() = 0;
   /// Asks the robot to cancel the goal at hand.
   virtual void send_cancel() = 0;
-  /// The time for acceptance, for the answer to a cancel, or for a server that is missing, begins anew.
-  virtual void restart() = 0;
+  /// The time for acceptance, for a result, or for a server that is missing, begins anew; `more` is added to it.
+  virtual void restart(std::chrono::milliseconds more = std::chrono::milliseconds(0)) = 0;
   /// Whether that time is over.
   virtual bool is_over() = 0;
-  /// That time is over for a goal that is to be cancelled, and whose server is there.
-  virtual void cancel_unanswered() = 0;
-  /// Nobody waits for the goal any more: the controller is told, and a robot that has it. Calls `finish`.
+  /// Nobody waits for the goal any more: the controller is told, and a robot that has it.
   virtual void abandon(const std::string& why) = 0;
 
   // What the controller and the robot do.
@@ -69,7 +95,8 @@ class GoalProxy {
       return false;
     }
     running_ = true;
-    sent_ = accepted_ = cancelled_ = false;
+    sent_ = accepted_ = canceling_ = late_ = over_ = left_ = false;
+    requests_.reset();
     keep();
     running_ = handlers_.goal(goal);
     if (running_) restart();
@@ -79,64 +106,119 @@ class GoalProxy {
   /// To be called again and again while a goal runs.
   void look() {
     if (!running_) return;
-    if (cancelled_ && !sent_) return fail("cancelled before it was sent");
+    if (canceling_ && !sent_) {
+      const std::string why = "canceled before it was sent";
+      finish();
+      handlers_.canceled(Failure::canceled, why, Result());
+      return abandon(why);
+    }
     const bool served = is_served();
     if (!sent_ && served) {
       sent_ = send();
       if (sent_) return;
     }
-    if (accepted_ && served) {
-      if (!cancelled_) {
-        restart();
-      } else if (is_over()) {
-        cancel_unanswered();
-      }
+    if (accepted_ && served && !over_) {
+      restart();
     } else if (is_over()) {
-      fail(accepted_ ? "the server is gone" : (sent_ ? "not accepted" : "no server") + within_);
+      expire();
     }
   }
 
   void accept() {
-    if (accepted_) return;
-    accepted_ = true;
+    if (std::exchange(accepted_, true)) return;
     restart();
-    if (cancelled_) send_cancel();
+    if (canceling_) requests_.ask();
+  }
+
+  /// The robot has answered a request of the layer's to cancel the goal at hand.
+  void cancel_answered(CancelAnswer answer) {
+    if (!running_) return;
+    if (answer == CancelAnswer::accepted) {
+      requests_.accept();
+    } else if (accepted_ && !over_ && !requests_.accepted()) {
+      if (answer == CancelAnswer::refused) requests_.refuse();
+      if (answer == CancelAnswer::terminated) await_result();
+      if (answer == CancelAnswer::unknown) fail(Failure::lost, "the server does not know the goal");
+    }
+  }
+
+  /// The goal at hand has ended, its result is not there yet.
+  void await_result() {
+    if (std::exchange(over_, true)) return;
+    requests_.stop();
+    restart();
+  }
+
+  /// It has not ended after all.
+  void resume() {
+    if (!std::exchange(over_, false)) return;
+    requests_.reset();
+    if (canceling_) requests_.ask();
   }
 
   void hear(const Feedback& feedback) { handlers_.feedback(feedback); }
 
-  /// The robot's goal has ended.
+  // The robot's goal has ended; `finish` comes before.
+
   void succeed(const Result& result) { handlers_.response(result); }
-
-  void end(const std::string& why) {
-    if (cancelled_ && why.compare(0, 9, "cancelled") == 0) {
-      handlers_.canceled();
-    } else {
-      handlers_.error(why);
-    }
+  void canceled(const Result& result) {
+    handlers_.canceled(late_ ? Failure::timeout : Failure::canceled, "canceled", result);
   }
+  void abort(const Result& result) { handlers_.error(late_ ? Failure::timeout : Failure::aborted, "aborted", result); }
+  void reject(const Result& result) { handlers_.error(Failure::rejected, "rejected", result); }
 
-  void fail(const std::string& why) {
-    end(why);
+  /// It has ended without a result, or nobody knows what becomes of it.
+  void fail(Failure reason, const std::string& why) {
+    finish();
+    handlers_.error(reason, why, Result());
     abandon(why);
   }
 
   /// The goal is over.
-  void finish() { running_ = false; }
+  void finish() {
+    running_ = false;
+    requests_.stop();
+  }
 
   bool running() const { return running_; }
   bool sent() const { return sent_; }
   bool accepted() const { return accepted_; }
-  const Handlers& handlers() const { return handlers_; }
-  const std::string& within() const { return within_; }
+  bool over() const { return over_; }
 
  private:
+  void expire() {
+    if (over_ && is_canceling()) {
+      // Somebody else had it canceled before: a server calls that terminated, too.
+      over_ = false;
+      requests_.reset();
+      requests_.accept();
+    } else if (over_) {
+      fail(Failure::lost, "the goal has ended, but its result did not come" + within_);
+    } else if (accepted_) {
+      fail(Failure::lost, "the server is gone");
+    } else if (late_) {
+      fail(Failure::lost, "neither accepted nor rejected");
+    } else if (sent_) {
+      // The robot might still accept it: then it is canceled.
+      handlers_.warn("not accepted" + within_);
+      late_ = canceling_ = true;
+      restart(std::chrono::seconds(30));
+      send_cancel();
+    } else {
+      fail(Failure::unavailable, "no server" + within_);
+    }
+  }
+
   const Handlers handlers_;
   const std::string within_;
   bool running_ = false;
   bool sent_ = false;
   bool accepted_ = false;   ///< By the robot.
-  bool cancelled_ = false;  ///< By the supervisor.
+  bool canceling_ = false;  ///< By the layer.
+  bool late_ = false;       ///< It was not accepted in time.
+  bool left_ = false;       ///< It was reported as left behind.
+  bool over_ = false;       ///< It has ended, its result is not there yet.
+  CancelRequests<Countdown> requests_;
 };
 
 }  // namespace ROBOSC_VERSION

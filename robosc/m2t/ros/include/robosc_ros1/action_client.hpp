@@ -27,7 +27,8 @@ class ActionClient : public GoalClient<Countdown, typename Type::_action_feedbac
 
   ActionClient(ros::NodeHandle& node, const std::string& name, std::chrono::milliseconds timeout,
                typename Base::Handlers handlers)
-      : Base(timeout, std::move(handlers), node),
+      // There is no answer to a request to cancel in ROS 1, and so no refusal that another one would follow.
+      : Base(timeout, std::chrono::milliseconds(0), std::move(handlers), node),
         name_(node.resolveName(name)),
         client_(node, name, node.getCallbackQueue()) {}
 
@@ -69,6 +70,9 @@ class ActionClient : public GoalClient<Countdown, typename Type::_action_feedbac
     return true;
   }
 
+  /// A server of ROS 1 has ended a goal where it says so.
+  bool is_canceling() override { return false; }
+
   bool keeps_looking() const override { return !lost_.isExpired(); }
 
   bool send() override {
@@ -94,7 +98,7 @@ class ActionClient : public GoalClient<Countdown, typename Type::_action_feedbac
         break;
       case CommState::RECALLING:
       case CommState::PREEMPTING:
-        this->cancel_answered(true);
+        this->cancel_answered(CancelAnswer::accepted);
         break;
       case CommState::WAITING_FOR_RESULT:
         this->await_result();
@@ -110,28 +114,30 @@ class ActionClient : public GoalClient<Countdown, typename Type::_action_feedbac
   void receive(const GoalHandle& goal, const Feedback& feedback) {
     if (!this->busy() || goal != goal_) return;
     this->accept();  // feedback may overtake the status
-    this->handlers().feedback(feedback);
+    this->hear(feedback);
   }
 
   void finish() {
     const TerminalState state = goal_.getTerminalState();
     const ResultConstPtr result = goal_.getResult();
     const std::string text = state.getText().empty() ? "" : " (" + state.getText() + ")";
+    const Result ended = result ? *result : Result();
     switch (state.state_) {
       case TerminalState::SUCCEEDED:
-        if (this->dropped()) ROS_INFO("%s: cancelled too late, the goal has succeeded", name_.c_str());
-        return result ? this->succeed(*result) : this->fail("the server has lost the goal" + text);
+        return result ? this->succeed(*result) : lose(text);
       case TerminalState::REJECTED:
-        return this->fail("rejected" + text);
+        return this->fail(Failure::rejected, "rejected" + text);
       case TerminalState::ABORTED:
-        return this->fail("aborted" + text);
+        return this->abort(text, ended);
       case TerminalState::RECALLED:
       case TerminalState::PREEMPTED:
-        return this->cancelled(text);
+        return this->canceled(text, ended);
       default:
-        return this->fail("the server has lost the goal" + text);
+        return lose(text);
     }
   }
+
+  void lose(const std::string& text) { this->fail(Failure::lost, "the server has lost the goal" + text); }
 
   const std::string name_;
   int missed_ = 0;

@@ -23,19 +23,21 @@ inline namespace ROBOSC_VERSION {
 
 /// The five topics of an action towards the controller, behind which stand those of the robot.
 template <typename Type>
-class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_type,
+class ActionProxy : public GoalProxy<Countdown, typename Type::_action_goal_type::_goal_type,
                                      typename Type::_action_feedback_type::_feedback_type,
                                      typename Type::_action_result_type::_result_type> {
  public:
   using ActionGoal = typename Type::_action_goal_type;
   using ActionFeedback = typename Type::_action_feedback_type;
   using ActionResult = typename Type::_action_result_type;
-  using Base = GoalProxy<typename ActionGoal::_goal_type, typename ActionFeedback::_feedback_type,
+  using Base = GoalProxy<Countdown, typename ActionGoal::_goal_type, typename ActionFeedback::_feedback_type,
                          typename ActionResult::_result_type>;
 
-  ActionProxy(const std::string& controller_side, const std::string& robot_side, std::chrono::milliseconds timeout,
-              typename Base::Handlers handlers)
-      : Base(" within " + std::to_string(timeout.count()) + " ms", std::move(handlers)),
+  ActionProxy(ros::NodeHandle& node, const std::string& controller_side, const std::string& robot_side,
+              std::chrono::milliseconds timeout, typename Base::Handlers handlers)
+      // There is no answer to a request to cancel in ROS 1, and so no refusal that another one would follow.
+      : Base(timeout, std::chrono::milliseconds(0), std::move(handlers), node),
+        node_(node),
         timeout_(std::chrono::duration<double>(timeout).count()) {
     const auto hints = ros::TransportHints().tcpNoDelay();
     goal_publisher_ = node_.advertise<ActionGoal>(robot_side + "/goal", kQueueDepth);
@@ -63,8 +65,6 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
     const bool admitted = this->admit(message.goal, [this, &message] {
       message_ = message;
       status_ = Status::PENDING;
-      refused_ = false;
-      result_due_ = 0.0;
       cancels_before_.clear();
       if (!message.goal_id.id.empty()) return;
       // The server would name it, and the layer would not know it again.
@@ -105,6 +105,9 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
           status_ = status.status;
           under_way = true;
         }
+        if (status.status == Status::PREEMPTING || status.status == Status::RECALLING) {
+          this->cancel_answered(CancelAnswer::accepted);
+        }
         if (status.status != Status::PENDING && status.status != Status::RECALLING &&
             status.status != Status::REJECTED) {
           this->accept();
@@ -121,9 +124,9 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
       known.status_list.back().status = status_;
     }
     if (under_way) {
-      result_due_ = 0.0;
-    } else if (this->running() && this->accepted() && result_due_ == 0.0) {
-      result_due_ = Timer::now() + timeout_;
+      this->resume();
+    } else if (this->running() && this->accepted()) {
+      this->await_result();
     }
     status_publisher_.publish(known);
   }
@@ -136,25 +139,28 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
 
   void on_result(const ActionResult& message) {
     if (!is_running(message.status.goal_id)) return;
-    if (message.status.status == Status::SUCCEEDED) {
-      this->succeed(message.result);
-    } else {
-      this->end(ending(message.status.status));
-    }
     conclude();
+    switch (message.status.status) {
+      case Status::SUCCEEDED:
+        this->succeed(message.result);
+        break;
+      case Status::PREEMPTED:
+      case Status::RECALLED:
+        this->canceled(message.result);
+        break;
+      case Status::REJECTED:
+        this->reject(message.result);
+        break;
+      default:
+        this->abort(message.result);
+        break;
+    }
     result_publisher_.publish(message);
   }
 
   // Waiting.
 
-  // A result can be lost: actionlib publishes it once, and it reaches who is connected by then.
-  void watch() {
-    if (this->running() && result_due_ > 0.0 && Timer::now() >= result_due_) {
-      this->fail("the goal has ended, but its result did not come" + this->within());
-    } else {
-      this->look();
-    }
-  }
+  bool is_canceling() override { return false; }  // a robot of ROS 1 has ended a goal where it says so
 
   bool is_served() override {
     return goal_publisher_.getNumSubscribers() > 0 && cancel_publisher_.getNumSubscribers() > 0 &&
@@ -170,21 +176,14 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
   void send_cancel() override {
     actionlib_msgs::GoalID id;  // without a time, which would cancel other goals, too
     id.id = message_.goal_id.id;
-    restart();
     cancel_publisher_.publish(id);
   }
 
-  void restart() override {
-    end_ = Timer::now() + timeout_;
+  void restart(std::chrono::milliseconds more = std::chrono::milliseconds(0)) override {
+    end_ = Timer::now() + timeout_ + std::chrono::duration<double>(more).count();
     look_.start();
   }
   bool is_over() override { return Timer::now() >= end_; }
-
-  void cancel_unanswered() override {
-    if (refused_ || status_ != Status::ACTIVE) return;
-    refused_ = true;
-    this->handlers().refused("the server refuses to cancel the goal");
-  }
 
   // A robot that has the goal, or gets it yet, is told to cancel it.
   void abandon(const std::string& why) override {
@@ -217,18 +216,6 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
            status != Status::RECALLING;
   }
 
-  static std::string ending(std::uint8_t status) {
-    switch (status) {
-      case Status::REJECTED:
-        return "rejected";
-      case Status::PREEMPTED:
-      case Status::RECALLED:
-        return "cancelled";
-      default:
-        return "aborted";
-    }
-  }
-
   ros::NodeHandle node_;
   double timeout_;
   ros::Publisher goal_publisher_;
@@ -241,12 +228,10 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
   ros::Subscriber status_subscription_;
   ros::Subscriber feedback_subscription_;
   ros::Subscriber result_subscription_;
-  Timer look_{node_, std::chrono::milliseconds(20), [this] { watch(); }};
+  Timer look_{node_, std::chrono::milliseconds(20), [this] { this->look(); }};
   double end_ = 0.0;
-  double result_due_ = 0.0;  // by when the result of a goal that is over has to be there; 0: the goal is under way
   ActionGoal message_;
   std::uint8_t status_ = Status::PENDING;
-  bool refused_ = false;
   std::vector<actionlib_msgs::GoalID> cancels_before_;
   std::string ended_;
 };

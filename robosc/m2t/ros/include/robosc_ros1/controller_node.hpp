@@ -15,6 +15,7 @@
 #include "robosc/version.hpp"
 #include "robosc_ros1/countdown.hpp"
 #include "robosc_ros1/graph_monitor.hpp"
+#include "robosc_ros1/interruption.hpp"
 
 namespace robosc {
 inline namespace ROBOSC_VERSION {
@@ -26,6 +27,15 @@ class ControllerNode {
   ControllerNode& operator=(const ControllerNode&) = delete;
   virtual ~ControllerNode() = default;
 
+  /// Stops the robot, while nobody else delivers; then `deliver` hands on what comes in until it is known what becomes
+  /// of the goals, not for long.
+  template <typename Deliver>
+  void end(Deliver deliver) {
+    if (!std::exchange(stopping_, true)) halt();
+    const ros::SteadyTime until = ros::SteadyTime::now() + ros::WallDuration(kLongestEnd);
+    while (waits() && ros::SteadyTime::now() < until) deliver();
+  }
+
  protected:
   /// All that happens comes through the queue of `node`, which one thread serves.
   explicit ControllerNode(const ros::NodeHandle& node) : node_(node) {}
@@ -34,6 +44,8 @@ class ControllerNode {
 
   /// Stops the robot while all triggers are held.
   virtual void halt() = 0;
+  /// Whether the end waits for what becomes of a goal.
+  virtual bool waits() const { return false; }
   /// What else there is to do before the node ends.
   virtual void finish() {}
   /// A period is over.
@@ -68,8 +80,7 @@ class ControllerNode {
 
   /// The first thing that the destructor of a derived class does: nothing is delivered any more, but ROS still runs.
   void stop() {
-    if (std::exchange(stopping_, true)) return;
-    halt();
+    if (!std::exchange(stopping_, true)) halt();
     finish();
     ros::WallDuration(0.2).sleep();  // nothing tells when a message has left the node
   }

@@ -17,6 +17,9 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
+/// Seconds that the end of a node waits for what becomes of its goals.
+inline constexpr double kLongestEnd = 0.5;
+
 /// Waits for Ctrl-C, SIGTERM, a hangup, `rosnode kill` or a new node of the same name, so that ROS is still there for
 /// the last messages. To be made before any thread starts.
 class Interruption {

@@ -37,6 +37,7 @@ int run_controller(int argc, char** argv, const std::string& name) {
     spinner.start();
     interruption.wait();
     spinner.stop();
+    controller->end([&queue] { queue.callAvailable(ros::WallDuration(0.05)); });
     controller.reset();
     interruption.let_go();
   } catch (const std::exception& error) {

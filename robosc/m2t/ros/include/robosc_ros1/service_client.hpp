@@ -82,9 +82,10 @@ class ServiceClient final : public CallClient<Countdown, typename Type::Response
     if (link) link->getConnection()->drop(ros::Connection::Destructing);  // what the worker waits for
   }
 
-  std::string missing() override {
+  typename Base::Missing missing() override {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return found_ ? "no answer" : "no server";
+    if (found_) return {Failure::timeout, "no answer"};
+    return {Failure::unavailable, "no server"};
   }
 
   // On the worker's thread: one call after the other.
@@ -115,7 +116,7 @@ class ServiceClient final : public CallClient<Countdown, typename Type::Response
     if (answered && read(answer, *response)) {
       events_.push([this, number, response] { this->succeed(number, *response); });
     } else {
-      events_.push([this, number] { this->fail(number, "the call failed"); });
+      events_.push([this, number] { this->fail(number, Failure::failed, "the call failed"); });
     }
   }
 

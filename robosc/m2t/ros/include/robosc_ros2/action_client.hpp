@@ -2,17 +2,15 @@
 #ifndef ROBOSC_ROS2_ACTION_CLIENT_HPP_
 #define ROBOSC_ROS2_ACTION_CLIENT_HPP_
 
-#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <deque>
 #include <exception>
-#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
+#include <action_msgs/msg/goal_status.hpp>
 #include <action_msgs/srv/cancel_goal.hpp>
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_action/rclcpp_action.hpp>
@@ -20,6 +18,8 @@
 #include "robosc/callback_guard.hpp"
 #include "robosc/goal_client.hpp"
 #include "robosc/version.hpp"
+#include "robosc_ros2/action_servers.hpp"
+#include "robosc_ros2/cancel_answer.hpp"
 #include "robosc_ros2/countdown.hpp"
 
 namespace robosc {
@@ -32,18 +32,18 @@ class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typen
   using Goal = typename Type::Goal;
   using Base = GoalClient<Countdown, typename Type::Feedback, typename Type::Result>;
 
-  /// `quality`: of the feedback.
+  /// `quality`: of the feedback. A refused cancel is repeated after `retry`.
   template <typename Node>
   ActionClient(Node& node, const CallbackGuard& guard, const std::string& name, const rclcpp::QoS& quality,
-               std::chrono::milliseconds timeout, typename Base::Handlers handlers)
-      : Base(timeout, std::move(handlers), node, guard),
+               std::chrono::milliseconds timeout, std::chrono::milliseconds retry, typename Base::Handlers handlers)
+      : Base(timeout, retry, std::move(handlers), node, guard),
         guard_(guard),
         name_(name),
         logger_(node.get_logger()),
         client_(rclcpp_action::create_client<Type>(&node, name, nullptr, options(quality))),
         heard_(node.template create_subscription<FeedbackMessage>(
             name + "/_action/feedback", quality, guard([this](const FeedbackMessage& message) { hear(message); }))),
-        servers_([&node, name] { return node.get_publishers_info_by_topic(name + "/_action/status"); }) {}
+        servers_(node, name) {}
 
   /// A goal that did not end has to be waited for: see `busy`.
   void start(const Goal& goal) {
@@ -58,7 +58,6 @@ class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typen
   using Phase = typename Base::Phase;
 
   static constexpr std::size_t kEarly = 10;
-  static constexpr int kLooks = 4;  ///< How many looks there are for each at the graph.
 
   static rcl_action_client_options_t options(const rclcpp::QoS& quality) {
     rcl_action_client_options_t options = rcl_action_client_get_default_options();
@@ -66,10 +65,14 @@ class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typen
     return options;
   }
 
+  bool is_canceling() override {
+    return handle_ && handle_->get_status() == action_msgs::msg::GoalStatus::STATUS_CANCELING;
+  }
+
   bool is_served() override { return this->phase() != Phase::waiting || client_->action_server_is_ready(); }
 
   bool send() override {
-    server_ = servers_();
+    servers_.remember();
     typename Client::SendGoalOptions options;
     options.goal_response_callback = guard_([this, number = this->number()](const Handle& handle) {
       if (number == this->number()) {
@@ -96,7 +99,7 @@ class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typen
   }
 
   void answered(const Handle& handle) {
-    if (!handle) return this->fail("rejected");
+    if (!handle) return this->fail(Failure::rejected, "rejected");
     handle_ = handle;
     this->accept();
     for (const FeedbackMessage& message : std::exchange(early_, {})) hear(message);
@@ -108,7 +111,7 @@ class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typen
       early_.push_back(message);
       if (early_.size() > kEarly) early_.pop_front();
     } else if (handle_ && message.goal_id.uuid == handle_->get_goal_id()) {
-      this->handlers().feedback(message.feedback);
+      Base::hear(message.feedback);
     }
   }
 
@@ -117,9 +120,9 @@ class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typen
       case rclcpp_action::ResultCode::SUCCEEDED:
         return this->succeed(*result.result);
       case rclcpp_action::ResultCode::CANCELED:
-        return this->cancelled();
+        return this->canceled("", *result.result);
       default:
-        return this->fail("aborted");
+        return this->abort("", *result.result);
     }
   }
 
@@ -127,14 +130,11 @@ class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typen
     using action_msgs::srv::CancelGoal;
     if (!handle_) return;
     try {
-      client_->async_cancel_goal(
-          handle_, mine<CancelGoal::Response::SharedPtr>([this](const auto& answer) {
-            const bool none =
-                answer->return_code == CancelGoal::Response::ERROR_NONE && answer->goals_canceling.empty();
-            this->cancel_answered(!none && answer->return_code != CancelGoal::Response::ERROR_REJECTED);
-          }));
+      client_->async_cancel_goal(handle_, mine<CancelGoal::Response::SharedPtr>([this](const auto& answer) {
+                                   this->cancel_answered(cancel_answer(*answer));
+                                 }));
     } catch (const rclcpp_action::exceptions::UnknownGoalHandleError&) {
-      // It has ended; its result is on the way.
+      this->await_result();  // It has ended; its result is on the way.
     }
   }
 
@@ -147,21 +147,7 @@ class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typen
     }
   }
 
-  /// A server that dies can't say so: it has died when none of those that were there for the goal is left.
-  bool is_gone() override {
-    if (++looks_ % kLooks != 0) return false;
-    const auto is_left = [this](const rclcpp::TopicEndpointInfo& now) {
-      return std::any_of(server_.begin(), server_.end(), [&now](const rclcpp::TopicEndpointInfo& then) {
-        return now.endpoint_gid() == then.endpoint_gid();
-      });
-    };
-    try {
-      const std::vector<rclcpp::TopicEndpointInfo> now = servers_();
-      return std::none_of(now.begin(), now.end(), is_left);
-    } catch (const rclcpp::exceptions::RCLError&) {
-      return false;  // The context is closed: the node is at its end.
-    }
-  }
+  bool is_gone() override { return servers_.are_gone(); }
 
   void reset() override {
     handle_.reset();
@@ -176,11 +162,9 @@ class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typen
   typename Client::SharedPtr client_;
   typename rclcpp::Subscription<FeedbackMessage>::SharedPtr heard_;
   std::deque<FeedbackMessage> early_;
-  std::function<std::vector<rclcpp::TopicEndpointInfo>()> servers_;
-  std::vector<rclcpp::TopicEndpointInfo> server_;
+  ActionServers servers_;
   Goal goal_;
   Handle handle_;
-  int looks_ = 0;
 };
 
 }  // namespace ROBOSC_VERSION

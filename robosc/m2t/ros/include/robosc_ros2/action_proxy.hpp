@@ -20,6 +20,8 @@
 #include "robosc/callback_guard.hpp"
 #include "robosc/goal_proxy.hpp"
 #include "robosc/version.hpp"
+#include "robosc_ros2/action_servers.hpp"
+#include "robosc_ros2/cancel_answer.hpp"
 #include "robosc_ros2/countdown.hpp"
 
 namespace robosc {
@@ -27,18 +29,19 @@ inline namespace ROBOSC_VERSION {
 
 /// The three services and two topics of an action towards the controller, behind which stand those of the robot.
 template <typename Type>
-class ActionProxy : public GoalProxy<typename Type::Goal, typename Type::Feedback, typename Type::Result> {
+class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Type::Feedback, typename Type::Result> {
  public:
-  using Base = GoalProxy<typename Type::Goal, typename Type::Feedback, typename Type::Result>;
+  using Base = GoalProxy<Countdown, typename Type::Goal, typename Type::Feedback, typename Type::Result>;
 
   /// `quality`: of the feedback that the robot sends.
   ActionProxy(rclcpp::Node& node, const CallbackGuard& guard, const std::string& controller_side,
               const std::string& robot_side, const rclcpp::QoS& quality, std::chrono::milliseconds timeout,
               typename Base::Handlers handlers)
-      : Base(" within " + std::to_string(timeout.count()) + " ms", std::move(handlers)),
+      : Base(timeout, timeout, std::move(handlers), node, guard),
         guard_(guard),
         clock_(waiting_clock(node)),
-        timeout_(timeout) {
+        timeout_(timeout),
+        servers_(node, robot_side) {
     const std::string inside = controller_side + "/_action/", outside = robot_side + "/_action/";
     const rclcpp::QoS lasting = rclcpp::QoS(1).transient_local();
 
@@ -87,11 +90,11 @@ class ActionProxy : public GoalProxy<typename Type::Goal, typename Type::Feedbac
     typename GetResult::Response result;
   };
 
-  /// A request to cancel that the robot has not answered; of the controller where there is a `caller`.
+  /// A request of the controller's to cancel that the robot has not answered.
   struct Cancelling {
     std::uint64_t number;
     std::int64_t request;
-    std::optional<rmw_request_id_t> caller;
+    rmw_request_id_t caller;
     rclcpp::Time deadline;
   };
 
@@ -134,7 +137,7 @@ class ActionProxy : public GoalProxy<typename Type::Goal, typename Type::Feedbac
       if (response.accepted) cancel_goal(id);  // too late: nobody waits for it
       return;
     }
-    if (!response.accepted) return this->fail("rejected");
+    if (!response.accepted) return this->fail(Failure::rejected, "rejected");
     answer_goal(caller_, response);
     auto request = std::make_shared<typename GetResult::Request>();
     request->goal_id.uuid = id;
@@ -145,7 +148,7 @@ class ActionProxy : public GoalProxy<typename Type::Goal, typename Type::Feedbac
     this->accept();
     if (asked) return;
     send_cancel();
-    this->fail("its result can't be asked for");
+    this->fail(Failure::lost, "its result can't be asked for");
   }
 
   void on_feedback(const FeedbackMessage& message) {
@@ -155,10 +158,17 @@ class ActionProxy : public GoalProxy<typename Type::Goal, typename Type::Feedbac
   }
 
   void on_result(const typename GetResult::Response& response) {
-    if (response.status == Status::STATUS_SUCCEEDED) {
-      this->succeed(response.result);
-    } else {
-      this->end(response.status == Status::STATUS_CANCELED ? "cancelled" : "aborted");
+    this->finish();
+    switch (response.status) {
+      case Status::STATUS_SUCCEEDED:
+        this->succeed(response.result);
+        break;
+      case Status::STATUS_CANCELED:
+        this->canceled(response.result);
+        break;
+      default:
+        this->abort(response.result);
+        break;
     }
     conclude(response);
   }
@@ -171,6 +181,7 @@ class ActionProxy : public GoalProxy<typename Type::Goal, typename Type::Feedbac
       if (ended_ && ended_->id == id) {
         statuses_.status_list.push_back(status);
       } else if (is_running(id)) {
+        status_ = status.status;
         statuses_.status_list.push_back(status);
         if (status.status > Status::STATUS_CANCELING) statuses_.status_list.back().status = Status::STATUS_EXECUTING;
       }
@@ -186,19 +197,23 @@ class ActionProxy : public GoalProxy<typename Type::Goal, typename Type::Feedbac
     this->look();
   }
 
-  bool is_served() override {
-    return this->sent() ? result_client_->service_is_ready() : goal_client_->service_is_ready();
-  }
+  bool is_canceling() override { return status_ == Status::STATUS_CANCELING; }
+
+  /// A server that has died and one that has come in its place offer the same services.
+  bool is_served() override { return this->accepted() ? !servers_.are_gone() : goal_client_->service_is_ready(); }
 
   bool send() override {
+    servers_.remember();
+    status_ = Status::STATUS_UNKNOWN;
     const auto answered = [this, id = id_](const typename SendGoal::Response& response) { on_accepted(id, response); };
     return ask<SendGoal>(*goal_client_, request_, answered).has_value();
   }
 
   void send_cancel() override { cancel_goal(id_); }
-  void restart() override { deadline_ = clock_->now() + timeout_; }
+  void restart(std::chrono::milliseconds more = std::chrono::milliseconds(0)) override {
+    deadline_ = clock_->now() + timeout_ + rclcpp::Duration(more);
+  }
   bool is_over() override { return clock_->now() >= deadline_; }
-  void cancel_unanswered() override { restart(); }  // see `forget_cancels`
 
   void abandon(const std::string&) override {
     if (!this->accepted()) answer_goal(caller_, typename SendGoal::Response());
@@ -210,9 +225,10 @@ class ActionProxy : public GoalProxy<typename Type::Goal, typename Type::Feedbac
   void conclude(const typename GetResult::Response& response) {
     this->finish();
     result_client_->prune_pending_requests();
-    // One that is accepted late is cancelled; so long after its time for acceptance is over it is taken for lost.
+    // One that is accepted late is canceled; so long after its time for acceptance is over it is taken for lost.
     const auto patience = timeout_.to_chrono<std::chrono::milliseconds>() + std::chrono::seconds(30);
     goal_client_->prune_requests_older_than(std::chrono::system_clock::now() - patience);
+    cancel_client_->prune_requests_older_than(std::chrono::system_clock::now() - patience);
     ended_ = Ended{id_, response};
     for (auto& status : statuses_.status_list) {
       if (status.goal_info.goal_id.uuid == id_) status.status = response.status;
@@ -224,37 +240,24 @@ class ActionProxy : public GoalProxy<typename Type::Goal, typename Type::Feedbac
   void cancel_goal(const Id& id) {
     auto request = std::make_shared<typename CancelGoal::Request>();
     request->goal_info.goal_id.uuid = id;
-    if (!ask_to_cancel(request, std::nullopt)) {
-      this->handlers().refused("the request to cancel the goal can't be sent");
-    }
+    ask<CancelGoal>(*cancel_client_, request, [this, id](const typename CancelGoal::Response& response) {
+      if (is_running(id)) this->cancel_answered(cancel_answer(response));
+    });
   }
 
-  bool ask_to_cancel(std::shared_ptr<typename CancelGoal::Request> request, std::optional<rmw_request_id_t> caller) {
+  bool ask_to_cancel(std::shared_ptr<typename CancelGoal::Request> request, const rmw_request_id_t& caller) {
     const auto sent = ask<CancelGoal>(
         *cancel_client_, request,
         [this, caller, number = ++cancel_number_](const typename CancelGoal::Response& response) {
           cancels_.erase(std::remove_if(cancels_.begin(), cancels_.end(),
                                         [number](const Cancelling& waiting) { return waiting.number == number; }),
                          cancels_.end());
-          if (caller) {
-            answer_cancel(*caller, response);
-          } else {
-            on_cancelling(response);
-          }
+          answer_cancel(caller, response);
         });
     if (!sent) return false;
     cancels_.push_back({cancel_number_, *sent, caller, clock_->now() + timeout_});
     timer_->reset();
     return true;
-  }
-
-  void on_cancelling(const typename CancelGoal::Response& response) {
-    using Answer = typename CancelGoal::Response;
-    // A goal that has ended meanwhile needs none.
-    const bool none = response.return_code == Answer::ERROR_NONE && response.goals_canceling.empty();
-    if (none || response.return_code == Answer::ERROR_REJECTED) {
-      this->handlers().refused("the server refuses to cancel the goal");
-    }
   }
 
   /// Nobody waits longer for what the robot does not answer.
@@ -263,11 +266,7 @@ class ActionProxy : public GoalProxy<typename Type::Goal, typename Type::Feedbac
       const Cancelling late = cancels_.front();
       cancels_.pop_front();
       cancel_client_->remove_pending_request(late.request);
-      if (late.caller) {
-        reject_cancel(*late.caller);
-      } else {
-        this->handlers().refused("the server does not answer the request to cancel the goal" + this->within());
-      }
+      reject_cancel(late.caller);
     }
   }
 
@@ -307,6 +306,8 @@ class ActionProxy : public GoalProxy<typename Type::Goal, typename Type::Feedbac
   const CallbackGuard& guard_;
   rclcpp::Clock::SharedPtr clock_;
   rclcpp::Duration timeout_;
+  ActionServers servers_;
+  std::int8_t status_ = Status::STATUS_UNKNOWN;  ///< Of the goal at hand, as the robot says.
   std::shared_ptr<rclcpp::Client<SendGoal>> goal_client_;
   std::shared_ptr<rclcpp::Client<GetResult>> result_client_;
   std::shared_ptr<rclcpp::Client<CancelGoal>> cancel_client_;

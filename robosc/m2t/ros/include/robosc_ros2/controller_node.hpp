@@ -35,13 +35,21 @@ class ControllerNode : public GuardedNode<Node> {
   /// The first thing that the destructor of a derived class does.
   void close() {
     shutdown_hook_.reset();
+    {
+      const auto lock = this->guard_.hold();
+      leave();
+    }
     GuardedNode<Node>::close();
   }
 
   // What the model decides.
 
-  /// Whether a goal may still be accepted, to be cancelled then.
+  /// Whether a goal has not ended.
+  virtual bool busy() const { return false; }
+  /// Whether the end waits for what becomes of a goal.
   virtual bool waits() const { return false; }
+  /// Reports goals that have not ended when the node ends.
+  virtual void leave() {}
   /// Stops the robot while all triggers are held.
   virtual void halt() = 0;
   /// What else there is to do before the node ends.
@@ -124,7 +132,12 @@ class ControllerNode : public GuardedNode<Node> {
         monitor_->stop();
       }
     };
-    shutdown_hook_.emplace(*this, end, [this] { return waits(); });
+    shutdown_hook_.emplace(*this, end, [this] {
+      const auto lock = this->guard_.hold();
+      if (waits()) return true;
+      leave();
+      return false;
+    });
   }
 
   /// Before the node ends, and while it can still send.

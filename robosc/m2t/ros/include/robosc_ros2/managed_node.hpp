@@ -32,6 +32,10 @@ class ManagedNode : public ControllerNode<rclcpp_lifecycle::LifecycleNode> {
   }
 
   CallbackReturn on_activate(const rclcpp_lifecycle::State& state) override {
+    if (busy()) {
+      RCLCPP_ERROR(get_logger(), "not activated: a goal of this node has not ended");
+      return CallbackReturn::FAILURE;
+    }
     const CallbackReturn done = LifecycleNode::on_activate(state);
     if (done == CallbackReturn::SUCCESS) activate();
     return done;
@@ -43,8 +47,8 @@ class ManagedNode : public ControllerNode<rclcpp_lifecycle::LifecycleNode> {
   }
 
   CallbackReturn on_cleanup(const rclcpp_lifecycle::State&) override {
-    if (waits()) {
-      RCLCPP_ERROR(get_logger(), "not cleaned up: a goal that is to be cancelled is not accepted yet");
+    if (busy()) {
+      RCLCPP_ERROR(get_logger(), "not cleaned up: a goal of this node has not ended");
       return CallbackReturn::FAILURE;
     }
     release();
@@ -53,14 +57,14 @@ class ManagedNode : public ControllerNode<rclcpp_lifecycle::LifecycleNode> {
 
   CallbackReturn on_error(const rclcpp_lifecycle::State&) override {
     if (active_) deactivate();
-    if (waits()) return CallbackReturn::FAILURE;
+    if (busy()) return CallbackReturn::FAILURE;
     release();
     return CallbackReturn::SUCCESS;
   }
 
   CallbackReturn on_shutdown(const rclcpp_lifecycle::State&) override {
     if (active_) deactivate();
-    if (!waits()) release();
+    if (!busy()) release();
     return CallbackReturn::SUCCESS;
   }
 

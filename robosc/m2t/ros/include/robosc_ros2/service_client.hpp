@@ -39,7 +39,7 @@ class ServiceClient final : public CallClient<Countdown, typename Type::Response
   void call(const Request& request) {
     number_ = this->begin();
     request_ = std::make_shared<Request>(request);
-    missing_ = "no server";
+    missing_ = {Failure::unavailable, "no server"};
     send();
   }
 
@@ -54,9 +54,9 @@ class ServiceClient final : public CallClient<Countdown, typename Type::Response
         this->succeed(number, *answer.get());
       });
       pending_ = client_->async_send_request(request_, answered).request_id;
-      missing_ = "no answer";
+      missing_ = {Failure::timeout, "no answer"};
     } catch (const std::exception&) {
-      missing_ = "the call can't be sent";
+      missing_ = {Failure::failed, "the call can't be sent"};
       search_.start();
     }
   }
@@ -66,12 +66,12 @@ class ServiceClient final : public CallClient<Countdown, typename Type::Response
     client_->remove_pending_request(pending_);
   }
 
-  std::string missing() override { return missing_; }
+  typename Base::Missing missing() override { return missing_; }
 
   const CallbackGuard& guard_;
   typename rclcpp::Client<Type>::SharedPtr client_;
   std::shared_ptr<Request> request_;
-  std::string missing_;
+  typename Base::Missing missing_ = {Failure::unavailable, "no server"};
   std::uint64_t number_ = 0;
   std::int64_t pending_ = 0;
   Countdown search_;

@@ -127,7 +127,7 @@ class Layer {
     light_handlers.call = [this](const auto&) { return pass_light(); };
     light_handlers.busy = [this] { block(usher_service_light_c_trigger, "Lamp.light", BlockReasons::busy()); };
     light_handlers.response = [this](const auto& message) { on_light_response(message); };
-    light_handlers.error = [this](const std::string& why) { on_light_error(why); };
+    light_handlers.error = [this](Failure reason, const std::string& why) { on_light_error(reason, why); };
     light_proxy_ = std::make_unique<ServiceProxy<std_srvs::SetBool>>(
         node_, self + "/controller/lamp/light", "/lamp/light", service_timeout, light_handlers);
     ActionProxy<nav2_msgs::NavigateToPoseAction>::Handlers go_to_handlers;
@@ -135,16 +135,28 @@ class Layer {
     go_to_handlers.busy = [this] { block(usher_action_go_to_c_trigger, "Navigation.go_to", BlockReasons::busy()); };
     go_to_handlers.feedback = [this](const auto& message) { on_go_to_feedback(message); };
     go_to_handlers.response = [this](const auto& message) { on_go_to_response(message); };
-    go_to_handlers.error = [this](const std::string& why) { on_go_to_error(why); };
-    go_to_handlers.canceled = [this] { on_go_to_canceled(); };
-    go_to_handlers.refused = [](const std::string& why) {
+    go_to_handlers.error = [this](Failure reason, const std::string& why, const auto& result)
+        { on_go_to_error(reason, why, result); };
+    go_to_handlers.canceled = [this](Failure reason, const std::string& why, const auto& result)
+        { on_go_to_canceled(reason, why, result); };
+    go_to_handlers.warn = [](const std::string& why) {
       ROS_WARN("%s: %s", "/go_to", why.c_str());
     };
     go_to_proxy_ = std::make_unique<ActionProxy<nav2_msgs::NavigateToPoseAction>>(
-        self + "/controller/go_to", "/go_to", action_timeout, go_to_handlers);
+        node_, self + "/controller/go_to", "/go_to", action_timeout, go_to_handlers);
     timer_ =
         node_.createSteadyTimer(ros::WallDuration(std::chrono::duration<double>(period).count()),
         [this](const ros::SteadyTimerEvent&) { report(); });
+  }
+
+  // Whether the end waits for what becomes of goals that the layer cancels.
+  bool waits() const {
+    return go_to_proxy_->waits();
+  }
+
+  // Reports goals that the layer has canceled and that have not ended when it ends.
+  void leave() {
+    go_to_proxy_->leave();
   }
 
  private:
@@ -198,7 +210,7 @@ class Layer {
     usher_settle(&supervisor_);
   }
 
-  void on_light_error(const std::string& why) {
+  void on_light_error(Failure, const std::string& why) {
     ROS_WARN("%s: %s", "/lamp/light", why.c_str());
     usher_perform(&supervisor_, usher_service_light_u_error);
     usher_settle(&supervisor_);
@@ -218,13 +230,15 @@ class Layer {
     usher_settle(&supervisor_);
   }
 
-  void on_go_to_error(const std::string& why) {
+  void on_go_to_error(Failure, const std::string& why, const nav2_msgs::NavigateToPoseResult&) {
     ROS_WARN("%s: %s", "/go_to", why.c_str());
     usher_perform(&supervisor_, usher_action_go_to_u_error);
     usher_settle(&supervisor_);
   }
 
-  void on_go_to_canceled() {
+  // The goal has ended because of a cancel: an error where the model has not canceled it.
+  void on_go_to_canceled(Failure reason, const std::string& why, const nav2_msgs::NavigateToPoseResult& result) {
+    if (!usher_enabled(&supervisor_, usher_action_go_to_u_canceled)) return on_go_to_error(reason, why, result);
     usher_perform(&supervisor_, usher_action_go_to_u_canceled);
     usher_settle(&supervisor_);
   }
@@ -476,6 +490,7 @@ class Layer {
     status.add("seen", literal_name(data_.Navigation.seen));
     status.add("request to go_to", verdict(usher_action_go_to_c_trigger, against_go_to()));
     if (blocked_.count(usher_action_go_to_c_trigger) > 0) status.warn("go_to was blocked");
+    if (const std::string trouble = go_to_proxy_->trouble(); !trouble.empty()) status.warn("/go_to: " + trouble);
     return status.made();
   }
 

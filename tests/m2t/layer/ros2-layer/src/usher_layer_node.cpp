@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -40,6 +41,7 @@
 #include "robosc_ros2/parameters.hpp"
 #include "robosc_ros2/report.hpp"
 #include "robosc_ros2/service_proxy.hpp"
+#include "robosc_ros2/shutdown_hook.hpp"
 #include "usher_layer/definition.hpp"
 #include "usher_supervisor.h"
 
@@ -135,7 +137,7 @@ class Layer : public GuardedNode<rclcpp::Node> {
     light_handlers.call = [this](const auto&) { return pass_light(); };
     light_handlers.busy = [this] { block(usher_service_light_c_trigger, "Lamp.light", BlockReasons::busy()); };
     light_handlers.response = [this](const auto& message) { on_light_response(message); };
-    light_handlers.error = [this](const std::string& why) { on_light_error(why); };
+    light_handlers.error = [this](Failure reason, const std::string& why) { on_light_error(reason, why); };
     light_proxy_ = std::make_unique<ServiceProxy<std_srvs::srv::SetBool>>(
         *this, guard_, "~/controller/lamp/light", "/lamp/light",
         rclcpp::ServicesQoS().keep_last(20), service_timeout, light_handlers);
@@ -144,18 +146,44 @@ class Layer : public GuardedNode<rclcpp::Node> {
     go_to_handlers.busy = [this] { block(usher_action_go_to_c_trigger, "Navigation.go_to", BlockReasons::busy()); };
     go_to_handlers.feedback = [this](const auto& message) { on_go_to_feedback(message); };
     go_to_handlers.response = [this](const auto& message) { on_go_to_response(message); };
-    go_to_handlers.error = [this](const std::string& why) { on_go_to_error(why); };
-    go_to_handlers.canceled = [this] { on_go_to_canceled(); };
-    go_to_handlers.refused = [this](const std::string& why) {
+    go_to_handlers.error = [this](Failure reason, const std::string& why, const auto& result)
+        { on_go_to_error(reason, why, result); };
+    go_to_handlers.canceled = [this](Failure reason, const std::string& why, const auto& result)
+        { on_go_to_canceled(reason, why, result); };
+    go_to_handlers.warn = [this](const std::string& why) {
       RCLCPP_WARN(get_logger(), "%s: %s", "/go_to", why.c_str());
     };
     go_to_proxy_ = std::make_unique<ActionProxy<nav2_msgs::action::NavigateToPose>>(
         *this, guard_, "~/controller/go_to", "/go_to",
         rclcpp::QoS(10).keep_last(20).best_effort(), action_timeout, go_to_handlers);
     timer_ = create_wall_timer(period, guard_([this] { report(); }));
+    const auto undecided = [this] {
+      const auto lock = guard_.hold();
+      if (waits()) return true;
+      leave();
+      return false;
+    };
+    shutdown_hook_.emplace(*this, [] {}, undecided);
   }
 
-  ~Layer() override { close(); }
+  ~Layer() override {
+    shutdown_hook_.reset();
+    {
+      const auto lock = guard_.hold();
+      leave();
+    }
+    close();
+  }
+
+  // Whether the end waits for what becomes of goals that the layer cancels.
+  bool waits() const {
+    return go_to_proxy_->waits();
+  }
+
+  // Reports goals that the layer has canceled and that have not ended when it ends.
+  void leave() {
+    go_to_proxy_->leave();
+  }
 
  private:
   // What the robot tells. The supervisor hears it first; then internal transitions and cancels that became possible run.
@@ -208,7 +236,7 @@ class Layer : public GuardedNode<rclcpp::Node> {
     usher_settle(&supervisor_);
   }
 
-  void on_light_error(const std::string& why) {
+  void on_light_error(Failure, const std::string& why) {
     RCLCPP_WARN(get_logger(), "%s: %s", "/lamp/light", why.c_str());
     usher_perform(&supervisor_, usher_service_light_u_error);
     usher_settle(&supervisor_);
@@ -228,13 +256,17 @@ class Layer : public GuardedNode<rclcpp::Node> {
     usher_settle(&supervisor_);
   }
 
-  void on_go_to_error(const std::string& why) {
+  void on_go_to_error(Failure, const std::string& why, const nav2_msgs::action::NavigateToPose::Result&) {
     RCLCPP_WARN(get_logger(), "%s: %s", "/go_to", why.c_str());
     usher_perform(&supervisor_, usher_action_go_to_u_error);
     usher_settle(&supervisor_);
   }
 
-  void on_go_to_canceled() {
+  // The goal has ended because of a cancel: an error where the model has not canceled it.
+  void
+      on_go_to_canceled(Failure reason, const std::string& why, const nav2_msgs::action::NavigateToPose::Result& result)
+      {
+    if (!usher_enabled(&supervisor_, usher_action_go_to_u_canceled)) return on_go_to_error(reason, why, result);
     usher_perform(&supervisor_, usher_action_go_to_u_canceled);
     usher_settle(&supervisor_);
   }
@@ -488,6 +520,7 @@ class Layer : public GuardedNode<rclcpp::Node> {
     status.add("seen", literal_name(data_.Navigation.seen));
     status.add("request to go_to", verdict(usher_action_go_to_c_trigger, against_go_to()));
     if (blocked_.count(usher_action_go_to_c_trigger) > 0) status.warn("go_to was blocked");
+    if (const std::string trouble = go_to_proxy_->trouble(); !trouble.empty()) status.warn("/go_to: " + trouble);
     return status.made();
   }
 
@@ -535,6 +568,7 @@ class Layer : public GuardedNode<rclcpp::Node> {
   std::unique_ptr<MessageRelay<std_msgs::msg::String>> label_relay_;
   std::unique_ptr<ServiceProxy<std_srvs::srv::SetBool>> light_proxy_;
   std::unique_ptr<ActionProxy<nav2_msgs::action::NavigateToPose>> go_to_proxy_;
+  std::optional<ShutdownHook> shutdown_hook_;
   rclcpp::TimerBase::SharedPtr timer_;
 };
 

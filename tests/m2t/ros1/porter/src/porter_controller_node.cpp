@@ -108,17 +108,18 @@ class Controller : public ControllerNode {
     grip_retry_.emplace(node_, retry, [this] { wake(); });
     grip_client_.emplace(node_, "/gripper/grip", service_timeout, ServiceClient<std_srvs::SetBool>::Handlers{
         [this](const auto& response) { on_grip_response(response); },
-        [this](const std::string& why) { on_grip_error(why); }});
+        [this](Failure reason, const std::string& why) { on_grip_error(reason, why); }});
     release_retry_.emplace(node_, retry, [this] { wake(); });
     release_client_.emplace(node_, "release", service_timeout, ServiceClient<std_srvs::Trigger>::Handlers{
         [this](const auto& response) { on_release_response(response); },
-        [this](const std::string& why) { on_release_error(why); }});
+        [this](Failure reason, const std::string& why) { on_release_error(reason, why); }});
     travel_retry_.emplace(node_, retry, [this] { wake(); });
     travel_client_.emplace(node_, "/travel", action_timeout, ActionClient<nav2_msgs::NavigateToPoseAction>::Handlers{
         [this](const auto& feedback) { on_travel_feedback(feedback); },
         [this](const auto& response) { on_travel_response(response); },
-        [this](const std::string& why) { on_travel_error(why); },
-        [this] { on_travel_canceled(); }});
+        [this](Failure reason, const std::string& why, const auto& result) { on_travel_error(reason, why, result); },
+        [this](Failure reason, const std::string& why, const auto& result)
+            { on_travel_canceled(reason, why, result); }});
     watchdog_stops_ =
         parameter<bool>(private_, "watchdog_stops", true,
         "Whether a silent topic holds commands back, cancels actions and sends halt.");
@@ -170,7 +171,7 @@ class Controller : public ControllerNode {
   }
 
   // The reset that follows waits: see `before`.
-  void on_grip_error(const std::string& why) {
+  void on_grip_error(Failure, const std::string& why) {
     if (std::exchange(grip_fault_, why) != why) ROS_WARN("%s: %s", "/gripper/grip", why.c_str());
     grip_retry_->start();
     porter_begin(&supervisor_);
@@ -188,7 +189,7 @@ class Controller : public ControllerNode {
   }
 
   // The reset that follows waits: see `before`.
-  void on_release_error(const std::string& why) {
+  void on_release_error(Failure, const std::string& why) {
     if (std::exchange(release_fault_, why) != why) ROS_WARN("%s: %s", "release", why.c_str());
     release_retry_->start();
     porter_begin(&supervisor_);
@@ -214,7 +215,7 @@ class Controller : public ControllerNode {
   }
 
   // The reset that follows waits: see `before`.
-  void on_travel_error(const std::string& why) {
+  void on_travel_error(Failure, const std::string& why, const nav2_msgs::NavigateToPoseResult&) {
     if (std::exchange(travel_fault_, why) != why) ROS_WARN("%s: %s", "/travel", why.c_str());
     travel_retry_->start();
     porter_begin(&supervisor_);
@@ -222,7 +223,10 @@ class Controller : public ControllerNode {
     porter_end(&supervisor_);
   }
 
-  void on_travel_canceled() {
+  // The goal has ended because of a cancel: an error where the model has not canceled it.
+  void on_travel_canceled(Failure reason, const std::string& why, const nav2_msgs::NavigateToPoseResult& result) {
+    if (!porter_enabled(&supervisor_, porter_action_travel_u_canceled)) return on_travel_error(reason, why, result);
+    travel_fault_.clear();
     porter_begin(&supervisor_);
     porter_perform(&supervisor_, porter_action_travel_u_canceled);
     porter_end(&supervisor_);
@@ -329,7 +333,7 @@ class Controller : public ControllerNode {
         return !held() && prepare_release();
       // requirement travel needs Desk.ordered and Gripper.grips (porter.rscd)
       case porter_action_travel_c_trigger:
-        return !held() && !travel_client_->busy() && or_withheld(porter_action_travel_c_trigger, prepare_travel());
+        return !held() && or_withheld(porter_action_travel_c_trigger, prepare_travel());
       case porter_service_grip_c_reset:
         return !grip_retry_->running();
       case porter_service_release_c_reset:
@@ -408,7 +412,8 @@ class Controller : public ControllerNode {
   // is required of them.
   void halt() override {
     porter_begin(&supervisor_);
-    if (!porter_perform(&supervisor_, porter_action_travel_c_cancel)) travel_client_->interrupt();
+    porter_perform(&supervisor_, porter_action_travel_c_cancel);
+    travel_client_->cancel();
     porter_end(&supervisor_);
     // Overrides: requirement halt needs Base.left != near and Base.parked
     if (prepare_halt()) {
@@ -516,8 +521,6 @@ class Controller : public ControllerNode {
   std::string verdict(porter_event event, const BlockReasons& reasons) const {
     if (!porter_enabled(&supervisor_, event)) return reasons.sentence();
     if (held()) return stopping_ ? "held back: the node is not active" : "held back: a topic is silent";
-    if (event == porter_action_travel_c_trigger && travel_client_->busy()) return
-        "held back: its last goal has not ended";
     if (withheld_.count(event) > 0) return "held back: its data can't be sent";
     return "allowed";
   }
@@ -571,12 +574,18 @@ class Controller : public ControllerNode {
     status.add("request to travel", verdict(porter_action_travel_c_trigger, against_travel()));
     for (const std::string& fault : faults("cmd_vel")) status.warn(fault);
     if (!travel_fault_.empty()) status.warn("/travel: " + travel_fault_);
+    if (const std::string trouble = travel_client_->trouble(); !trouble.empty()) status.warn("/travel: " + trouble);
     if (withheld_.count(porter_message_crawl_c_trigger) > 0) status.warn("crawl is withheld");
     if (withheld_.count(porter_action_travel_c_trigger) > 0) status.warn("travel is withheld");
     return status.made();
   }
 
+  bool waits() const override {
+    return travel_client_->waits();
+  }
+
   void finish() override {
+    travel_client_->leave();
     travel_client_->stop();
   }
 

@@ -99,7 +99,7 @@ class Controller : public ControllerNode<rclcpp::Node> {
   }
 
   // The reset that follows waits: see `before`.
-  void on_grip_error(const std::string& cause) {
+  void on_grip_error(Failure, const std::string& cause) {
     const std::string why = explained("/gripper/grip", cause);
     if (std::exchange(grip_fault_, why) != why) RCLCPP_WARN(get_logger(), "%s: %s", "/gripper/grip", why.c_str());
     grip_retry_->start();
@@ -118,7 +118,7 @@ class Controller : public ControllerNode<rclcpp::Node> {
   }
 
   // The reset that follows waits: see `before`.
-  void on_release_error(const std::string& cause) {
+  void on_release_error(Failure, const std::string& cause) {
     const std::string why = explained("release", cause);
     if (std::exchange(release_fault_, why) != why) RCLCPP_WARN(get_logger(), "%s: %s", "release", why.c_str());
     release_retry_->start();
@@ -145,7 +145,7 @@ class Controller : public ControllerNode<rclcpp::Node> {
   }
 
   // The reset that follows waits: see `before`.
-  void on_travel_error(const std::string& cause) {
+  void on_travel_error(Failure, const std::string& cause, const nav2_msgs::action::NavigateToPose::Result&) {
     const std::string why = explained("/travel", cause);
     if (std::exchange(travel_fault_, why) != why) RCLCPP_WARN(get_logger(), "%s: %s", "/travel", why.c_str());
     travel_retry_->start();
@@ -154,7 +154,12 @@ class Controller : public ControllerNode<rclcpp::Node> {
     porter_end(&supervisor_);
   }
 
-  void on_travel_canceled() {
+  // The goal has ended because of a cancel: an error where the model has not canceled it.
+  void
+      on_travel_canceled(Failure reason, const std::string& why, const nav2_msgs::action::NavigateToPose::Result&
+      result) {
+    if (!porter_enabled(&supervisor_, porter_action_travel_u_canceled)) return on_travel_error(reason, why, result);
+    travel_fault_.clear();
     porter_begin(&supervisor_);
     porter_perform(&supervisor_, porter_action_travel_u_canceled);
     porter_end(&supervisor_);
@@ -261,7 +266,7 @@ class Controller : public ControllerNode<rclcpp::Node> {
         return !held() && prepare_release();
       // requirement travel needs Desk.ordered and Gripper.grips (porter.rscd)
       case porter_action_travel_c_trigger:
-        return !held() && !travel_client_->busy() && or_withheld(porter_action_travel_c_trigger, prepare_travel());
+        return !held() && or_withheld(porter_action_travel_c_trigger, prepare_travel());
       case porter_service_grip_c_reset:
         return !grip_retry_->running();
       case porter_service_release_c_reset:
@@ -341,7 +346,8 @@ class Controller : public ControllerNode<rclcpp::Node> {
   // is required of them.
   void halt() override {
     porter_begin(&supervisor_);
-    if (!porter_perform(&supervisor_, porter_action_travel_c_cancel)) travel_client_->interrupt();
+    porter_perform(&supervisor_, porter_action_travel_c_cancel);
+    travel_client_->cancel();
     porter_end(&supervisor_);
     // Overrides: requirement halt needs Base.left != near and Base.parked
     if (prepare_halt()) {
@@ -449,8 +455,6 @@ class Controller : public ControllerNode<rclcpp::Node> {
   std::string verdict(porter_event event, const BlockReasons& reasons) const {
     if (!porter_enabled(&supervisor_, event)) return reasons.sentence();
     if (held()) return stopping_ ? "held back: the node is not active" : "held back: a topic is silent";
-    if (event == porter_action_travel_c_trigger && travel_client_->busy()) return
-        "held back: its last goal has not ended";
     if (withheld_.count(event) > 0) return "held back: its data can't be sent";
     return "allowed";
   }
@@ -507,13 +511,22 @@ class Controller : public ControllerNode<rclcpp::Node> {
     for (const std::string& fault : faults("cmd_vel")) status.warn(fault);
     for (const std::string& fault : faults("/travel")) status.warn(fault);
     if (!travel_fault_.empty()) status.warn("/travel: " + travel_fault_);
+    if (const std::string trouble = travel_client_->trouble(); !trouble.empty()) status.warn("/travel: " + trouble);
     if (withheld_.count(porter_message_crawl_c_trigger) > 0) status.warn("crawl is withheld");
     if (withheld_.count(porter_action_travel_c_trigger) > 0) status.warn("travel is withheld");
     return status.made();
   }
 
+  bool busy() const override {
+    return (travel_client_ && travel_client_->busy());
+  }
+
   bool waits() const override {
     return (travel_client_ && travel_client_->waits());
+  }
+
+  void leave() override {
+    if (travel_client_) travel_client_->leave();
   }
 
   // Connects the node to everything that the model names.
@@ -559,21 +572,22 @@ class Controller : public ControllerNode<rclcpp::Node> {
     grip_client_.emplace(*this, guard_, "/gripper/grip", rclcpp::ServicesQoS(), service_timeout,
         ServiceClient<std_srvs::srv::SetBool>::Handlers{
         [this](const auto& response) { on_grip_response(response); },
-        [this](const std::string& why) { on_grip_error(why); }});
+        [this](Failure reason, const std::string& why) { on_grip_error(reason, why); }});
     release_retry_.emplace(*this, guard_, retry, [this] { wake(); });
     watch_servers<std_srvs::srv::Trigger>("release");
     release_client_.emplace(*this, guard_, "release", rclcpp::ServicesQoS(), service_timeout,
         ServiceClient<std_srvs::srv::Trigger>::Handlers{
         [this](const auto& response) { on_release_response(response); },
-        [this](const std::string& why) { on_release_error(why); }});
+        [this](Failure reason, const std::string& why) { on_release_error(reason, why); }});
     travel_retry_.emplace(*this, guard_, retry, [this] { wake(); });
     watch_servers<nav2_msgs::action::NavigateToPose::Impl::SendGoalService>("/travel", "/_action/send_goal");
-    travel_client_.emplace(*this, guard_, "/travel", rclcpp::QoS(10), action_timeout,
+    travel_client_.emplace(*this, guard_, "/travel", rclcpp::QoS(10), action_timeout, retry,
         ActionClient<nav2_msgs::action::NavigateToPose>::Handlers{
         [this](const auto& feedback) { on_travel_feedback(feedback); },
         [this](const auto& response) { on_travel_response(response); },
-        [this](const std::string& why) { on_travel_error(why); },
-        [this] { on_travel_canceled(); }});
+        [this](Failure reason, const std::string& why, const auto& result) { on_travel_error(reason, why, result); },
+        [this](Failure reason, const std::string& why, const auto& result)
+            { on_travel_canceled(reason, why, result); }});
 
     state_report_.open(*this, "~/state");
     definition_report_.open_lasting(*this, "~/definition");

@@ -1,0 +1,310 @@
+"""A base with a lift, between a server that carries out its goals and a world that steers it and hears the lift."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robosc.semantics.naming import below_layer
+from tests.ros.faults.partners import LEASE, Peer
+from tests.ros.running import Runner
+from tests.ros.workspaces import Workspace, middleware
+
+if TYPE_CHECKING:
+    import subprocess
+    from collections.abc import Callable, Iterator
+
+    from tests.ros.processes import Processes
+
+HERE = Path(__file__).parent
+CARRIER, CARELESS = HERE / "carrier.rscd", HERE / "careless.rscd"
+TOPICS, SERVICE, ACTION = ("/pressed", "/wanted"), "/raise", "/navigate"
+PARTS = {
+    1: ("goal", "cancel", "status", "feedback", "result"),
+    2: tuple(f"_action/{part}" for part in ("send_goal", "cancel_goal", "get_result", "feedback", "status")),
+}
+DIAGNOSTICS = "/diagnostics"
+TRIGGER, CANCEL, FEEDBACK, CANCELED, RESPONSE, ERROR = (
+    f"action_navigate.{event}"
+    for event in ("c_trigger", "c_cancel", "u_feedback", "u_canceled", "u_response", "u_error")
+)
+#: How long the node under test waits for a goal's acceptance, and for the answer to a cancel.
+WAIT_MS = 2000
+LATE = f"/navigate: not accepted within {WAIT_MS} ms"
+ATTEMPTS = 10
+RAISE = "service_raise.c_trigger"
+
+
+@dataclass
+class Base:
+    """A base under way. Its node is a controller, or a layer before a controller that takes no care."""
+
+    nodes: Workspace | Runner
+    layer: bool
+    processes: Processes
+    folder: Path
+    world: Peer = field(init=False)
+    server: Peer = field(init=False)
+    node: subprocess.Popen[bytes] = field(init=False)
+    _peers: int = 0
+    _nodes: int = 0
+    _killed: float = -1e9
+
+    def __post_init__(self) -> None:
+        self.world = self._meet("world")
+        self.world.do("listen", topic=f"/{self.name}/state", kind="std_msgs/String")
+        self.world.do("listen", topic=DIAGNOSTICS, kind="diagnostic_msgs/DiagnosticArray")
+        for topic in TOPICS:
+            self.world.do("advertise", topic=topic, kind="std_msgs/Bool")
+        self.world.do("answer_at_once", fields={"success": True})
+        self.world.do("serve", name=SERVICE, kind="std_srvs/SetBool")
+        self.serve()
+        self.start()
+
+    @property
+    def version(self) -> int:
+        return self.nodes.ros.version
+
+    @property
+    def name(self) -> str:
+        """The name of the node under test."""
+        return "carrier_layer" if self.layer else "carrier_controller"
+
+    def _meet(self, name: str) -> Peer:
+        self._peers += 1
+        return Peer(self.processes, self.nodes.ros.python, self.version, name)
+
+    # The node
+
+    def start(self) -> None:
+        """Starts the node, and behind a layer the controller; waits until the base is at rest."""
+        self._nodes += 1
+        self.node = self.processes.start(f"node{self._nodes}", self._command())
+        if self.layer and self._nodes == 1:
+            self.processes.start("careless", self._careless())
+        self.until(lambda: all(self.world.do("listeners", topic=topic) for topic in TOPICS), "the node listens")
+        self.rest()
+
+    def _command(self) -> list[str | Path]:
+        settings, parameters = (
+            HERE / "controller-config.json",
+            [f"event_log:={self.log}", f"action_timeout_ms:={WAIT_MS}"],
+        )
+        if isinstance(self.nodes, Runner):
+            return [*self.nodes.command(CARRIER, *parameters, layer=self.layer, configuration=settings)]
+        if self.version == 2:
+            return self.nodes.node(self.name, *parameters)
+        executable, own = (
+            self.nodes.folder / f"devel/lib/{self.name}/{self.name}",
+            [f"_{parameter}" for parameter in parameters],
+        )
+        return ["env", "ROSCONSOLE_STDOUT_LINE_BUFFERED=1", executable, f"__name:={self.name}", *own]
+
+    def _careless(self) -> list[str | Path]:
+        """What starts the controller behind the layer: compiled beside compiled nodes of ROS 2, else from its model."""
+        names = [*TOPICS, SERVICE, *(f"{ACTION}/{part}" for part in PARTS[self.version])]
+        remappings = [f"{name}:=/{self.name}/{below_layer(name)}" for name in names]
+        if isinstance(self.nodes, Workspace) and self.version == 2:
+            return [*self.nodes.node("careless_controller"), *(word for name in remappings for word in ("-r", name))]
+        runner = self.nodes if isinstance(self.nodes, Runner) else Runner(self.nodes.ros, sys.executable, HERE)
+        return [*runner.command(CARELESS, configuration=HERE / "controller-config.json", remappings=remappings)]
+
+    @property
+    def log(self) -> Path:
+        """The event log."""
+        return self.folder / f"events{self._nodes}.jsonl"
+
+    @property
+    def output(self) -> str:
+        """What the node printed."""
+        return (self.folder / f"node{self._nodes}.log").read_text(errors="replace")
+
+    def events(self, since: int = 0) -> list[str]:
+        """The events of the action and the lift, from a line of the log on."""
+        text = self.log.read_text() if self.log.exists() else ""
+        entries = [json.loads(line) for line in text[: text.rfind("\n") + 1].splitlines()[since:]]
+        happened = [entry["event"] for entry in entries if entry["direction"] != "blocked"]
+        return [event for event in happened if event.startswith(("action", "service")) and "reset" not in event]
+
+    def lines(self) -> int:
+        """How long the log is."""
+        return self.log.read_text().count("\n") if self.log.exists() else 0
+
+    def state(self, component: str) -> str:
+        """The state of a component, as last reported."""
+        reports = [entry for entry in self.world.said if entry.get("heard") == f"/{self.name}/state"]
+        return json.loads(reports[-1]["data"]["data"])["components"][component]["state"] if reports else ""
+
+    def warns(self, text: str) -> bool:
+        """Whether the last diagnostics warn of something."""
+        reports = [entry["data"]["status"] for entry in self.world.said if entry.get("heard") == DIAGNOSTICS]
+        own = [status for status in (reports[-1] if reports else ()) if status["name"].startswith(f"{self.name}: ")]
+        return any(status["level"] == 1 and text in status["message"] for status in own)
+
+    # The world
+
+    def send(self, topic: str, value: bool) -> None:
+        """Publishes a message."""
+        self.world.do("publish", topic=topic, fields={"data": value})
+
+    def rest(self) -> None:
+        """Takes back all that was ordered; waits until the base stands, with its lift down."""
+
+        def at_rest() -> bool:
+            for topic in ("/wanted", "/pressed"):
+                self.send(topic, value=False)
+            return self.state("Navigation") == "still" and self.state("Lift") == "down"
+
+        self.server.do("on_cancel", answer="grant")
+        self.server.do("accept_at_once", accept=True)
+        self.until(at_rest, "the base is at rest")
+
+    def lifted(self, since: int) -> bool:
+        """Whether the lift was called."""
+        return bool(self.world.all("called", since))
+
+    def until(self, condition: Callable[[], object], what: str) -> None:
+        """Waits for a condition."""
+        self.processes.wait_until(lambda: bool(condition()), what)
+
+    def until_event(self, name: str, since: int) -> None:
+        """Waits until an event is in the log."""
+        self.until(lambda: name in self.events(since), f"{name} happens")
+
+    # The server
+
+    def serve(self) -> None:
+        """A server: what becomes of a goal, the test decides."""
+        self.server = self._meet("server")
+        self.server.do("act", name=ACTION, kind="nav2_msgs/NavigateToPose")
+
+    def kill_server(self) -> None:
+        """Ends the server as a crash does."""
+        self.server.process.kill()
+        self.server.process.wait()
+        self._killed = time.monotonic()
+
+    def outlive_server(self) -> None:
+        """Waits until nothing is left of a server that was killed."""
+        if self.version == 2:
+            time.sleep(max(0.0, self._killed + LEASE - time.monotonic()))
+
+    def pause_server(self) -> None:
+        """The server does nothing any more, and says so to nobody."""
+        os.kill(self.server.process.pid, signal.SIGSTOP)
+
+    def resume_server(self) -> None:
+        """The server goes on where it was."""
+        os.kill(self.server.process.pid, signal.SIGCONT)
+
+
+@contextmanager
+def under_way(nodes: Workspace | Runner, folder: Path, *, layer: bool) -> Iterator[Base]:
+    """A base, its world and its server, each a process."""
+    with middleware(nodes, folder) as processes:
+        base = Base(nodes, layer, processes, folder)
+        try:
+            yield base
+        finally:
+            base.resume_server()
+            for peer in (base.world, base.server):
+                peer.process.kill()  # nobody waits for their farewell
+
+
+@dataclass
+class Drive:
+    """A goal under way: its number at the server, and how much there was of everything when it began."""
+
+    base: Base
+    number: int
+    lines: int
+    world: int
+    server: int
+
+    @classmethod
+    def begin(cls, base: Base, accept: bool = True) -> Drive:
+        """The base sets off, and knows that its goal was accepted. On a busy machine that takes it several attempts."""
+        for _ in range(ATTEMPTS):
+            base.server.do("on_cancel", answer="ignore")
+            base.server.do("accept_at_once", accept=accept)
+            drive = cls(base, -1, base.lines(), len(base.world.said), len(base.server.said))
+            late = base.output.count(LATE)
+            base.until(drive.ordered, "there is a goal")
+            if not drive.goals:
+                base.rest()
+                continue
+            drive.number = drive.goals[0]
+            if not accept:
+                return drive
+            base.server.do("progress", number=drive.number, fields={})
+            base.until(lambda drive=drive: {FEEDBACK, ERROR} & set(drive.events), "the goal is accepted")
+            if ERROR not in drive.events and base.output.count(LATE) == late:
+                return drive
+            drive.end("aborted")
+            base.rest()
+        raise AssertionError(f"no goal in time in {ATTEMPTS} attempts")
+
+    def ordered(self) -> bool:
+        """Orders the base to set off, again and again: who shall hear it may not be there yet."""
+        self.base.send("/wanted", value=True)
+        return bool(self.goals) or ERROR in self.events
+
+    @property
+    def goals(self) -> list[int]:
+        """The goals that have come to the server since."""
+        return [entry["goal"] for entry in self.base.server.all("goal", self.server)]
+
+    @property
+    def events(self) -> list[str]:
+        """What has happened since, of the action and the lift."""
+        return self.base.events(self.lines)
+
+    def press(self) -> None:
+        """The button is pressed: the base has the goal canceled."""
+        self.base.send("/pressed", value=True)
+        self.until(CANCEL)
+
+    def until(self, event: str) -> None:
+        """Waits for an event of this drive."""
+        self.base.until_event(event, self.lines)
+
+    def until_asked(self, count: int = 1) -> None:
+        """Waits until the server was asked to cancel the goal so often."""
+        self.base.until(lambda: self.asked >= count, f"the server is asked {count} times to cancel the goal")
+
+    @property
+    def asked(self) -> int:
+        """How often the server was asked to cancel the goal."""
+        return len([entry for entry in self.base.server.all("cancel", self.server) if entry["cancel"] == self.number])
+
+    def rolls(self, seconds: float) -> None:
+        """The wheels turn for so long: the lift is not called, and the model knows that the goal has not ended."""
+        time.sleep(seconds)
+        assert not self.base.lifted(self.world)
+        assert self.base.state("Navigation") in ("driving", "stopping")
+        assert not {CANCELED, RESPONSE, ERROR, RAISE} & set(self.events)
+
+    def end(self, how: str) -> None:
+        """The wheels stop: the goal ends."""
+        self.base.server.do("end", number=self.number, how=how)
+
+    def until_lifted(self, end: str) -> None:
+        """Waits until the lift is called, which follows the end of the goal."""
+        self.base.until(lambda: self.base.lifted(self.world), "the lift is called")
+        self.until(RAISE)
+        events = self.events
+        assert events.index(end) < events.index(RAISE)
+
+    def never_lifted(self, seconds: float = 1.0) -> None:
+        """The lift is not called: nobody knows whether the wheels turn."""
+        self.base.until(lambda: self.base.state("Navigation") == "lost", "the base is lost")
+        time.sleep(seconds)
+        assert not self.base.lifted(self.world)
+        assert RAISE not in self.events
