@@ -54,7 +54,7 @@ ALLOWED = {
     "scenario_tests": {"engine", "runtime", "analysis", "node_tests"},
     "simulation": {"engine", "runtime", "analysis", "language"},
     "debugger": {"m2t", "analysis", "engine", "simulation"},
-    "view": {"m2t", "analysis", "engine", "simulation", "diagrams"},
+    "view": {"m2t", "analysis", "engine", "simulation", "diagrams", "language"},
     "report": {"m2t", "analysis", "engine", "node_tests", "simulation"},
     "cli": ROOMS - {"__main__"},
 }

@@ -8,12 +8,12 @@ from robosc.diagrams import notations
 from robosc.diagrams.automata import behaviour_graph, plants_graph
 from robosc.diagrams.class_drawing import draw
 from robosc.diagrams.classes import ClassDiagram
-from robosc.diagrams.ros_graph import ros_graph
+from robosc.diagrams.ros_graph import connections, ros_graph
 
 if TYPE_CHECKING:
     from robosc.diagrams.graph import Graph
 
-__all__ = ["behaviour_graph", "diagram", "metamodel_diagram", "plants_graph", "ros_graph"]
+__all__ = ["behaviour_graph", "connections", "diagram", "metamodel_diagram", "plants_graph", "ros_graph"]
 
 METAMODELS = ("robosc", "sct", "rosgraph", "engine", "expression")
 NOTATIONS = ("mermaid", "plantuml", "svg")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from itertools import count
+from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.diagnostics.visible import visible
 from robosc.diagrams.graph import Arrow, Graph, Group, Node
@@ -12,10 +13,23 @@ from robosc.semantics.roles import plant_of
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from robosc.diagrams.graph import Label
     from robosc.metamodel import rosgraph
 
 _CONTROLLER = "controller"
+_KEYS = {"topic": "t", "service": "s", "action": "a"}
+
+
+class Connection(NamedTuple):
+    """A topic, service or action: `direction` is `in`, `out` or `both`, `types` are those of ROS.
+
+    `uses` are the communications that use it, by the names of their components.
+    """
+
+    name: str
+    kind: str
+    direction: str
+    types: Sequence[str]
+    uses: Sequence[str]
 
 
 def ros_graph(graph: rosgraph.RosGraph) -> Graph:
@@ -23,44 +37,50 @@ def ros_graph(graph: rosgraph.RosGraph) -> Graph:
 
     An arrow goes the way that data goes; a service or an action, asked and answering, has one with two heads.
     """
-    nodes = [*_topics(graph), *_servers("s", "service", graph.serviceClients)]
-    nodes += _servers("a", "action", graph.actionClients)
-    controller = Node(_CONTROLLER, "controller", visible(controller_name(graph)))
-    subscribed = {visible(subscription.topic) for subscription in graph.subscriptions}
-    published = {visible(publisher.topic) for publisher in graph.publishers}
+    found = connections(graph)
+    numbers = {kind: count(1) for kind in _KEYS}
+    keys = [f"{_KEYS[connection.kind]}{next(numbers[connection.kind])}" for connection in found]
+    nodes = [
+        Node(key, connection.kind, connection.name, [(row,) for row in (*connection.types, *connection.uses)])
+        for key, connection in zip(keys, found, strict=True)
+    ]
     arrows = []
-    for node in nodes:
-        comes = node.kind != "topic" or node.title in subscribed
-        goes = node.kind != "topic" or node.title in published
-        ends = (node.key, _CONTROLLER) if node.kind == "topic" and comes else (_CONTROLLER, node.key)
-        arrows.append(Arrow(*ends, both=comes and goes))
+    for key, connection in zip(keys, found, strict=True):
+        comes_in = connection.kind == "topic" and connection.direction != "out"
+        ends = (key, _CONTROLLER) if comes_in else (_CONTROLLER, key)
+        arrows.append(Arrow(*ends, both=connection.direction == "both"))
+    controller = Node(_CONTROLLER, "controller", visible(controller_name(graph)))
     return Graph(f"{visible(graph.name)}: ROS graph", [Group("g", "", (), [*nodes, controller], arrows)])
 
 
-def _topics(graph: rosgraph.RosGraph) -> Iterator[Node]:
-    types: dict[str, dict[Label, None]] = {}
-    uses: dict[str, list[Label]] = {}
+def connections(graph: rosgraph.RosGraph) -> list[Connection]:
+    """The topics, services and actions of a controller, in this order, with names and types that can be shown."""
+    return [*_topics(graph), *_servers("service", graph.serviceClients), *_servers("action", graph.actionClients)]
+
+
+def _topics(graph: rosgraph.RosGraph) -> Iterator[Connection]:
     ends: list[tuple[str, rosgraph.Interface, Sequence[rosgraph.Reception | rosgraph.Sending]]]
     ends = [(end.topic, end.interface, end.receptions) for end in graph.subscriptions]
     ends += [(end.topic, end.interface, end.sendings) for end in graph.publishers]
+    types: dict[str, dict[str, None]] = {}
+    uses: dict[str, list[str]] = {}
     for topic, interface, messages in ends:
         types.setdefault(topic, {})[_type(interface)] = None
         uses.setdefault(topic, []).extend(map(_use, messages))
-    for number, topic in enumerate(types, 1):
-        yield Node(f"t{number}", "topic", visible(topic), [*types[topic], *uses[topic]])
+    subscribed, published = ({end.topic for end in those} for those in (graph.subscriptions, graph.publishers))
+    for topic, own_types in types.items():
+        direction = "both" if topic in subscribed & published else "in" if topic in subscribed else "out"
+        yield Connection(visible(topic), "topic", direction, list(own_types), uses[topic])
 
 
-def _servers(
-    prefix: str, kind: str, clients: Iterable[rosgraph.ServiceClient | rosgraph.ActionClient]
-) -> Iterator[Node]:
-    for number, client in enumerate(clients, 1):
-        rows = [_type(client.interface), _use(client.request)]
-        yield Node(f"{prefix}{number}", kind, visible(client.identifier), rows)
+def _servers(kind: str, clients: Iterable[rosgraph.ServiceClient | rosgraph.ActionClient]) -> Iterator[Connection]:
+    for client in clients:
+        yield Connection(visible(client.identifier), kind, "both", [_type(client.interface)], [_use(client.request)])
 
 
-def _type(interface: rosgraph.Interface) -> Label:
-    return (visible(f"{interface.package}/{interface.type}"),)
+def _type(interface: rosgraph.Interface) -> str:
+    return visible(f"{interface.package}/{interface.type}")
 
 
-def _use(use: rosgraph.Reception | rosgraph.Sending) -> Label:
-    return (visible(plant_of(use.event).origin or use.name),)
+def _use(use: rosgraph.Reception | rosgraph.Sending) -> str:
+    return visible(plant_of(use.event).origin or use.name)

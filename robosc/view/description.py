@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import re
+from itertools import pairwise
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.wording import name, words
-from robosc.diagrams import ros_graph
+from robosc.diagrams import connections
 from robosc.highlighting.lines import coloured
+from robosc.language import Text
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.places import place
@@ -18,8 +19,9 @@ from robosc.semantics.roles import Roles, event_name, plant_of
 from robosc.simulation.data import data_beside
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping, Sequence
 
+    from robosc.language.tokens import Token
     from robosc.m2t.models import Models
 
 #: What a robot's text calls automata: its components, and what requirements watch.
@@ -100,7 +102,7 @@ class _Describer:
     def __init__(self, texts: Mapping[str, str], graph: rosgraph.RosGraph | None) -> None:
         self._graph = graph
         self._reported = {} if graph is None else reported(graph)
-        self._lines = {path: text.split("\n") for path, text in texts.items()}
+        self._texts = {path: Text(path, text) for path, text in texts.items()}
         self.files: dict[str, int] = {path: number for number, path in enumerate(texts)}
 
     def place(self, element: Any) -> dict[str, int] | None:
@@ -158,22 +160,25 @@ class _Describer:
         return self._reported.get(plant.origin, []) if plant.kind == sct.PlantKind.behaviour else []
 
     def _label(self, edge: sct.Edge) -> dict[str, str]:
-        """The text of a transition, as short as a picture needs it, and whole."""
-        written = self._written(edge)
-        whole = " ".join(written.split()) if written else words(edge.event).replace("`", "")
-        short = re.sub(r"(?<!\s)\s*\bgoto\s+\S+\s*$", "", re.sub(r"^transition\s+(?=\S)", "", whole))
+        """The text of a transition without comments, as short as a picture needs it, and whole."""
+        tokens = self._tokens(edge)
+        whole = _spelled(tokens) if tokens else words(edge.event).replace("`", "")
+        shorter = tokens[:-2] if len(tokens) > 1 and tokens[-2].is_keyword("goto") else tokens
+        shorter = shorter[1:] if len(shorter) > 1 and shorter[0].is_keyword("transition") else shorter
+        short = _spelled(shorter) if shorter else whole
         return {"label": short if len(short) <= _LONGEST else f"{short[: _LONGEST - 1]}…", "whole": whole}
 
-    def _written(self, edge: sct.Edge) -> str:
+    def _tokens(self, edge: sct.Edge) -> list[Token]:
+        """The tokens of a transition; none where its text is not there."""
         if edge.source is None:
-            return ""
+            return []
         file, span = place(edge)
-        lines = self._lines.get(file, [])[span.line - 1 : span.end_line]
-        if not lines:
-            return ""
-        lines[-1] = lines[-1][: span.end_column - 1]
-        lines[0] = lines[0][span.column - 1 :]
-        return "\n".join(re.sub(r"//.*", "", line) for line in lines)
+        text = self._texts.get(file)
+        if text is None or span.end_line > text.content.count("\n") + 1:
+            return []
+        first = text.tokens.index_at(text.offset(span.line, span.column))
+        after = text.tokens.index_at(text.offset(span.end_line, span.end_column))
+        return [text.tokens[index] for index in range(first, after)]
 
     def event(self, event: sct.Event) -> dict[str, Any]:
         """An event in words, where it stands, and the data that it may come with."""
@@ -199,6 +204,14 @@ class _Describer:
         ]
 
 
+def _spelled(tokens: Sequence[Token]) -> str:
+    """Tokens as their text has them, with one blank where it has blanks or comments."""
+    pieces = [tokens[0].text]
+    for before, token in pairwise(tokens):
+        pieces += [" " if token.start > before.end else "", token.text]
+    return "".join(pieces)
+
+
 def _label(given: sct.Input) -> str:
     """What an input is of the data of its event, as the text of the model has it."""
     return given.text or ".".join(["value", *given.name.split("_")[2:]])
@@ -218,23 +231,13 @@ def _values(kind: ex.Type) -> dict[str, Any]:
 def _communication(models: Models) -> list[dict[str, Any]]:
     """What the controller is connected to: topics, services and actions, with the communications that use them."""
     assert models.rosgraph is not None
-    (group,) = ros_graph(models.rosgraph).groups
-    directions = {}
-    for arrow in group.arrows:
-        key = arrow.target if arrow.source == "controller" else arrow.source
-        directions[key] = "both" if arrow.both else "out" if arrow.source == "controller" else "in"
     return [
         {
-            "name": node.title,
-            "kind": node.kind,
-            "direction": directions[node.key],
-            "types": [row[0] for row in node.rows if "/" in row[0]],
-            "uses": _uses(row[0] for row in node.rows),
+            "name": connection.name,
+            "kind": connection.kind,
+            "direction": connection.direction,
+            "types": connection.types,
+            "uses": connection.uses,
         }
-        for node in group.nodes
-        if node.kind != "controller"
+        for connection in connections(models.rosgraph)
     ]
-
-
-def _uses(rows: Iterable[str]) -> list[str]:
-    return [row for row in rows if "/" not in row]

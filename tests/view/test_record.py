@@ -128,6 +128,33 @@ def test_transitions_that_are_taken_are_those_of_the_text() -> None:
     ]
 
 
+def test_a_label_is_the_text_without_comments() -> None:
+    """A string may hold what looks like a comment or a target, and its blanks stay."""
+    text = """robot Urls {
+  component Base {
+    outgoing message moved with type: none
+    behaviour {
+      variable url: string
+      initial marked state idle {
+        on response /* here */ from moved // there
+          do url := "http://host/a  goto b" goto driving
+      }
+      marked state driving { on response from moved do url := "goto x" }
+    }
+  }
+}
+"""
+    description, _, _ = record(text)
+    (base,) = description["automata"]  # type: ignore[misc]
+    assert [(shown["label"], shown["whole"]) for shown in base["transitions"]] == [
+        (
+            'on response from moved do url := "http://host/a  goto b"',
+            'on response from moved do url := "http://host/a  goto b" goto driving',
+        ),
+        ('on response from moved do url := "goto x"',) * 2,
+    ]
+
+
 def test_explained() -> None:
     _, shown, _ = record()
     told_of = shown.explained(0, EVENTS[1])
