@@ -68,6 +68,9 @@ def counterexample_in_words(counterexample: BlockingCounterexample, model: sct.S
 def way_out(counterexample: BlockingCounterexample) -> str:
     """What would make synthesis allow the event."""
     if counterexample.violated:
-        return f"loosen the {'requirement' if len(counterexample.violated) == 1 else 'requirements'}"
+        loosen = f"loosen the {'requirement' if len(counterexample.violated) == 1 else 'requirements'}"
+        if all(isinstance(requirement, sct.Requirement) for requirement in counterexample.violated):
+            return loosen
+        return f"{loosen}: say what each command `needs`, or add a command that undoes the event"
     stuck = [f"`{name(plant)}`" for plant in counterexample.unmarked if plant.kind == sct.PlantKind.behaviour]
     return f"give {listed(stuck) or 'the components'} a way from there to a marked state"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.blocking_in_words import counterexample_in_words, way_out
+from robosc.analysis.causes import causes, with_causes
 from robosc.analysis.observations import Forbidden
 from robosc.analysis.wording import condition, forbid, in_words, listed, name, words
 from robosc.diagnostics import Diagnostic, Severity, in_order
@@ -17,6 +18,7 @@ from robosc.synthesis.encoding import referenced
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from robosc.analysis.causes import Absent
     from robosc.analysis.observations import (
         Example,
         Hindrance,
@@ -40,15 +42,17 @@ def findings_of(model: sct.SupervisoryControlModel, observations: Observations) 
     Each stands at an element of the model: at the requirement, where one alone is at fault.
     """
     words_for = _Findings(model)
+    absent: dict[Absent, Diagnostic] = {}
+    absent |= {found.event: words_for.never_enabled(found) for found in observations.never_enabled}
+    absent |= {found.location: words_for.unreachable_state(found) for found in observations.unreachable_states}
     return in_order(
         [
-            *map(words_for.never_enabled, observations.never_enabled),
+            *with_causes(absent, causes(observations)),
             *map(words_for.silent_restricted, observations.silent_restricted),
             *map(words_for.self_cancelling, observations.self_cancelling),
             *map(words_for.provide_gap, observations.provide_gaps),
             *map(words_for.shared_topic_conflict, observations.shared_topic_conflicts),
             *map(words_for.unrestricted_call, observations.unrestricted_calls),
-            *map(words_for.unreachable_state, observations.unreachable_states),
         ]
     )
 
@@ -70,7 +74,8 @@ class _Findings:
         elif observed.counterexample is not None and not observed.kept_away:
             why, hint = counterexample_in_words(observed.counterexample, self._model), way_out(observed.counterexample)
             if observed.counterexample.violated and plant.kind == sct.PlantKind.action:
-                hint = f"{hint} (what the action `needs` cancels it; `never` and `always` do not let it start)"
+                hint = hint.partition(":")[0]
+                hint += " (what the action `needs` cancels it; `never` and `always` do not let it start)"
         elif observed.kept_away:
             why = f"the supervisor lets the robot reach no state in which it could be {done}"
             hint = "allow a way to such a state"
@@ -92,7 +97,7 @@ class _Findings:
             _blamed(at_fault, event),
             "never-enabled",
             f"{subject} can never be {done}: {why}",
-            f"{hint}, or leave it out",
+            f"{hint}, or leave it out" + ("" if silent else f"; `robosc explain --why-never {name(plant)}` tells more"),
         )
 
     def silent_restricted(self, observed: SilentRestricted) -> Diagnostic:

@@ -10,14 +10,16 @@ from robosc.analysis.blocking_in_words import blocking, counterexample_in_words
 from robosc.analysis.findings import findings_of
 from robosc.analysis.observations import Observations, Observer, Weight
 from robosc.analysis.system import SynthesizedSystem
-from robosc.analysis.wording import forbid, in_words
+from robosc.analysis.wording import forbid, in_words, name
 from robosc.diagnostics import Diagnostic, ModelError, Severity, has_errors
+from robosc.metamodel import sct
 from robosc.metamodel.places import place
+from robosc.semantics.edges import edges_from
+from robosc.semantics.roles import plant_of
 from robosc.synthesis import MEMORY, Phase, Solution, Statistics, Synthesis, solve
 
 if TYPE_CHECKING:
     from robosc.diagnostics import Span
-    from robosc.metamodel import sct
 
 
 @dataclass(frozen=True)
@@ -52,10 +54,8 @@ class EmptySupervisorError(ModelError):
         message = f"the supervisor is empty: {blocking(reason)}{trace}"
         if reason.requirements and not (reason.event and reason.event.controllable):
             message += f"; from there on {forbid(reason.requirements, 'something')}"
-        hint = (
-            "loosen a requirement, or give every component a way back to a marked state; `robosc explain --why-empty`"
-            " tells more"
-        )
+        way = _condition(model, reason) or "loosen a requirement, or give every component a way back to a marked state"
+        hint = f"{way}; `robosc explain --why-empty` tells more"
         super().__init__([Diagnostic(file, span, Severity.ERROR, "empty-supervisor", message, hint)])
 
 
@@ -65,6 +65,30 @@ def _place(model: sct.SupervisoryControlModel, reason: Reason) -> tuple[str, Spa
     elements = [element for element in (reason.event, *reason.violated, *reason.requirements) if element is not None]
     places = [place(element) for element in elements] or [place(model)]
     return next((found for found in places if found[0] == own), places[0])
+
+
+def _condition(model: sct.SupervisoryControlModel, reason: Reason) -> str | None:
+    """The condition that an automaton lacks which follows a message where its component ignores it; None: none."""
+    events = [requirement.event for requirement in reason.violated if isinstance(requirement, sct.Requirement)]
+    for event in events:
+        component, _, message = name(plant_of(event)).rpartition(".")
+        for plant in model.plants if plant_of(event).kind == sct.PlantKind.message else ():
+            moved = [state for state in plant.locations if any(_does(edge, event) for edge in edges_from(state))]
+            here = reason.state.get(plant.name)
+            if plant.kind == sct.PlantKind.behaviour and name(plant) == component and moved:
+                states = " or ".join(f"{component}.{state.name}" for state in moved)
+                if here not in {state.name for state in moved}:
+                    heard = f"on response from {message}"
+                    return (
+                        f"`{component}` ignores it in `{here}`: in the automaton of the requirement, write "
+                        f"`if {states}` after `{heard}`, and add `{heard} if !({states})` to each state"
+                    )
+    return None
+
+
+def _does(edge: sct.Edge, event: sct.Event) -> bool:
+    """Whether an edge of an event changes something."""
+    return edge.event is event and (edge.target not in (None, edge.eContainer()) or bool(edge.updates))
 
 
 def diagnose(

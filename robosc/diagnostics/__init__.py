@@ -83,7 +83,8 @@ class Diagnostic:
     """One finding of one rule at one place.
 
     `hint` says how to mend it. Where there is one way, and a program can go it, `edits` do it in the finding's file;
-    where a person is to choose, `alternatives` are the ways. `related` are other places that it speaks of.
+    where a person is to choose, `alternatives` are the ways. `related` are other places that it speaks of. `follows` is
+    0, or the number of findings from its cause to it, each of which follows from the one before.
     """
 
     file: str
@@ -95,6 +96,7 @@ class Diagnostic:
     edits: tuple[Edit, ...] = ()
     related: tuple[Related, ...] = ()
     alternatives: tuple[Alternative, ...] = ()
+    follows: int = 0
 
 
 class ModelError(Exception):
@@ -106,11 +108,12 @@ class ModelError(Exception):
 
 
 def in_order(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Each finding once, by file, position and rule."""
+    """Each finding once, by file, position and rule; causes before what follows from them."""
     return sorted(
         dict.fromkeys(findings),
         key=lambda found: (
             found.file,
+            found.follows,
             found.span,
             found.rule,
             found.message,

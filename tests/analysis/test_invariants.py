@@ -106,7 +106,7 @@ def test_synthesis_keeps_away_from_where_something_uncontrollable_leads_to_a_vio
     )
     assert never.hint == (
         "loosen the requirement (what the action `needs` cancels it; `never` and `always` do not let it start), or "
-        "leave it out"
+        "leave it out; `robosc explain --why-never Base.drive` tells more"
     )
 
 
@@ -120,19 +120,21 @@ def test_what_could_happen_only_beyond_names_the_requirement(tmp_path: Path) -> 
         horn,
         "requirement SR1: never Stop.stopped and Base.driving",
     )
-    (toot,) = [finding for finding in supervise(made).findings if finding.message.startswith("`Horn.toot` can never")]
+    (toot,) = [finding for finding in supervise(made).findings if "`Horn.toot` can never" in finding.message]
     assert toot.rule == "never-enabled"
     assert toot.message == (
-        "`Horn.toot` can never be sent: the supervisor lets the robot reach no state in which it could be sent: after "
-        "request to `Base.drive`, response from `Stop.pressed` can't be prevented, and then `requirement SR1: never "
-        "Stop.stopped and Base.driving` is violated"
+        "therefore, `Horn.toot` can never be sent: the supervisor lets the robot reach no state in which it could be "
+        "sent: after request to `Base.drive`, response from `Stop.pressed` can't be prevented, and then `requirement "
+        "SR1: never Stop.stopped and Base.driving` is violated"
     )
 
 
 def test_a_state_that_is_out_of_reach_says_what_keeps_it_out(tmp_path: Path) -> None:
     made = sct_of(tmp_path, STOP, BASE, "requirement SR1: never Stop.stopped and Base.driving")
     unreachable = next(finding for finding in supervise(made).findings if finding.rule == "unreachable-state")
-    assert unreachable.message.startswith("`Base` is never in `driving`: in `idle` the supervisor holds back")
+    assert unreachable.message.startswith(
+        "therefore, `Base` is never in `driving`: in `idle` the supervisor holds back"
+    )
     assert unreachable.message.endswith("`requirement SR1: never Stop.stopped and Base.driving` is violated")
 
 

@@ -24,6 +24,7 @@ from robosc.analysis.system import ExplainedSystem, SynthesizedSystem, whole_sta
 from robosc.analysis.wording import listed, name, words
 from robosc.engine import Blocked
 from robosc.semantics.edges import edges_from
+from robosc.semantics.printing import RobotPrinter
 from robosc.synthesis import MEMORY, encoded
 
 if TYPE_CHECKING:
@@ -246,12 +247,17 @@ def emptiness(system: SynthesizedSystem) -> Emptiness | None:
 
 
 def _stuck(reason: Reason) -> list[Note]:
-    notes = []
+    notes, printed = [], RobotPrinter()
     for plant in reason.unmarked:
         here = plant.locations[reason.codes[plant]]
         marked = listed([f"`{location.name}`" for location in plant.locations if location.marked])
         goal = f"can't get back to {marked}" if marked else "has no marked state"
-        notes.append(Note(here, f"`{name(plant)}` is in `{here.name}`, and {goal}"))
+        details = [
+            f"its transition on {words(edge.event)} asks for `{printed(edge.guard)}`"
+            for edge in edges_from(here)
+            if edge.guard is not None and edge.target not in (None, here)
+        ]
+        notes.append(Note(here, f"`{name(plant)}` is in `{here.name}`, and {goal}", tuple(dict.fromkeys(details))))
     return notes
 
 
@@ -261,9 +267,9 @@ def _stuck(reason: Reason) -> list[Note]:
 def loosenings(
     system: SynthesizedSystem, helps: Callable[[SynthesizedSystem], bool], first: Iterable[sct.StatedRequirement] = ()
 ) -> tuple[Loosening, ...] | None:
-    """The requirements of the text each of which helps if it alone is left out, those of `first` before the others.
+    """The requirements of the text each of which helps if it alone is left out: first that which leaves most states.
 
-    None where it does not even help to leave out all of them.
+    Those of `first` are tried before the others. None where it does not even help to leave out all of them.
     """
     texts = system.stated(first)
     if not helps(system.without(frozenset(requirement for text in texts for requirement in text))):
@@ -273,4 +279,4 @@ def loosenings(
         other = system.without(frozenset(text))
         if helps(other):
             found.append(Loosening(text, system.encoding.count(other.controlled)))
-    return tuple(found)
+    return tuple(sorted(found, key=lambda loosening: -loosening.states))

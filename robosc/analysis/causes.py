@@ -1,0 +1,88 @@
+"""Which of the events that never happen, and states that are never reached, follow from others of these."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypeAlias
+
+from robosc.analysis.observations import Forbidden
+from robosc.metamodel import sct
+from robosc.semantics.edges import edges_of
+from robosc.semantics.roles import event_name
+from robosc.synthesis.encoding import referenced
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from robosc.analysis.observations import NeverEnabled, Observations, UnreachableState
+    from robosc.diagnostics import Diagnostic
+
+    #: An event that never happens, or a state that is never reached.
+    Absent: TypeAlias = sct.Event | sct.Location
+
+
+def causes(observations: Observations) -> dict[Absent, set[Absent]]:
+    """What each absent event or state follows from, directly; of a cause nothing."""
+    never = {found.event for found in observations.never_enabled}
+    unreached = {found.location for found in observations.unreachable_states}
+    found: dict[Absent, set[Absent]] = {}
+    for event in observations.never_enabled:
+        found[event.event] = set(_of_event(event, never, unreached)) - {event.event}
+    for state in observations.unreachable_states:
+        found[state.location] = set(_of_state(state, never, unreached))
+    return found
+
+
+def _of_event(observed: NeverEnabled, never: set[sct.Event], unreached: set[sct.Location]) -> Iterator[Absent]:
+    event = observed.event
+    if observed.needed in never:
+        yield observed.needed
+    elif observed.kept_away and observed.counterexample is not None:
+        held_back = observed.counterexample.trace[-1].event
+        yield from (other for other in never if event_name(other) == held_back)
+    elif observed.forbidden is Forbidden.BY_REQUIREMENTS:
+        for requirement in observed.requirements:
+            for plant in referenced(requirement.condition):
+                # An automaton or order that waits for an event that never happens.
+                if isinstance(plant, sct.Plant) and plant.kind == sct.PlantKind.requirement:
+                    yield from {edge.event for edge in edges_of(plant)} & never
+    elif observed.counterexample is None:
+        for plant in observed.plants:
+            leaving = {edge.eContainer() for edge in edges_of(plant) if edge.event is event}
+            if leaving <= unreached:
+                yield from leaving
+
+
+def _of_state(observed: UnreachableState, never: set[sct.Event], unreached: set[sct.Location]) -> Iterable[Absent]:
+    found = set()
+    for hindrance in observed.hindrances:
+        source = hindrance.edge.eContainer()
+        if hindrance.forbidden is None and source in unreached:
+            found.add(source)
+        elif hindrance.edge.event in never:
+            found.add(hindrance.edge.event)
+        else:
+            return set()  # What keeps this transition back is a cause of its own.
+    return found
+
+
+def with_causes(findings: Mapping[Absent, Diagnostic], follows: Mapping[Absent, set[Absent]]) -> list[Diagnostic]:
+    """The findings about what is absent; one that follows from another says so, and its hint names that one's line."""
+    depths: dict[Absent, int] = {absent: 0 for absent in findings if not follows[absent]}
+    nearest: dict[Absent, Absent] = {}
+    pending = list(depths)
+    for absent in pending:
+        for other in findings:
+            if other not in depths and absent in follows[other]:
+                depths[other], nearest[other] = depths[absent] + 1, nearest.get(absent, absent)
+                pending.append(other)
+    return [
+        _following(finding, findings[nearest[absent]], depths[absent]) if absent in nearest else finding
+        for absent, finding in findings.items()
+    ]
+
+
+def _following(finding: Diagnostic, cause: Diagnostic, depth: int) -> Diagnostic:
+    where = f"line {cause.span.line}" if cause.file == finding.file else f"{cause.file}:{cause.span.line}"
+    message = f"therefore, {finding.message}"
+    return replace(finding, message=message, hint=f"mend the cause in {where} first", follows=depth)

@@ -1,0 +1,143 @@
+"""Causes come before what follows from them, and hints name what to write and what to run."""
+
+import pytest
+
+import robosc
+from robosc.analysis.explain import Renderer, emptiness, event_named, explored, possibility
+from robosc.analysis.supervise import EmptySupervisorError, supervise
+from robosc.diagnostics import Diagnostic, in_order
+
+#: A drill goes down between two feeds; its cover can be opened at any time, so it never may.
+TURNS = """robot Drill {
+  component Feed {
+    incoming message left with type: none
+    incoming message right with type: none
+    behaviour {
+      initial marked state away { on request to right goto there }
+      marked state there { on request to left goto away }
+    }
+  }
+  component Spindle {
+    incoming message lower with type: none
+    incoming message lift with type: none
+    behaviour {
+      initial marked state up { on request to lower goto down }
+      state down { on request to lift goto up }
+    }
+  }
+  component Cover {
+    outgoing message opened with type: boolean
+    behaviour {
+      initial marked state shut { on response from opened if value goto open }
+      marked state open { on response from opened if !value goto shut }
+    }
+  }
+  requirement Turn "in turns": automaton {
+    initial state left { on request to left goto left on request to lower goto right }
+    state right { on request to right goto left }
+  }
+  requirement Safe: never Spindle.down and Cover.open
+}
+"""
+#: A machine that publishes when it is done, followed by an automaton that allows it once.
+BUFFER = """robot Factory {
+  component Mill {
+    incoming message start with type: none
+    outgoing message done with type: none
+    behaviour {
+      initial marked state idle { on request to start goto busy }
+      state busy { on response from done goto idle }
+    }
+  }
+  component Lathe {
+    incoming message take with type: none
+    behaviour { initial marked state ready { on request to take } }
+  }
+  requirement Buffer: automaton {
+    initial marked state empty { on response from done goto full }
+    state full { on request to take goto empty }
+  }
+}
+"""
+#: The mains come back only while the crane is parked, and the crane needs mains to park.
+GUARDED = """robot Crane {
+  component Boom {
+    incoming message park with type: none
+    outgoing message swung with type: none
+    behaviour {
+      initial marked state parked { on response from swung goto out }
+      state out { on request to park goto parked }
+    }
+  }
+  component Mains {
+    outgoing message lost with type: none
+    outgoing message back with type: none
+    behaviour {
+      initial marked state on_line { on response from lost goto off_line }
+      state off_line { on response from back if Boom.parked goto on_line }
+    }
+  }
+  requirement park needs Mains.on_line
+}
+"""
+
+
+def findings(text: str) -> list[Diagnostic]:
+    return supervise(robosc.to_sct(robosc.load(text=text))).findings
+
+
+def test_the_cause_comes_first() -> None:
+    found = findings(TURNS)
+    assert in_order(reversed(found)) == found
+    cause, *others = found
+    assert cause.message.startswith("`Spindle.lower` can never be sent: ")
+    assert cause.span.line == 29
+    assert [finding.message.partition(":")[0] for finding in others] == [
+        "therefore, `Spindle` is never in `down`",
+        "therefore, `Feed.right` can never be sent",
+        "therefore, `Spindle.lift` can never be sent",
+        "therefore, `Feed.left` can never be sent",
+        "therefore, `Feed` is never in `there`",
+    ]
+    assert all(finding.message.startswith("therefore, ") for finding in others)
+    assert {finding.hint for finding in others} == {"mend the cause in line 29 first"}
+
+
+def test_the_hint_says_what_to_write_and_to_run() -> None:
+    cause, *_ = findings(TURNS)
+    assert cause.hint == (
+        "loosen the requirement: say what each command `needs`, or add a command that undoes the event, or leave it "
+        "out; `robosc explain --why-never Spindle.lower` tells more"
+    )
+
+
+def test_the_decisive_requirement_comes_first() -> None:
+    model = robosc.to_sct(robosc.load(text=TURNS))
+    found = explored(model, lambda system: possibility(system, event_named(model, "Feed.right")))
+    assert [loosening.requirements[0].name for loosening in found.loosenings] == ["Safe", "Turn"]
+    shown = Renderer(model, lambda _: "").answer(found)
+    assert shown.count('requirement Turn "in turns": automaton (') == 1
+
+
+def test_a_message_that_its_component_ignores() -> None:
+    with pytest.raises(EmptySupervisorError) as refused:
+        findings(BUFFER)
+    (finding,) = refused.value.diagnostics
+    assert finding.hint == (
+        "`Mill` ignores it in `idle`: in the automaton of the requirement, write `if Mill.busy` after "
+        "`on response from done`, and add `on response from done if !(Mill.busy)` to each state; `robosc explain "
+        "--why-empty` tells more"
+    )
+    ignored = "on response from done if !(Mill.busy)"
+    mended = BUFFER.replace("from done goto full", f"from done if Mill.busy goto full {ignored}").replace(
+        "state full {", f"state full {{ {ignored}"
+    )
+    assert "never-enabled" not in {found.rule for found in findings(mended)}
+
+
+def test_a_guard_of_a_component_is_named() -> None:
+    model = robosc.to_sct(robosc.load(text=GUARDED))
+    found = explored(model, emptiness)
+    assert [note.details for note in found.stuck if "Mains" in note.text] == [
+        ("its transition on response from `Mains.back` asks for `Boom.parked`",)
+    ]
