@@ -118,7 +118,8 @@ def test_what_can_not_be_read_is_handed_on_but_counts_as_not_received(trial: Tri
 
 
 def test_what_a_requirement_forbids_is_blocked_and_told(trial: Trial) -> None:
-    assert trial.robot("low") == []
+    # The layer sends what the model provides, once, in the place of what it blocks.
+    assert trial.robot("low") == [["speed", 0.25]]
     assert trial.blocked("low") == [("Drive.speed", "requirement", ["requirement speed needs Guard.charge > 20"])]
     assert trial.steps["low"]["blocked"][0]["components"]["Guard"] == {"state": "clear", "variables": {"charge": 10}}
     assert "Drive.speed is blocked: requirement" in trial.output
