@@ -170,12 +170,8 @@ class Ros2Node(Node):
     def _spin_once(self) -> None:
         left = self.event_loop.run_pending()
         wait = LONGEST_WAIT if left is None or self.simulated else min(left, LONGEST_WAIT)
-        taken = self._take(MOST_AT_ONCE)
-        # The executor knows of each message that was taken. It finds nothing there, and then what came behind.
-        for _ in range(taken):
-            self._executor.spin_once(timeout_sec=0)
-        if not taken:
-            self._executor.spin_once(timeout_sec=wait)
+        # The executor hears of what else there is, one at a time, also of each message that was taken here.
+        self._executor.spin_once(timeout_sec=0 if self._take(MOST_AT_ONCE) else wait)
 
     def _take_leave(self) -> None:
         until = time.monotonic() + FAREWELL
