@@ -43,7 +43,7 @@ class Job:
         path = self.workspace / name
         path.parent.mkdir(exist_ok=True, parents=True)
         path.write_text(text)
-        self.git("add", name)
+        self.git("add", "--", name)
 
     def run(self, name: str, **inputs: str) -> subprocess.CompletedProcess[str]:
         """A step, as `shell: bash` runs it; the inputs are those of the action."""
@@ -120,6 +120,9 @@ def test_the_layout(job: Job) -> None:
     done = job.run("Look at the layout")
     assert done.returncode == 1
     assert "+  component Leaf {" in done.stdout
+    job.add("-x.rscd", DOOR)
+    job.run("Find models", models="-x.rscd")
+    assert job.run("Look at the layout").returncode == 0
     job.add("plant.cif", "plant p: location: initial; marked; end")
     job.run("Find models", models="plant.cif")
     assert job.run("Look at the layout").returncode == 0
@@ -143,6 +146,12 @@ def test_the_action_is_whole() -> None:
         assert ("run" in step) != ("uses" in step)
         assert "run" not in step or step["shell"] == "bash"
     text = (ROOT / "action.yml").read_text()
+    # Names of files come behind `--`: one that begins with a dash is no option.
+    assert all(
+        " -- " in line
+        for line in text.split("\n")
+        if re.search(r"\b(robosc|grep) .*(models\[@\]|model\"|robot\")", line)
+    )
     assert set(re.findall(r"inputs\.([a-z-]+)", text)) == set(ACTION["inputs"])
     steps = {step["id"] for step in STEPS.values() if "id" in step}
     assert set(re.findall(r"steps\.(\w+)\.", text)) == steps

@@ -75,6 +75,7 @@ LIBRARIES = {
     "diagnostic_msgs": {"runtime"},
     "genpy": {"runtime"},
     "lsprotocol": {"editor"},
+    "lz4": {"recordings"},
     "mcap": {"recordings"},
     "jinja2": {"files", "m2t"},
     "networkx": {"diagrams"},

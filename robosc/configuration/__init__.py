@@ -274,7 +274,8 @@ def find(folder: Path) -> Path | None:
     """
     level = [folder]
     for _ in range(SEARCH_DEPTH + 1):
-        found = [folder / FILE_NAME for folder in level if (folder / FILE_NAME).is_file()]
+        # A pipe or device counts, so that `read` reports it.
+        found = [folder / FILE_NAME for folder in level if _is_there(folder / FILE_NAME)]
         if len(found) > 1:
             names = " and ".join(f"{file.relative_to(folder)}" for file in found[:2])
             names += f" and {len(found) - 2} more" if len(found) > 2 else ""
@@ -284,6 +285,10 @@ def find(folder: Path) -> Path | None:
             return found[0]
         level = [below for folder in level for below in _folders(folder)]
     return None
+
+
+def _is_there(file: Path) -> bool:
+    return file.exists() and not file.is_dir()
 
 
 def read(file: Path) -> Configuration:

@@ -132,7 +132,7 @@ class _Recovery:
             self._check(item)
         complex_ = None if block.items else too_complex(self._tokens, block.first, block.after)
         if complex_ is not None:
-            self._report(*complex_, "use variables for its parts")
+            self._report(*complex_, "use variables or functions for its parts")
             self._skip_block(block)
         elif self._is_library and block.level is DEFINITIONS and self._starts(block, "requirement", "provide"):
             message = f"a library holds no {self._tokens[block.first].text} statements"

@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.language.grammar import first, first_words, following, is_reserved, pattern, words_of
+from robosc.semantics.naming import ROBOSC_QUANTIFIERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -152,8 +153,8 @@ def is_name(word: str) -> bool:
     return re.fullmatch(pattern("Name"), word) is not None
 
 
-#: How deep brackets and signs may be nested, and how many operators one expression may have: what reads the model
-#: follows it by calls inside each other, which Python bounds.
+#: The most levels of brackets, signs, choices (`if … then … else if …`) and quantifiers inside each other, and the most
+#: operators of one expression: the passes that read the model call themselves for each level, which Python bounds.
 DEEPEST = 50
 LONGEST = 5000
 _STARTERS = frozenset(filter(is_reserved, first_words("Definition", "ComponentDefinition", "AutomatonDefinition")))
@@ -164,22 +165,10 @@ _BETWEEN_EXPRESSIONS = frozenset(following()) - words_of("Expression") - _OPERAT
 
 def too_complex(tokens: Tokens, first: int = 0, after: int | None = None) -> tuple[int, str] | None:
     """The index of the first token that is nested too deep or is an operator too many, and what is wrong there."""
-    around: list[int] = []
-    signs = operators = 0
+    depth, operators = _Depth(), 0
     for index in range(first, len(tokens) if after is None else after):
         token = tokens[index]
-        if token.is_keyword("(", "[", "{"):
-            around.append(signs + 1)
-            signs = 0
-        elif token.is_keyword("!", "-"):
-            signs += 1
-        else:
-            signs = 0
-            if token.is_keyword(")", "]", "}") and around:
-                around.pop()
-            elif token.text in _STARTERS and token.is_keyword(token.text):
-                around.clear()  # A brace that is missing before makes nothing after it deep.
-        if len(around) > DEEPEST or sum(around) + signs > DEEPEST:
+        if depth.at(tokens, index) > DEEPEST:
             return index, f"this is nested more than {DEEPEST} levels deep"
         if token.text in _BETWEEN_EXPRESSIONS and token.is_keyword(token.text):
             operators = 0
@@ -188,3 +177,44 @@ def too_complex(tokens: Tokens, first: int = 0, after: int | None = None) -> tup
             if operators > LONGEST:
                 return index, f"this expression has more than {LONGEST} operators"
     return None
+
+
+class _Depth:
+    """The levels around a token: brackets, the signs before it, choices and quantifiers to whose rest it belongs."""
+
+    def __init__(self) -> None:
+        #: Of each open bracket the levels around it, and the choices and quantifiers among them.
+        self._around: list[tuple[int, int]] = []
+        self._outside = self._signs = self._bodies = 0
+
+    def at(self, tokens: Tokens, index: int) -> int:
+        """The levels around the next token."""
+        token = tokens[index]
+        if token.is_keyword("(", "[", "{"):
+            self._around.append((self._outside, self._bodies))
+            self._outside += self._signs + self._bodies + 1
+            self._signs = self._bodies = 0
+        elif token.is_keyword("!", "-"):
+            self._signs += 1
+        else:
+            self._signs = 0
+            self._go_on(tokens, index)
+        return self._outside + self._signs + self._bodies
+
+    def _go_on(self, tokens: Tokens, index: int) -> None:
+        token = tokens[index]
+        if token.is_keyword(")", "]", "}") and self._around:
+            self._outside, self._bodies = self._around.pop()
+        elif token.text in _STARTERS and token.is_keyword(token.text):
+            self._around.clear()  # A brace that is missing before makes nothing after it deep.
+            self._outside = self._bodies = 0
+        elif token.text == "," or (token.text in _BETWEEN_EXPRESSIONS and token.is_keyword(token.text)):
+            self._bodies = 0
+        elif token.is_keyword("then") or _is_quantifier(tokens, index):
+            self._bodies += 1
+
+
+def _is_quantifier(tokens: Tokens, index: int) -> bool:
+    """Whether a condition on elements or instances begins here."""
+    is_word = tokens[index].text in ROBOSC_QUANTIFIERS and tokens[index + 1].kind is Kind.WORD
+    return is_word and tokens[index + 2].text in {"in", ":"}

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from contextlib import nullcontext, suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
-from robosc.files.reading import opened
+from robosc.files.reading import MOST_BYTES, opened
+from robosc.recordings.bounds import BoundError, bounded, decompressed, require_plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -40,7 +42,11 @@ def recorded_texts(path: str) -> Iterator[RecordedText]:
     if found.is_dir() and not (found / "metadata.yaml").is_file():
         raise RecordingError(f"{path} is a folder without a metadata.yaml: it is no recording")
     # rosbags opens by itself what it reads.
-    with nullcontext() if found.is_dir() else opened(path) as file:
+    with nullcontext() if found.is_dir() else opened(path) as file, bounded(found):
+        try:
+            require_plain(found)
+        except BoundError as error:
+            raise RecordingError(f"{path} can't be read: {error}") from None
         yield from _read(path, _mcap_texts(file) if file is not None and found.suffix == ".mcap" else _bag_texts(found))
 
 
@@ -65,7 +71,6 @@ def _bag_texts(path: Path) -> Iterator[RecordedText]:
 def _mcap_texts(file: IO[bytes]) -> Iterator[RecordedText]:
     from mcap.exceptions import EndOfFile  # noqa: PLC0415  # as above
     from mcap.records import Channel, Message, Schema  # noqa: PLC0415
-    from mcap.stream_reader import StreamReader  # noqa: PLC0415
     from rosbags.typesys import Stores, get_typestore  # noqa: PLC0415
 
     read = {
@@ -75,7 +80,7 @@ def _mcap_texts(file: IO[bytes]) -> Iterator[RecordedText]:
     types: dict[int, str] = {}
     channels: dict[int, Channel] = {}
     with suppress(EndOfFile):
-        for record in StreamReader(file).records:
+        for record in _mcap_records(file):
             match record:
                 case Schema():
                     types[record.id] = record.name
@@ -85,3 +90,16 @@ def _mcap_texts(file: IO[bytes]) -> Iterator[RecordedText]:
                     channel = channels[record.channel_id]
                     text: Any = read[channel.message_encoding](record.data, _TEXT[1])
                     yield RecordedText(channel.topic, text.data)
+
+
+def _mcap_records(file: IO[bytes]) -> Iterator[Any]:
+    from mcap.records import Chunk  # noqa: PLC0415  # as above
+    from mcap.stream_reader import StreamReader, breakup_chunk  # noqa: PLC0415
+
+    for record in StreamReader(file, emit_chunks=True, record_size_limit=MOST_BYTES).records:
+        if isinstance(record, Chunk):
+            yield from breakup_chunk(
+                replace(record, compression="", data=decompressed(record.data, record.compression))
+            )
+        else:
+            yield record

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
 from robosc.metamodel.reflection import contents, features, is_attribute, tree
-from robosc.semantics.evaluation import Value, evaluate, literal
+from robosc.semantics.evaluation import Value, evaluate, literal, saturate
 from robosc.semantics.operators import UnreadableError
 from robosc.semantics.walks import copied, walk
 
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 #: An expression is written out up to so many elements: a few names for sums of names are enough for any number.
 LARGEST = 20_000
+#: The largest integer that a constant expression computes with. Integers of a robot have 64 bits.
+CLAMP = 1 << 128
 _NAMED = (robosc.Constant, robosc.Condition, robosc.FormalParameter)
 _OPERATORS = {"all": ex.Conjunction, "any": ex.Disjunction, "count": ex.Addition}
 
@@ -41,17 +43,62 @@ class _Environment(NamedTuple):
     moved: bool = False
 
 
+class _Size(NamedTuple):
+    """The number of elements of an expression without its parameters, and how often each parameter is in it.
+
+    All numbers are at most `LARGEST` + 1.
+    """
+
+    own: int
+    parameters: Mapping[robosc.FormalParameter, int]
+
+    def __add__(self, other: _Size) -> _Size:  # type: ignore[override]
+        parameters = dict(self.parameters)
+        for parameter, number in other.parameters.items():
+            parameters[parameter] = _bounded(parameters.get(parameter, 0) + number)
+        return _Size(_bounded(self.own + other.own), parameters)
+
+    def times(self, number: int) -> _Size:
+        """The size of so many copies."""
+        counts = {parameter: _bounded(count * number) for parameter, count in self.parameters.items()}
+        return _Size(_bounded(self.own * number), counts)
+
+    def with_arguments(self, arguments: Mapping[robosc.FormalParameter, _Size]) -> _Size:
+        """The size of the expression with arguments in place of parameters."""
+        size = _Size(self.own, {})
+        for parameter, number in self.parameters.items():
+            size += arguments.get(parameter, _Size(1, {})).times(number)
+        return size
+
+    def of(self, arguments: Mapping[robosc.FormalParameter, _Size]) -> int:
+        """The number of elements, each parameter without argument one of them."""
+        return self.with_arguments(arguments).own
+
+
+def _bounded(number: int) -> int:
+    return min(number, LARGEST + 1)
+
+
+def _is_long(named: robosc.Constant | robosc.Condition) -> bool:
+    """Whether a name stands for more than one literal number."""
+    if named.value is None:
+        return False
+    return isinstance(named, robosc.Condition) or isinstance(named.type, robosc.StringDataType)
+
+
 class Expansion:
     """Writes the expressions of a robot's instances out. Where there is nothing to write out they stay what they are.
 
-    What can't be written out, because definitions use each other in a circle, stays a name; so does what would
-    be larger than `LARGEST`: `too_large` has the expressions in which that is so.
+    Definitions that use each other in a circle stay names. So do all names of an expression that would have more than
+    `LARGEST` elements: `too_large` has these expressions.
     """
 
     def __init__(self, instances: Instances | None) -> None:
         self._instances = instances
         self._known: dict[tuple[ex.Expression, Instance | None, bool], ex.Expression] = {}
-        self._made = 0
+        self._sizes: dict[Any, _Size] = {}
+        #: The literals of constants that are written out already.
+        self._constants: dict[tuple[robosc.NamedExpression, Instance | None], ex.Expression] = {}
         self._elements: dict[ex.Located, ex.Located] = {}
         self.too_large: dict[ex.Expression, None] = {}
 
@@ -66,12 +113,17 @@ class Expansion:
             needed = readable and within is not None
             affected = needed or any(_is_affected(part) for _, part in tree(expression))
             start = _Environment(within, within.arguments if within else {}, {}, moved=readable)
-            self._made = 0
             self._readable = readable
+            affected = affected and not self.is_too_large(expression)
             self._known[key] = walk(self._step, (expression, start)) if affected else expression
-            if self._made > LARGEST:
-                self.too_large[expression] = None
         return self._known[key]
+
+    def is_too_large(self, expression: ex.Expression) -> bool:
+        """Whether an expression would have more than `LARGEST` elements when it is written out; notes it then."""
+        if self._size(expression) <= LARGEST:
+            return False
+        self.too_large[expression] = None
+        return True
 
     def constant(self, expression: ex.Expression, within: Instance | None) -> ex.Expression:
         """A constant expression as a literal; as it is, names written out, where it has no value."""
@@ -79,18 +131,42 @@ class Expansion:
 
     def argued(self, expression: ex.Expression, arguments: Arguments) -> ex.Expression:
         """An expression outside of components, with values for parameters, such as the condition of an enum's rule."""
-        self._made = 0
         self._readable = False
         start = _Environment(None, arguments, {})
-        affected = any(_is_affected(part) for _, part in tree(expression))
+        affected = self._size(expression) <= LARGEST and any(_is_affected(part) for _, part in tree(expression))
         return walk(self._step, (expression, start)) if affected else expression
+
+    def _size(self, expression: ex.Expression) -> int:
+        """The number of elements and characters of an expression when it is written out, at most `LARGEST` + 1."""
+        return walk(self._measured, expression, self._sizes).of({})
+
+    def _measured(self, element: Any) -> Generator[Any, _Size, _Size]:
+        """The size of an expression, or of the value of a named one."""
+        if isinstance(element, robosc.NamedExpression):
+            self._sizes[element] = _Size(1, {})  # A circle of definitions is not written out.
+            size = (yield element.value) if element.value is not None else _Size(1, {})
+            self._sizes[element] = size
+            return size
+        size = _Size(1 + len(element.value), {}) if isinstance(element, ex.StringLiteral) else _Size(1, {})
+        inside: list[_Size] = []
+        for _, child in contents(element):
+            inside.append((yield child))
+        match element:
+            case robosc.Access(item=robosc.FormalParameter() as parameter):
+                size = _Size(1, {parameter: 1})
+            case robosc.Access(item=(robosc.Constant() | robosc.Condition()) as named) if _is_long(named):
+                size = yield named
+            case robosc.Call(function=robosc.Function() as function) if function.value is not None:
+                called = yield function
+                return called.with_arguments(dict(zip(function.parameters, inside, strict=False)))
+            case robosc.InstanceQuantifier(template=robosc.Component()) if self._instances:
+                copies = sum(1 for _ in self._instances.of(element.template))
+                inside = [part.times(copies) for part in inside]
+        return sum(inside, start=size)
 
     def _step(self, node: tuple[Any, _Environment]) -> Generator[Any, Any, Any]:
         """A copy of an element with its names written out; it is asked for copies of what it consists of."""
         element, environment = node
-        self._made += 1
-        if self._made > LARGEST:
-            return copied(element)
         match element:
             case robosc.Access(item=robosc.FormalParameter() as parameter) if parameter in environment.arguments:
                 return copied(environment.arguments[parameter])
@@ -114,12 +190,17 @@ class Expansion:
         owner = self._owner(access.component, environment) if _is_member(item) else None
         if owner is None and _is_member(item) and isinstance(item, robosc.Condition):
             return None
+        if (item, owner) in self._constants:
+            return copied(self._constants[item, owner])
         opened = environment.opened | {item}
         inner = _Environment(owner, owner.arguments if owner else {}, {}, opened, moved=True)
         value: ex.Expression = yield (item.value, inner)
-        if isinstance(item, robosc.Constant):
-            return _folded(value)
-        return value
+        if not isinstance(item, robosc.Constant):
+            return value
+        folded = _folded(value)
+        if folded is not value:
+            self._constants[item, owner] = copied(folded)
+        return folded
 
     def _call(self, call: robosc.Call, environment: _Environment) -> Generator[Any, Any, ex.Expression | None]:
         function = call.function
@@ -205,7 +286,7 @@ def constant_value(expression: ex.Expression | None, within: Instance | None = N
 def is_unreadable(expression: ex.Expression, within: Instance | None = None) -> bool | None:
     """Whether a constant expression rounds what is no number, and so has no value; None where it is not constant."""
     try:
-        evaluate(Expansion(None)(expression, within), _enum_value)
+        evaluate(Expansion(None)(expression, within), _enum_value, _clamped)
     except UnreadableError:
         return True
     except (_NoValueError, TypeError, ValueError, OverflowError, AttributeError):
@@ -224,9 +305,14 @@ def _folded(expression: ex.Expression) -> ex.Expression:
 
 def _value(expression: ex.Expression) -> Value | None:
     try:
-        return evaluate(expression, _enum_value)
+        return evaluate(expression, _enum_value, _clamped)
     except (_NoValueError, UnreadableError, TypeError, ValueError, OverflowError, AttributeError):
         return None
+
+
+def _clamped(value: int) -> int:
+    """An integer far outside of 64 bits as the nearest one that is still too large: squares of squares fill memory."""
+    return saturate(value, -CLAMP, CLAMP)
 
 
 class _NoValueError(Exception):

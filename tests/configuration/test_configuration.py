@@ -1,6 +1,7 @@
 """The configuration: what it may say, where it is found, and what is said about its faults."""
 
 import json
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -210,3 +211,11 @@ def test_every_key_is_explained() -> None:
         ]
 
     assert [key for key in keys(EVERYTHING) if f"`{key}`" not in manual and f"`{key}.<topic>`" not in manual] == []
+
+
+def test_a_pipe_is_found_and_refused(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "controller-config.json")
+    file = config.find(tmp_path)
+    assert file == tmp_path / "controller-config.json"
+    with pytest.raises(OSError, match="only regular files are read"):
+        config.read(file)

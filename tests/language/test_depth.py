@@ -28,6 +28,12 @@ def providing(value):
     return f"robot R {{ component A {{ outgoing message m with type: none }} provide A.m with {value} }}"
 
 deep = DEEPEST - 2  # braces of the robot and of the object around
+CHOICES = [
+    nested("if true then true else ", "", deep, "true"),
+    nested("if true then ", " else true", deep, "true"),
+    nested("if ", " then true else true", deep, "true"),
+    nested("if true then (true) else (", ")", deep // 2, "true"),
+]
 FINE = [
     needing(" and ".join(["true"] * LONGEST)),
     needing(" => ".join(["true"] * LONGEST)),
@@ -38,6 +44,9 @@ FINE = [
     needing(nested("!", "", deep, "true")),
     declaring(nested("array(", ")", deep - 1, "double")),
     providing(nested("{ a: ", "}", deep, "1")),
+    *map(needing, CHOICES),
+    needing(" and ".join(["(if true then true else true)"] * 200)),
+    "robot R { datatype object O { %s } }" % " ".join(f"any{n}: double count{n}: boolean" for n in range(100)),
 ]
 TOO_DEEP = [
     needing(nested("(", ")", 5000, "true")),
@@ -46,6 +55,16 @@ TOO_DEEP = [
     declaring(nested("array(", ")", 5000, "double")),
     providing(nested("{ a: ", "}", 5000, "1")),
     "robot R " + "{" * 5000,
+    *(needing(nested(*choice, 5000, "true")) for choice in (
+        ("if true then true else ", ""),
+        ("if true then ", " else true"),
+        ("if ", " then true else true"),
+        ("all x in value: ", ""),
+        ("any A: ", ""),
+    )),
+    *(needing(nested(*choice, DEEPEST + 1, "true")) for choice in (
+        ("if true then true else ", ""), ("if true then ", " else true"), ("any A: ", "")
+    )),
 ]
 done = []
 

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import sqlite3
+from contextlib import closing
 from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING
@@ -11,12 +14,12 @@ import pytest
 from mcap.writer import CompressionType
 from mcap.writer import Writer as McapWriter
 from rosbags.rosbag1 import Writer as Ros1Writer
-from rosbags.rosbag2 import StoragePlugin
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2 import Writer as Ros2Writer
 from rosbags.typesys import Stores, get_typestore
 
 import robosc
-from robosc.recordings import RecordedText, RecordingError, is_recording, recorded_texts
+from robosc.recordings import RecordedText, RecordingError, bounds, is_recording, recorded_texts
 from robosc.simulation import Simulation
 from robosc.simulation.played import PlayError, recorded_moments
 
@@ -183,3 +186,98 @@ def test_a_recorded_run_is_followed(tmp_path: Path) -> None:
     assert len(list(recorded_moments(Simulation(model, graph), path, "/b"))) == 3
     with pytest.raises(PlayError, match=r"no reports of this robot on `/other/state`: .*`Other`"):
         list(recorded_moments(Simulation(model, graph), path, "/other"))
+
+
+# Hostile recordings
+
+
+def write_compressed(path: Path, mode: CompressionMode, plugin: StoragePlugin, texts: Sequence[RecordedText]) -> Path:
+    writer = Ros2Writer(path, version=9, storage_plugin=plugin)
+    writer.set_compression(mode, CompressionFormat.ZSTD)
+    with writer:
+        connection = writer.add_connection("/courier/state", STRING, typestore=ROS2)
+        for time, (_, text) in enumerate(texts):
+            writer.write(connection, time * SECOND, bytes(ROS2.serialize_cdr(message(ROS2, text), STRING)))
+    return path
+
+
+@pytest.mark.parametrize("mode", [CompressionMode.FILE, CompressionMode.MESSAGE])
+@pytest.mark.parametrize("plugin", [StoragePlugin.SQLITE3, StoragePlugin.MCAP])
+def test_compressed_folders_have_a_budget(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mode: CompressionMode, plugin: StoragePlugin
+) -> None:
+    texts = [RecordedText("/courier/state", "x" * 400_000) for _ in range(5)]
+    path = str(write_compressed(tmp_path / "compressed", mode, plugin, texts))
+    assert list(recorded_texts(path)) == texts
+    monkeypatch.setattr(bounds, "MOST_BYTES", 100_000)
+    monkeypatch.setattr(bounds, "RATIO", 2)
+    with pytest.raises(RecordingError, match="such a recording is not decompressed"):
+        list(recorded_texts(path))
+
+
+@pytest.mark.parametrize("compression", [CompressionType.LZ4, CompressionType.ZSTD])
+def test_chunks_have_a_budget(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, compression: CompressionType) -> None:
+    texts = [RecordedText("/courier/state", "x" * 400_000) for _ in range(5)]
+    path = str(write_mcap("cdr", compression)(tmp_path / "run", texts))
+    assert list(recorded_texts(path)) == texts
+    monkeypatch.setattr(bounds, "MOST_BYTES", 100_000)
+    monkeypatch.setattr(bounds, "RATIO", 2)
+    with pytest.raises(RecordingError, match="such a recording is not decompressed"):
+        list(recorded_texts(path))
+
+
+@pytest.mark.parametrize("compression", [Ros1Writer.CompressionFormat.BZ2, Ros1Writer.CompressionFormat.LZ4])
+def test_chunks_of_ros_1_have_a_budget(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, compression: object) -> None:
+    path = tmp_path / "run.bag"
+    writer = Ros1Writer(path)
+    writer.set_compression(compression)
+    with writer:
+        connection = writer.add_connection("/courier/state", "std_msgs/msg/String", typestore=ROS1)
+        writer.write(connection, 0, bytes(ROS1.serialize_ros1(message(ROS1, "x" * 2_000_000), STRING)))
+    assert [len(text.text) for text in recorded_texts(str(path))] == [2_000_000]
+    monkeypatch.setattr(bounds, "MOST_BYTES", 100_000)
+    monkeypatch.setattr(bounds, "RATIO", 2)
+    with pytest.raises(RecordingError, match="such a recording is not decompressed"):
+        list(recorded_texts(str(path)))
+
+
+@pytest.mark.parametrize("plugin", [StoragePlugin.SQLITE3, StoragePlugin.MCAP])
+@pytest.mark.parametrize("is_link", [False, True])
+def test_a_pipe_in_a_folder_is_not_read(tmp_path: Path, plugin: StoragePlugin, is_link: bool) -> None:
+    path = write_folder(plugin)(tmp_path / "folder", TEXTS)
+    (data,) = (file for file in path.iterdir() if file.name != "metadata.yaml")
+    data.unlink()
+    os.mkfifo(tmp_path / "pipe" if is_link else data)
+    if is_link:
+        data.symlink_to(tmp_path / "pipe")
+    with pytest.raises(OSError, match="only regular files are read"):
+        list(recorded_texts(str(path)))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "CREATE VIEW messages AS WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT x FROM n",
+        "CREATE TABLE more (id INTEGER, data BLOB AS (zeroblob(900000000)))",
+        "CREATE TRIGGER more AFTER INSERT ON topics BEGIN SELECT 1; END",
+    ],
+)
+@pytest.mark.parametrize("is_folder", [True, False])
+def test_computed_tables_are_not_read(tmp_path: Path, text: str, is_folder: bool) -> None:
+    path = write_folder(StoragePlugin.SQLITE3)(tmp_path / "folder", TEXTS)
+    (file,) = path.glob("*.db3")
+    with closing(sqlite3.connect(file)) as database:
+        if "VIEW" in text:
+            database.execute("DROP TABLE messages")
+        database.execute(text)
+        database.commit()
+    with pytest.raises(RecordingError, match="is computed: a recording has stored tables only"):
+        list(recorded_texts(str(path if is_folder else file)))
+
+
+def test_metadata_that_is_too_large_is_not_read(tmp_path: Path) -> None:
+    path = write_folder(StoragePlugin.MCAP)(tmp_path / "folder", TEXTS)
+    with (path / "metadata.yaml").open("a") as file:
+        file.write("#" * (5 << 20))
+    with pytest.raises(RecordingError, match="more than 4 MB"):
+        list(recorded_texts(str(path)))

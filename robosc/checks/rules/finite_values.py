@@ -22,6 +22,7 @@ from robosc.metamodel import robosc as rsc
 from robosc.ros_types.wire import INTEGER_RANGES
 from robosc.semantics.communication import sent_type
 from robosc.semantics.cone_of_influence import ConeOfInfluence, accesses
+from robosc.semantics.expansion import CLAMP
 from robosc.semantics.inputs import Computed, Data, property_path
 from robosc.semantics.instances import MOST
 from robosc.semantics.printing import RoboscPrinter
@@ -232,7 +233,8 @@ def _too_large(meaning: Meaning) -> Iterator[Finding]:
     for expression in computed:
         (value,) = meaning.values(expression)
         if expression is not None and type(value) is int and not LEAST <= value <= LARGEST:
-            message = f"an integer lies between {LEAST} and {LARGEST}, and this is {value}"
+            shown = value if abs(value) < CLAMP else ("far larger" if value > 0 else "far smaller")
+            message = f"an integer lies between {LEAST} and {LARGEST}, and this is {shown}"
             yield meaning.finding(expression, message, "write another expression")
 
 

@@ -61,6 +61,9 @@ def _used(definition: rsc.NamedExpression) -> list[Any]:
 def _too_large(base: rsc.Base) -> Iterator[Finding]:
     for _ in conditions(instances(base)):
         pass
+    for constant in statements(rsc.Constant, base):
+        if constant.value is not None:
+            instances(base).expanded.is_too_large(constant.value)
     for expression in instances(base).expanded.too_large:
         yield Finding(
             expression,

@@ -1,0 +1,65 @@
+"""Short texts whose names stand for very much are refused before anything is written out."""
+
+import pytest
+
+from robosc.checks import check
+from robosc.language import Documents, read
+from robosc.semantics import expansion
+
+COMPONENT = """component A {
+  outgoing message m with type: integer(0..9)
+  incoming message go with type: none
+  behaviour { variable k: integer(0..9) = 0 on response from m do k := value initial marked state a { } }
+}"""
+TOO_LARGE = "this has more than 20000 parts when names are written out"
+
+
+def doubled(head: str, first: str, step: str, use: str) -> str:
+    """A definition, and 39 more, each of which names the one before twice."""
+    lines = [head.format(0) + first, *(head.format(number) + step.format(number - 1) for number in range(1, 40))]
+    return "\n".join(["robot R {", COMPONENT, *lines, use.format(39), "}"])
+
+
+FUNCTION = "function f{}(x: integer): integer = "
+TEXTS = {
+    "functions": doubled(FUNCTION, "x + 1", "f{0}(x) + f{0}(x)", "requirement A.go needs f{}(A.k) > 3"),
+    "arguments": doubled(FUNCTION, "x + x", "f{0}(x + x)", "requirement A.go needs f{}(A.k) > 3"),
+    "conditions": doubled("condition c{} = ", "A.k > 3", "c{0} and c{0}", "requirement A.go needs c{}"),
+}
+
+
+@pytest.mark.parametrize("text", TEXTS.values(), ids=TEXTS)
+def test_what_would_be_too_large_is_never_written_out(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
+    steps = 0
+    copied = expansion.copied
+
+    def counted(*arguments: object) -> object:
+        nonlocal steps
+        steps += 1
+        return copied(*arguments)
+
+    monkeypatch.setattr(expansion, "copied", counted)
+    reading = read("r.rscd", documents=Documents({"r.rscd": text}))
+    findings = [*reading.findings, *check(reading.base, reading.findings)]
+    assert [finding.message for finding in findings] == [TOO_LARGE]
+    # Each of the small definitions is written out by several rules.
+    assert steps < 20 * expansion.LARGEST
+
+
+def test_squares_of_squares_stay_small() -> None:
+    text = doubled("constant c{}: integer = ", "3", "c{0} * c{0}", "requirement A.go needs A.k > c{}")
+    reading = read("r.rscd", documents=Documents({"r.rscd": text}))
+    messages = [finding.message for finding in check(reading.base, reading.findings)]
+    bounds = "an integer lies between -9223372036854775808 and 9223372036854775807, and this is "
+    assert f"{bounds}3433683820292512484657849089281" in messages
+    assert messages.count(f"{bounds}far larger") >= 33
+
+
+def test_texts_of_texts_are_not_written_out() -> None:
+    use = "component B { outgoing message n with identifier: c{}, type: none }".replace("{ ", "{{ ").replace(
+        " }", " }}"
+    )
+    text = doubled("constant c{}: string = ", '"ab"', "c{0} + c{0}", use)
+    reading = read("r.rscd", documents=Documents({"r.rscd": text}))
+    findings = [*reading.findings, *check(reading.base, reading.findings)]
+    assert {finding.message for finding in findings} == {TOO_LARGE}
