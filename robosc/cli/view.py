@@ -190,7 +190,8 @@ def _serve(
     is_loopback = host in serving.LOOPBACK
     token = None if is_loopback else secrets.token_urlsafe(16)
     hosts = {f"{name}:{number}" for name in (*serving.LOOPBACK, host)}
-    path = f"http://{host}:{number}/{'' if token is None else f'?token={token}'}"
+    seen = serving.reachable(address)
+    path = f"http://{f'[{seen}]' if ':' in seen else seen}:{number}/{'' if token is None else f'?token={token}'}"
     ends: list[Callable[[], None]] = []
 
     def ready() -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robosc.files.resources import locate
-from robosc.ros_types.folders import Share, Workspace
+from robosc.ros_types.folders import MOST_FOLDERS, Share, Workspace
 from robosc.ros_types.wire import FOLDERS, DefinitionError, Fields, Nested, Section, Sequence, WireType
 
 if TYPE_CHECKING:
@@ -116,9 +116,9 @@ class RosTypes:
             ],
         }
         #: ROS 2, then ROS 1.
+        self._given = {ros: [Workspace(folder, ros) for folder in given] for ros in installed}
         self.distributions = [
-            RosDistribution(ros, [*(Workspace(folder, ros) for folder in given), *shares, Share(_SHIPPED)])
-            for ros, shares in installed.items()
+            RosDistribution(ros, [*self._given[ros], *shares, Share(_SHIPPED)]) for ros, shares in installed.items()
         ]
 
     def distribution(self, ros: int) -> RosDistribution:
@@ -135,6 +135,16 @@ class RosTypes:
             if fields is not None and len(fields) == 1:
                 return next(iter(fields))
         return _DATA
+
+    def _make_known(self) -> str:
+        """How to make a type known: where a folder is too large to be searched, by a smaller one."""
+        large = next((found.folder for found in self._given["ROS 2"] if found.is_too_large), None)
+        if large is None:
+            return MAKE_KNOWN
+        return (
+            f"only the first {MOST_FOLDERS:,} folders below `{large}` were searched: "
+            "give a folder nearer to the package with --interface-path"
+        )
 
     def other_kinds(self, package: str, name: str, kind: str) -> list[str]:
         """The other kinds of which there is a type of that name: `service`, `action`."""
@@ -166,10 +176,11 @@ class RosTypes:
             packages = {found for known in self.distributions for found in known.packages()}
             having = sorted(other for other in packages if name in self._names(other, kind))
             close = get_close_matches(package, having, n=1, cutoff=0.8)
-            hint = f"did you mean `{close[0]}`? Else {MAKE_KNOWN}" if close else MAKE_KNOWN
+            make_known = self._make_known()
+            hint = f"did you mean `{close[0]}`? Else {make_known}" if close else make_known
             return f"the package `{package}` is unknown", hint, (close[0], name) if close else None
         close = get_close_matches(name, self._names(package, kind), n=1)
-        hint = f"did you mean `{close[0]}`?" if close else MAKE_KNOWN
+        hint = f"did you mean `{close[0]}`?" if close else self._make_known()
         meant = (package, close[0]) if close else None
         return f"no {kind} type `{name}` of the package `{package}` is known", hint, meant
 

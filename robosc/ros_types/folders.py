@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robosc.files import reading as files
+from robosc.interruption import checkpoint
 from robosc.ros_types.wire import FOLDERS, DefinitionError, Fields, Section
 
 if TYPE_CHECKING:
@@ -19,6 +20,8 @@ _SECTIONS = {"message": 1, "service": 2, "action": 3}
 _NAME = re.compile(r"<name>\s*([A-Za-z][\w-]*)\s*</name>")
 #: What the manifest of a package for one of the two ROS mentions; one that mentions both, or none, is for both.
 _BUILT_FOR = {"ROS 1": re.compile(r"catkin|message_generation"), "ROS 2": re.compile(r"ament_|rosidl_")}
+#: The folders below one of the call that are searched for packages. A full workspace has some hundred.
+MOST_FOLDERS = 10_000
 #: Build tools pass over a folder that holds one of these.
 _IGNORED = {"AMENT_IGNORE", "CATKIN_IGNORE", "COLCON_IGNORE"}
 
@@ -73,6 +76,7 @@ class Workspace(Share):
     def __init__(self, folder: Path, ros: str) -> None:
         super().__init__(folder)
         self._ros = ros
+        self._searched = 0
 
     def roots(self, package: str) -> list[Path]:
         """The folders of a package, in the order of their paths."""
@@ -89,9 +93,24 @@ class Workspace(Share):
             packages.setdefault(name, []).append(root)
         return packages
 
+    @property
+    def folder(self) -> Path:
+        """The folder itself."""
+        return self._folder
+
+    @property
+    def is_too_large(self) -> bool:
+        """Whether there are more than `MOST_FOLDERS` below it, of which only the first were searched."""
+        _ = self._roots
+        return self._searched > MOST_FOLDERS
+
     def _found(self) -> Iterator[tuple[str, Path]]:
         seen = set()
         for folder, below, names in os.walk(self._folder, followlinks=True):  # as ROS's own tools do
+            checkpoint()
+            self._searched += 1
+            if self._searched > MOST_FOLDERS:
+                return
             root = Path(folder)
             place = os.path.realpath(folder)
             if place in seen:  # a link to what is around it

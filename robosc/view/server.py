@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from hashlib import sha256
 from hmac import compare_digest
 from typing import TYPE_CHECKING, Any
 
@@ -178,12 +179,15 @@ class _Guarded:
             return PlainTextResponse("another site's page may not ask", 403)
         if self._token is None:
             return None
-        if _same(request.cookies.get(_COOKIE, ""), self._token):
-            return None
+        # Cookies know no ports: each view on a computer has its own name.
+        cookie = f"{_COOKIE}-{sha256(self._token.encode()).hexdigest()[:12]}"
         if request.url.path == "/" and _same(request.query_params.get("token", ""), self._token):
+            # Lax: a strict one does not come with the redirect after a click on another site. An action needs more.
             response = RedirectResponse("/", 303)
-            response.set_cookie(_COOKIE, self._token, httponly=True, samesite="strict")
+            response.set_cookie(cookie, self._token, httponly=True, samesite="lax")
             return response
+        if _same(request.cookies.get(cookie, ""), self._token):
+            return None
         return PlainTextResponse("the token is missing: open the address that `robosc view` printed", 403)
 
 

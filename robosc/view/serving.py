@@ -16,6 +16,21 @@ if TYPE_CHECKING:
 LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 
 
+def reachable(address: str) -> str:
+    """An address by which others reach what listens on an address: one of this computer where it is any address."""
+    family = {"0.0.0.0": socket.AF_INET, "::": socket.AF_INET6}.get(address)  # noqa: S104 - compared only
+    if family is None:
+        return address
+    # The route to an address for documentation names the network card; nothing is sent.
+    elsewhere = "192.0.2.1" if family == socket.AF_INET else "2001:db8::1"
+    with socket.socket(family, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect((elsewhere, 9))
+        except OSError:
+            return socket.gethostname()
+        return str(probe.getsockname()[0])
+
+
 def listen(address: str, port: int) -> socket.socket:
     """A socket that listens; port 0: a free one. Raises OSError."""
     family = socket.AF_INET6 if ":" in address else socket.AF_INET

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from robosc.ros_types import DefinitionError, RosTypes, Section
+from robosc.ros_types import DefinitionError, RosTypes, Section, folders
 
 HERE = Path(__file__).parent
 MINIMAL = HERE.parent / "ros" / "interfaces"
@@ -240,3 +240,17 @@ def test_a_package_is_meant_only_if_it_has_the_type(
     assert message == f"the package `{package}` is unknown"
     assert found == meant
     assert ("did you mean" in hint) == (meant is not None)
+
+
+def test_a_folder_that_is_too_large_is_searched_in_part(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(folders, "MOST_FOLDERS", 30)
+    for number in range(40):
+        (tmp_path / f"p{number:02}" / "msg").mkdir(parents=True)
+        (tmp_path / f"p{number:02}" / "msg" / "Found.msg").write_text("int32 x\n")
+    types = RosTypes([tmp_path])
+    assert types.distributions[0].fields("p03", "Found", Section.MESSAGE) is not None
+    assert types.distributions[0].fields("p39", "Found", Section.MESSAGE) is None
+    message, hint, _ = types.why_unknown("p39", "Found", Section.MESSAGE)
+    assert message == "the package `p39` is unknown"
+    assert hint.endswith("give a folder nearer to the package with --interface-path")
+    assert "give the folder of its package" in RosTypes([tmp_path / "p39"]).why_unknown("q", "X", Section.MESSAGE)[1]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -10,6 +11,7 @@ from starlette.testclient import TestClient
 from robosc.view import page
 from robosc.view.page import FILES, POLICY
 from robosc.view.server import application
+from robosc.view.serving import reachable
 
 from .robots import GATE, record
 
@@ -128,7 +130,26 @@ def test_who_has_the_token_and_who_has_not() -> None:
     answer = asking.get("/?token=schlüssel")
     assert (answer.status_code, answer.headers["location"]) == (303, "/")
     assert "HttpOnly" in answer.headers["set-cookie"]
-    assert "SameSite=strict" in answer.headers["set-cookie"]
+    # A strict one does not come with the redirect after a click on another site.
+    assert "SameSite=lax" in answer.headers["set-cookie"]
+
+
+def test_two_views_on_one_computer_keep_each_other_s_cookies() -> None:
+    first, second = client(key="first"), client(key="second")
+    first.get("/?token=first")
+    second.cookies = first.cookies  # a browser has one jar for all ports of a computer
+    second.get("/?token=second")
+    first.cookies = second.cookies
+    for asking in (first, second):
+        assert asking.get("/description").status_code == 200
+
+
+@pytest.mark.parametrize("address", ["0.0.0.0", "::"])  # noqa: S104 - nothing listens
+def test_any_address_is_printed_as_one_that_others_reach(address: str) -> None:
+    seen = reachable(address)
+    assert seen not in {address, ""}
+    assert socket.getaddrinfo(seen, 80)
+    assert reachable("127.0.0.2") == "127.0.0.2"
 
 
 def test_the_token_opens_everything() -> None:

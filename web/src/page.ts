@@ -196,6 +196,23 @@ async function start(): Promise<void> {
   }
   const answer = await fetch(asked("description"));
   const page = new Page((await answer.json()) as Description, true);
+  let source: EventSource | null = null;
+  // A hidden page lets its stream go: a browser opens six connections to one server, for all of its pages.
+  const listen = (): void => {
+    if (document.hidden) {
+      source?.close();
+      source = null;
+    } else {
+      source ??= moments(page);
+    }
+  };
+  document.addEventListener("visibilitychange", listen);
+  listen();
+  await page.draw();
+}
+
+/** Shows what the server reports, from the first moment that it keeps. */
+function moments(page: Page): EventSource {
   const source = new EventSource(asked("moments"));
   source.addEventListener("message", (event) => {
     const told = JSON.parse(event.data as string) as { from: number; moments: Moment[]; status: string };
@@ -204,7 +221,7 @@ async function start(): Promise<void> {
   });
   source.addEventListener("error", () => page.say("The server does not answer; the page waits for it.", true));
   source.addEventListener("open", () => page.isConnected());
-  await page.draw();
+  return source;
 }
 
 void start();

@@ -10,6 +10,8 @@ import { findTool, needTool, printed, searched, setUp } from "./tool";
 const targets = ["ros2", "ros1", "supervisor", "cif", "ros2-layer", "ros1-layer", "xmi"];
 
 let client: LanguageClient | undefined;
+/** The last start of the language server, which the next one waits for. */
+let serving: Promise<void> = Promise.resolve();
 
 export async function activate(context: vscode.ExtensionContext): Promise<void> {
   const diagrams = new Diagrams();
@@ -51,11 +53,20 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
 }
 
 export async function deactivate(): Promise<void> {
+  await serving.catch(() => undefined);
   await client?.stop();
 }
 
-/** Starts the language server, anew where it runs. */
-async function serve(context: vscode.ExtensionContext): Promise<void> {
+/** Starts the language server, anew where it runs, after those starts that have begun. */
+function serve(context: vscode.ExtensionContext): Promise<void> {
+  serving = serving.then(
+    () => restart(context),
+    () => restart(context),
+  );
+  return serving;
+}
+
+async function restart(context: vscode.ExtensionContext): Promise<void> {
   await client?.stop();
   client = undefined;
   const tool = await needTool(context);
