@@ -134,3 +134,17 @@ def test_what_the_manifest_names_is_there_or_copied() -> None:
 def steps() -> list[dict[str, Any]]:
     [walkthrough] = MANIFEST["contributes"]["walkthroughs"]
     return list(walkthrough["steps"])
+
+
+def test_a_folder_that_is_not_trusted_names_no_programs_or_folders() -> None:
+    restricted = MANIFEST["capabilities"]["untrustedWorkspaces"]["restrictedConfigurations"]
+    settings = MANIFEST["contributes"]["configuration"]["properties"]
+    assert set(restricted) == {name for name in settings if name.endswith((".path", ".package", "Paths"))}
+    assert len(restricted) == 4
+
+
+def test_restarts_of_the_server_wait_for_each_other() -> None:
+    text = (EXTENSION / "src" / "extension.ts").read_text()
+    # Only `restart` stops and starts a client, and only the chain of `serving` calls it.
+    assert re.findall(r"\brestart\(context", text) == ["restart(context"] * 3
+    assert "serving = serving.then(" in text

@@ -390,3 +390,21 @@ def test_finding_folding_and_zooming(chromium: Any) -> None:
         before = page.locator(".card svg").first.bounding_box()["width"]
         page.get_by_role("button", name="Zoom in").click()
         assert page.locator(".card svg").first.bounding_box()["width"] > before * 1.2
+
+
+def test_hidden_pages_leave_connections_to_others(chromium: Any) -> None:
+    """A browser opens six connections to one server, and a page that is seen holds one."""
+    hide = """(hidden) => {
+      Object.defineProperty(document, "hidden", { value: hidden, configurable: true });
+      document.dispatchEvent(new Event("visibilitychange"));
+    }"""
+    with served(MODEL) as address, opened(chromium, address) as first:
+        for _ in range(7):
+            first.context.pages[-1].evaluate(hide, True)
+            page = first.context.new_page()
+            page.goto(address)
+        page.wait_for_selector("body[data-drawn][data-moment]")
+        assert shown(page) == truth(simulation_of(MODEL), 0)
+        page.evaluate(hide, True)
+        first.evaluate(hide, False)
+        assert shown(first) == truth(simulation_of(MODEL), 0)
