@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robosc.files.resources import locate
+from robosc.language.tokens import Tokens
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -48,6 +49,22 @@ class LibraryPath:
     def known(self, beside: Path) -> list[str]:
         """The names of all libraries that a file could import from."""
         return [name for folder in (beside.parent, *self._folders) for name in self.declared(folder)]
+
+    def components(self, beside: Path) -> Mapping[str, str]:
+        """The components of all libraries that a file could import from, each with its first library."""
+        found: dict[str, str] = {}
+        for folder in (beside.parent, *self._folders):
+            for library, paths in self.declared(folder).items():
+                for name in self._component_names(paths[0]):
+                    found.setdefault(name, library)
+        return found
+
+    def _component_names(self, path: Path) -> list[str]:
+        try:
+            tokens = Tokens(self._documents.read(path, is_input=False).decode("utf-8", errors="replace"))
+        except OSError:
+            return []
+        return [tokens[at + 1].text for at, token in enumerate(tokens) if token.is_keyword("component")]
 
     def declared(self, folder: Path) -> Mapping[str, list[Path]]:
         """The libraries that the files of a folder declare, by name; their paths start with the folder's."""

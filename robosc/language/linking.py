@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import ChainMap
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from robosc.diagnostics import Repair
+from robosc.diagnostics import Related, Repair
 from robosc.interruption import checkpoint
 from robosc.language.explaining import BASIC_TYPES, CONSTRUCTS, did_you_mean
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
@@ -31,7 +32,7 @@ from robosc.semantics.typing import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from robosc.diagnostics import Diagnostic
     from robosc.language.building import Name
@@ -49,34 +50,56 @@ _FUNCTION = (
     "`function half(d: double): double = d / 2`"
 )
 _OWN_TEXT = "write what it has where it is needed"
+_IMPORT = "import it: "
+#: Shorter names are parts of too many others.
+_SHORTEST = 4
 OWN_MEMBERS = "a library's component speaks of its own members only"
 #: Of a condition or function beside the components of a library.
 _ANY_NUMBER = "a robot may have a library's component several times or not at all: write this in the component"
 
 
-def link(file: File, interfaces: RosTypes, resolved: Resolved) -> list[Diagnostic]:
+def link(
+    file: File, interfaces: RosTypes, resolved: Resolved, importable: Callable[[], Mapping[str, str]]
+) -> list[Diagnostic]:
     """Resolves the names of a file, whose libraries are read and linked; returns a finding for each that can't be.
 
     `interfaces` is what is known of the ROS types that take the place of objects, `resolved` what is known of the
-    components of the libraries; it is added to.
+    components of the libraries; it is added to. `importable` returns the components that can be imported, with their
+    libraries.
 
     A name without element leaves its feature unset. A name that stands or falls with another one that is not
     resolved, or that text with a syntax error may declare, draws no finding of its own.
     """
     if file.base is None:
         return []
-    linker = Linker(file, interfaces)
+    linker = Linker(file, interfaces, importable)
     linker.imports()
     linker.link(Scope(file, file.base, resolved))
-    return linker.findings
+    return _by_cause(linker.findings)
+
+
+def _by_cause(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Findings with one for each component whose import is missing: its other uses are related to the first."""
+    found: dict[Any, Diagnostic] = {}
+    for finding in findings:
+        key = finding.hint if finding.hint is not None and finding.hint.startswith(_IMPORT) else finding
+        if key in found:
+            other = Related(finding.file, finding.span, "this is the same name")
+            found[key] = replace(found[key], related=(*found[key].related, other))
+        else:
+            found[key] = finding
+    return list(found.values())
 
 
 class Linker:
     """Links one file, whose libraries are linked; knows which names can be used where in it, `scope` in its base."""
 
-    def __init__(self, file: File, interfaces: RosTypes) -> None:
+    def __init__(
+        self, file: File, interfaces: RosTypes, importable: Callable[[], Mapping[str, str]] = dict[str, str]
+    ) -> None:
         self.findings: list[Diagnostic] = []
         self.interfaces = interfaces
+        self._importable = importable
         self._file = file
         self.scope: Scope
         self._definitions: dict[ex.Located, ex.Located] = {}
@@ -299,7 +322,8 @@ class Linker:
         component: rsc.Component | None = components.get(name.text)
         if component is None and not self._file.may_declare(name.text, Declared.COMPONENT, imported=False):
             hint = OWN_MEMBERS if name.text in self.scope.components else None
-            self._missing(name, "there is no component", components, self._made_of(name) or hint)
+            repair = self._made_of(name) or hint or self._import_of(name, components)
+            self._missing(name, "there is no component", components, repair)
         return component
 
     def components(self, element: ex.Located) -> Names:
@@ -325,6 +349,18 @@ class Linker:
         made = [written(part.name) for part in self._parts.values() if self.scope.origin(part) is template]
         said, texts = _first_few(made or [f"component other is {written(template.name)}(…)"])
         return Repair(f"`{written(template.name)}` is a template: write {said}", choices=texts if made else ())
+
+    def _import_of(self, name: Name, known: Iterable[str]) -> str | None:
+        """The import that may be missing; None where a known name is close, or no library has such a component."""
+        if self._is_library or len(name.text) < _SHORTEST or did_you_mean(name.text, known, cutoff=0.6):
+            return None
+        word, importable = name.text.lower(), self._importable()
+        like = [component for component in importable if word in component.lower() or component.lower() in word]
+        component = min(like, key=lambda other: (abs(len(other) - len(word)), other), default=None)
+        if component is None:
+            return None
+        library = written(importable[component])
+        return f"{_IMPORT}`component {written(name.text)} from {library} import {written(component)}`"
 
     def _member(self, members: Names, name: Name, component: rsc.Component, declared: Declared) -> Any:
         found = members.get(name.text)
@@ -523,9 +559,9 @@ class Linker:
             return
         if qualifies:
             hint = (_ANY_NUMBER if own is None else OWN_MEMBERS) if name.text in self.scope.components else None
-            self._missing(
-                name, "there is no component or variable", [*components, *members], self._made_of(name) or hint
-            )
+            known = [*components, *members]
+            repair = self._made_of(name) or hint or self._import_of(name, known)
+            self._missing(name, "there is no component or variable", known, repair)
         elif not self._file.may_declare(name.text, Declared.ENUM_VALUE, Declared.NAMED):
             named = self.scope.usable(rsc.NamedExpression)
             known = [*components, *members, *named, *self.scope.usable(rsc.EnumValue)]

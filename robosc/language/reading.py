@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
@@ -100,7 +101,8 @@ class _Reader:
                 file.libraries[name.text] = self._library(file, self._paths[identity], name)
                 continue
             if file.base is not None:
-                self.findings += link(file, self._ros_types, self._resolved)
+                importable = partial(self._path.components, self._paths[identity])
+                self.findings += link(file, self._ros_types, self._resolved, importable)
             del self._reading[identity]
         return first
 

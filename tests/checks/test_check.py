@@ -414,3 +414,44 @@ def test_a_second_component_of_a_name_has_no_other_finding(tmp_path: Path) -> No
 """)
     reading = read(path)
     assert [found.rule for found in check(reading.base, reading.findings)] == ["unique-component"]
+
+
+def test_a_missing_import_is_one_finding_with_the_import(tmp_path: Path) -> None:
+    robot = """robot R {
+  component Base { incoming message go with type: none incoming message halt with type: none }
+  requirement go needs Stop.in_service
+  requirement halt needs !Stop.in_service
+  requirement Stop.in_service disables halt
+}
+"""
+    path = tmp_path / "robot.rscd"
+    path.write_text(robot)
+    (finding,) = read(path).findings
+    assert finding.message == "there is no component or variable `Stop`"
+    assert [other.span.line for other in finding.related] == [4, 5]
+    imported = "component Stop from EmergencyStopLibrary import EmergencyStop"
+    assert finding.hint == f"import it: `{imported}`"
+    path.write_text(robot.replace("robot R {", f"robot R {{\n  {imported}"))
+    assert read(path).findings == []
+
+
+def test_a_short_name_is_no_missing_import(tmp_path: Path) -> None:
+    path = tmp_path / "robot.rscd"
+    path.write_text("""robot R {
+  component Base { incoming message go with type: none }
+  requirement go needs To.be
+}
+""")
+    assert [finding.hint for finding in read(path).findings] == ["there is `Base`"]
+
+
+def test_a_name_that_is_close_is_no_missing_import(tmp_path: Path) -> None:
+    path = tmp_path / "robot.rscd"
+    path.write_text("""robot R {
+  component Stopper { behaviour { initial marked state on_call { } } }
+  component Base { incoming message go with type: none incoming message halt with type: none }
+  requirement go needs Stoper.on_call
+  requirement halt needs Stoper.on_call
+}
+""")
+    assert [finding.hint for finding in read(path).findings] == ["did you mean `Stopper`?"] * 2
