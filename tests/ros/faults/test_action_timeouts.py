@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import signal
 from typing import TYPE_CHECKING
 
 import pytest
@@ -82,43 +80,6 @@ def test_comes_back_between_two_goals(scout: Scout) -> None:
     arrive_sometime(scout)
     # The node may hear of the death when the goal is on its way already, which is lost then.
     assert scout.says(since, GONE) <= len(scout.events(since, ERROR))
-
-
-def test_cancel_not_answered(scout: Scout, server: Peer) -> None:
-    server.do("accept_at_once", accept=True)
-    server.do("on_cancel", answer="ignore")
-    since = scout.now()
-    scout.send("/travel_order", data=True)
-    number = server.wait("goal", len(server.said) - 1)["goal"]
-    server.do("progress", number=number, fields={"distance_remaining": 2.5})
-    scout.until_event(since, "action_travel.u_feedback")
-    os.kill(server.process.pid, signal.SIGSTOP)
-    try:
-        scout.send("/travel_order", data=False)
-        scout.until_says(since, "/travel: the server does not answer the request to cancel the goal within 1000 ms")
-        assert scout.state("Navigator") == "stopping"
-    finally:
-        os.kill(server.process.pid, signal.SIGCONT)
-    server.wait("cancel", value=number)
-    server.do("end", number=number, how="cancelled")
-    scout.until_event(since, "action_travel.u_canceled")
-
-
-def test_cancel_of_a_goal_that_the_server_does_not_know(scout: Scout, server: Peer) -> None:
-    if scout.version == 1:
-        pytest.skip("a server of ROS 1 does not answer requests to cancel")
-    server.do("accept_at_once", accept=True)
-    since = scout.now()
-    scout.send("/travel_order", data=True)
-    server.wait("goal", len(server.said) - 1)
-    scout.until_state("Navigator", "travelling")
-    scout.kill_server()
-    scout.serve(succeed=True)
-    # The request reaches the new server, sooner or later than the middleware has noticed the death of the old one.
-    scout.nothing(1.0)
-    scout.send("/travel_order", data=False)
-    scout.until_event(since, ERROR)
-    assert scout.says(since, "/travel: the server does not know the goal") + scout.says(since, GONE) == 1
 
 
 def arrive_sometime(scout: Scout) -> None:
