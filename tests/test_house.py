@@ -45,7 +45,7 @@ ROOMS = {
 ALLOWED = {
     "": ROOMS - {"cli", "debugger", "editor", "view", "report", "__main__"},
     "__main__": {"cli"},
-    "analysis": {"synthesis", "engine", "m2t"},
+    "analysis": {"synthesis", "engine", "m2t", "cif"},
     "checks": {"language"},
     "cif": {"language"},
     "editor": {"", "language", "checks", "analysis"},

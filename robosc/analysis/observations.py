@@ -195,7 +195,10 @@ class Observer:
             return
         for requirements in stated:
             states = self._system.diagrams.any_of(map(self._matters, requirements))
-            yield Weight(requirements, self._system.encoding.count(states))
+            # A range that an update can leave by its type alone is nothing that an author wrote.
+            stands = not all(isinstance(own, sct.Requirement) and own.ranges for own in requirements)
+            if stands or states.satisfiable():
+                yield Weight(requirements, self._system.encoding.count(states))
 
     def _matters(self, requirement: sct.StatedRequirement) -> Diagram:
         if requirement in self._system.violations:

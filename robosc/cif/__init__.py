@@ -12,43 +12,69 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from robosc.cif.faults import CifFaultError, located
-from robosc.cif.parsing import parse
+from robosc.cif.faults import CifFaultError, construct, located
+from robosc.cif.parsing import annotations_of, parse
 from robosc.cif.scopes import Specification
 from robosc.cif.to_sct import to_sct
-from robosc.diagnostics import in_order
+from robosc.diagnostics import has_errors, in_order
 from robosc.language.text import Documents, decode
 
 if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic
     from robosc.metamodel import sct
 
-__all__ = ["Reading", "read"]
+__all__ = ["Reading", "read", "read_supervised"]
+
+#: Annotations of CIF that change nothing of what a specification means.
+_MEANINGLESS = frozenset(["doc", "state", "controller:properties"])
+#: How the names of annotations begin that are requirements.
+_REQUIRED = "requirement:"
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What came of reading a specification: its sct model, None where it has faults, these, and the texts by path."""
+    """What came of reading a specification: its sct model, None where it has errors, findings, and texts by path."""
 
     model: sct.SupervisoryControlModel | None
     findings: list[Diagnostic]
     texts: dict[str, str]
 
 
-def read(path: Path | str, documents: Documents | None = None) -> Reading:
-    """Reads a specification and all that it imports. Raises OSError where the file itself can't be read."""
+def read(path: Path | str, documents: Documents | None = None, *, supervised: bool = False) -> Reading:
+    """Reads a specification and all that it imports. Raises OSError where the file itself can't be read.
+
+    Supervisor automata are refused, or where they may be in it (`supervised`), taken as plants.
+    """
     files = _Files(Path(path), documents or Documents())
-    if files.findings:
+    if has_errors(files.findings):
         return Reading(None, in_order(files.findings), files.texts)
     names = Specification()
     for specification in files.specifications:
         names.add(specification)
     names.make_instances()
-    model = to_sct(names, Path(path).name.removesuffix(".cif"))
+    model = to_sct(names, Path(path).name.removesuffix(".cif"), supervised=supervised)
+    findings = in_order([*files.findings, *names.findings])
     if names.findings:
-        return Reading(None, in_order(names.findings), files.texts)
+        return Reading(None, findings, files.texts)
     model.source = located(names.first)
-    return Reading(model, [], files.texts)
+    return Reading(model, findings, files.texts)
+
+
+def read_supervised(model: sct.SupervisoryControlModel, text: str) -> Reading | None:
+    """Read a specification that imports the one that a model was read from, as if it were beside that.
+
+    Returns None where the model's own specification can't be read any more.
+    """
+    assert model.source is not None
+    assert model.source.file is not None
+    own = Path(model.source.file.path)
+    beside = own.with_name(f"{model.name}.supervised.cif")
+    documents = Documents({str(beside): text})
+    try:
+        documents.read(own)
+    except OSError:
+        return None
+    return read(beside, documents, supervised=True)
 
 
 class _Files:
@@ -79,9 +105,24 @@ class _Files:
         if specification is None:
             return
         self.specifications.append(specification)
+        self._annotations(specification)
         for declaration in specification.declarations:
             for name in declaration.files if type(declaration).__name__ == "Import" else ():
                 imported = path.parent / name[1:-1].replace('\\"', '"').replace("\\\\", "\\")
                 if imported.resolve() not in self._known:
                     self._known.add(imported.resolve())
                     self._imports.append((imported, declaration))
+
+    def _annotations(self, specification: Any) -> None:
+        """Refuses annotations that are requirements, and warns of those whose meaning is not known."""
+        for annotation in annotations_of(specification):
+            name = annotation.name.lstrip("@")
+            if name.startswith(_REQUIRED):
+                fault = construct(
+                    annotation, f"the requirement `{annotation.name}`", "write it as a requirement, or leave it out"
+                )
+                self.findings.append(fault.finding())
+            elif name not in _MEANINGLESS:
+                message = f"the annotation `{annotation.name}` is unknown: synthesis does not regard it"
+                fault = CifFaultError(annotation, "cif-construct", message, "leave it out, or see that it asks nothing")
+                self.findings.append(fault.warning())

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
+
+from robosc.diagnostics import Severity
 
 if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic, Repair
@@ -23,6 +26,10 @@ class CifFaultError(Exception):
     def finding(self) -> Diagnostic:
         """The fault as a finding in its text."""
         return text_of(self.read).error(self.rule, *span(self.read), self.message, self.repair)
+
+    def warning(self) -> Diagnostic:
+        """The fault as a finding that leaves the model usable."""
+        return replace(self.finding(), severity=Severity.WARNING)
 
 
 #: How to mend what a transformation of CIF's `cif2cif` takes out, by its name there.

@@ -99,6 +99,12 @@ def parse(text: Text) -> tuple[Any, list[Diagnostic]]:
         content = content[:first] + blanked + content[reported:]
 
 
+def annotations_of(specification: Any) -> list[Any]:
+    """Return the annotations of a specification, in the order of the text."""
+    found: list[Any] = textx.get_children_of_type("Annotation", specification)
+    return found
+
+
 def _too_deep(text: Text) -> Diagnostic | None:
     """What is wrong at the first bracket, group or statement that is nested too deep in a text; None where nothing is.
 

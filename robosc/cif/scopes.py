@@ -119,12 +119,15 @@ class Specification:
         """Declares what a file has."""
         scope = self.root
         self.first = self.first or specification
-        for declaration in specification.declarations:
-            if type(declaration).__name__ == "Namespace":
-                for part in plain(declaration.name.text).lstrip(".^").split("."):
-                    scope = self._inner(part, scope, declaration, specification)
-        if scope is self.root:
-            scope.bodies.append(specification)
+        try:
+            for declaration in specification.declarations:
+                if type(declaration).__name__ == "Namespace":
+                    for part in plain(declaration.name.text).lstrip(".^").split("."):
+                        scope = self._inner(part, scope, declaration)
+        except CifFaultError as fault:
+            self.findings[fault.finding()] = None
+            return  # Its declarations are nowhere.
+        scope.bodies.append(specification)
         self._declare(scope, specification)
 
     def make_instances(self) -> None:
@@ -219,7 +222,9 @@ class Specification:
         rule = type(read).__name__
         match rule:
             case "Group":
-                self._declare(self._inner(plain(read.name), scope, read, read), read)
+                group = self._inner(plain(read.name), scope, read)
+                group.bodies.append(read)
+                self._declare(group, read)
             case "Automaton":
                 self._automaton(self._scope(plain(read.name), scope, read), read)
             case "Instance":
@@ -240,7 +245,8 @@ class Specification:
                 for literal in read.literals if rule == "Enumeration" else ():
                     self._name("Literal", literal, whole, scope)
             case "Events":
-                scope.events += [self._name(rule, name, read, scope) for name in read.names]
+                for name in read.names:
+                    scope.events.append(self._name(rule, name, read, scope))
                 if read.type is not None:
                     raise construct(read, "channels", CHANNELS)
             case _ if rule in _LISTS:
@@ -254,12 +260,11 @@ class Specification:
         scope.names[declared.name] = declared
         return declared
 
-    def _inner(self, name: str, scope: Scope, read: Any, body: Any) -> Scope:
+    def _inner(self, name: str, scope: Scope, read: Any) -> Scope:
         """The group of a name; what several texts say of one is put together."""
         known = scope.names.get(name)
         if not isinstance(known, Scope) or known.kind is not None or known.definition is not None:
             known = self._scope(name, scope, read, bare=True)
-        known.bodies.append(body)
         return known
 
     def _scope(self, name: str, scope: Scope, read: Any, *, bare: bool = False) -> Scope:

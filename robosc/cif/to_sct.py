@@ -2,8 +2,8 @@
 
 All that CIF's synthesis does implicitly is written out: an automaton that only watches an event stays where it has no
 edge for it; a requirement automaton watches all of its events, and what it forbids is a requirement on its locations;
-an edge that would leave the range of a variable can't be taken, and where its event is uncontrollable, a requirement
-says that it must not come to that; an input variable is a variable that an uncontrollable event gives any value.
+an edge that would bring a variable out of its range is forbidden by a requirement; an input variable is a variable
+that an uncontrollable event gives any value.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from robosc.cif.faults import (
     text_of,
 )
 from robosc.cif.scopes import Declared, Scope, Specification, plain
-from robosc.cif.values import Values, constant_value, literal
+from robosc.cif.values import Values, computed_from_itself, constant_value, literal
 from robosc.language.explaining import did_you_mean
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
@@ -41,25 +41,29 @@ if TYPE_CHECKING:
 
 @dataclass
 class _Taken:
-    """An edge of the text with one of its events: where it is enabled, and where it stays in the ranges."""
+    """An edge of the text with one of its events: where it is enabled, and where each variable stays in its range."""
 
     location: sct.Location
     event: sct.Event
     guard: ex.Expression | None
-    fits: ex.Expression | None
+    fits: dict[sct.DiscreteVariable, ex.Expression]
     updates: list[tuple[sct.DiscreteVariable, ex.Expression, Any]]
     target: sct.Location
     read: Any
 
 
-def to_sct(names: Specification, name: str) -> sct.SupervisoryControlModel:
-    """The sct model of a specification; what is wrong with it is added to the findings of its names."""
-    return _Transformation(names, name).model
+def to_sct(names: Specification, name: str, *, supervised: bool = False) -> sct.SupervisoryControlModel:
+    """The sct model of a specification; what is wrong with it is added to the findings of its names.
+
+    Where it may be `supervised`, supervisor automata are plants.
+    """
+    return _Transformation(names, name, supervised=supervised).model
 
 
 class _Transformation:
-    def __init__(self, names: Specification, name: str) -> None:
+    def __init__(self, names: Specification, name: str, *, supervised: bool) -> None:
         self._names = names
+        self._supervised = supervised
         self._values = Values(names)
         self.model = sct.SupervisoryControlModel(name=name)
         self._controllable: dict[sct.Event, Declared] = {}
@@ -90,7 +94,7 @@ class _Transformation:
 
     def _declare(self, scope: Scope) -> None:
         """The events, variables and inputs of a scope."""
-        if scope.kind == "supervisor":
+        if scope.kind == "supervisor" and not self._supervised:
             with self._names.reporting():
                 raise construct(scope.read, "supervisor automata", SUPERVISORS)
         if scope.kind == "":
@@ -106,6 +110,8 @@ class _Transformation:
             self._controllable[event] = declared
         for known in scope.names.values():
             if isinstance(known, Declared) and known.kind in ("Variables", "Inputs"):
+                # Until its type is known, it can only be read by what that is made of.
+                known.fault = computed_from_itself(known)
                 try:
                     self._variable(known, scope)
                 except CifFaultError as fault:
@@ -247,17 +253,25 @@ class _Transformation:
                 raise CifFaultError(read.target, "unresolved-reference", *_missing(name, known))
             target = found
         guard = self._values.condition(read.guards, scope)
+        updates, fits = self._updates(read, scope)
+        for event in dict.fromkeys(events):
+            yield _Taken(location, event, guard, fits, updates, target, read)
+
+    def _updates(
+        self, read: Any, scope: Scope
+    ) -> tuple[list[tuple[sct.DiscreteVariable, ex.Expression, Any]], dict[sct.DiscreteVariable, ex.Expression]]:
+        """The updates of an edge, and where each variable stays in its range."""
         updates: list[tuple[sct.DiscreteVariable, ex.Expression, Any]] = []
-        fits: list[ex.Expression] = []
+        fits: dict[sct.DiscreteVariable, ex.Expression] = {}
         for update in read.updates:
             variable, value, kind = self._update(update, scope)
             if any(variable is other for other, _, _ in updates):
                 raise CifFaultError(update, "repeated-assignment", f"`{variable.name}` is assigned twice")
             updates.append((variable, value, update))
-            fits += _fitting(variable, value, kind)
-        within = conjunction(fits)
-        for event in dict.fromkeys(events):
-            yield _Taken(location, event, guard, within, updates, target, read)
+            within = conjunction(_fitting(variable, value, kind))
+            if within is not None:
+                fits[variable] = within
+        return updates, fits
 
     def _update(self, read: Any, scope: Scope) -> tuple[sct.DiscreteVariable, ex.Expression, Type]:
         if read.conditional:
@@ -283,15 +297,13 @@ class _Transformation:
         plant = scope.plant
         assert plant is not None
         for edge in edges:
-            guard = [copied(part) for part in (edge.guard,) if part is not None]
-            if edge.fits is not None and event.controllable:
-                guard.append(copied(edge.fits))
-            made = sct.Edge(event=event, guard=conjunction(guard), target=edge.target, source=located(edge.read))
+            guard = None if edge.guard is None else copied(edge.guard)
+            made = sct.Edge(event=event, guard=guard, target=edge.target, source=located(edge.read))
             for variable, value, read in edge.updates:
                 made.updates.append(sct.Update(variable=variable, value=copied(value), source=located(read)))
             edge.location.edges.append(made)
-            if edge.fits is not None and not event.controllable:
-                self._stay_in_range(edge, plant)
+            if edge.fits:
+                self._stay_in_range(edge, plant, alone=len(edges) == 1 and not watching)
         if watching:
             for location in plant.locations:
                 guards = [edge.guard for edge in edges if edge.location is location]
@@ -304,19 +316,22 @@ class _Transformation:
             location = plant.locations[0]
             location.edges.append(sct.Edge(event=event, guard=never, target=location, source=located(scope.read)))
 
-    def _stay_in_range(self, edge: _Taken, plant: sct.Plant) -> None:
-        """An uncontrollable event must not happen where it would leave the range of a variable."""
-        assert edge.fits is not None
+    def _stay_in_range(self, edge: _Taken, plant: sct.Plant, *, alone: bool) -> None:
+        """An event must not happen where an edge would bring a variable out of its range.
+
+        `alone`: the plant takes no other edge with the event, so that it is this edge wherever the event happens.
+        """
+        fits = conjunction(map(copied, edge.fits.values()))
+        assert fits is not None
         premises = [*_at(edge.location, plant), *(copied(part) for part in (edge.guard,) if part is not None)]
-        premise = conjunction(premises)
-        fits = copied(edge.fits)
-        condition = fits if premise is None else ex.Implication(left=premise, right=fits)
+        premise = None if alone else conjunction(premises)
         self.model.requirements.append(
             sct.Requirement(
                 event=edge.event,
                 kind=sct.RequirementKind.needs,
-                condition=condition,
-                text=_words(edge.read),
+                condition=fits if premise is None else ex.Implication(left=premise, right=fits),
+                ranges=list(edge.fits),
+                text=f"range of {', '.join(variable.name for variable in edge.fits)}: {_words(edge.read)}",
                 source=located(edge.read),
             )
         )
@@ -521,13 +536,27 @@ def _at(location: sct.Location, plant: sct.Plant) -> list[ex.Expression]:
 
 
 def _fitting(variable: sct.DiscreteVariable, value: ex.Expression, kind: Type) -> Iterator[ex.Expression]:
-    """That a value is in the range of its variable, as far as its type does not say so."""
-    if isinstance(kind, range):
-        own = domain(variable.type)
-        if kind.start < own.low:
-            yield ex.GreaterOrEqual(left=copied(value), right=literal(own.low))
-        if kind.stop - 1 > own.high:
-            yield ex.LessOrEqual(left=copied(value), right=literal(own.high))
+    """That a value is in the range of its variable, as far as its type does not say so.
+
+    What is subtracted stands on the other side: CIF's synthesis takes a `-` in assignments only.
+    """
+    if not isinstance(kind, range):
+        return
+    own = domain(variable.type)
+    bounds: list[tuple[type[ex.BinaryExpression], int]] = []
+    if kind.start < own.low:
+        bounds.append((ex.GreaterOrEqual, own.low))
+    if kind.stop - 1 > own.high:
+        bounds.append((ex.LessOrEqual, own.high))
+    for comparison, bound in bounds:
+        left, right = copied(value), literal(bound)
+        if isinstance(left, ex.Subtraction):
+            if isinstance(left.right, ex.IntegerLiteral):
+                right = literal(left.right.value + bound)
+            else:
+                right = left.right if bound == 0 else ex.Addition(left=left.right, right=right)
+            left = left.left
+        yield comparison(left=left, right=right)
 
 
 def _type(kind: Type) -> ex.Type:

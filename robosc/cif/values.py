@@ -155,7 +155,8 @@ class Values:
                 return self._copied(read, found)
             case Declared(kind="Variables" | "Inputs"):
                 if found.made is None:
-                    raise found.fault
+                    # One that is declared further on has no fault yet: nothing that is fixed can be made of it.
+                    raise found.fault or CifFaultError(read, "type", "this is no constant")
                 return Typed(read, sct.VariableReference(variable=found.made), found.type)
             case Declared(kind="Literal"):
                 enumeration = self.enumeration(found.outer)
@@ -192,7 +193,7 @@ class Values:
         if found not in self._known and found not in self._open:
             self._settle(found)
         if found not in self._known:
-            raise _computed_from_itself(found)
+            raise computed_from_itself(found)
         made = self._known[found]
         if isinstance(made, CifFaultError):
             raise made
@@ -210,7 +211,7 @@ class Values:
             elif used in path:
                 circle = list(path)
                 self._known |= {
-                    definition: _computed_from_itself(definition) for definition in circle[circle.index(used) :]
+                    definition: computed_from_itself(definition) for definition in circle[circle.index(used) :]
                 }
             elif used not in self._open:
                 path[used] = iter(self._uses(used))
@@ -350,7 +351,8 @@ def _too_large(read: Any, what: str, most: int) -> CifFaultError:
     return CifFaultError(read, "cif-construct", message, "give parts of it to automata with variables")
 
 
-def _computed_from_itself(found: Definition) -> CifFaultError:
+def computed_from_itself(found: Definition) -> CifFaultError:
+    """That a definition or an argument is made of itself."""
     if isinstance(found, Declared):
         verb = "defined by" if found.kind == "Types" else "computed from"
         return CifFaultError(found.read, "cyclic-definition", f"`{found.name}` is {verb} itself")

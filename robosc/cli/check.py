@@ -113,9 +113,21 @@ def _mend(model: str, paths: Paths) -> None:
 
 
 def _check(models: Sequence[str], form: str, paths: Paths) -> None:
-    with Report(form) as report:
-        for model in models:
-            try:
-                read(model, paths, report)
-            except ModelError as error:
-                report.add(error.diagnostics)
+    """Check each model; a fault of the tool itself in one ends the call after the findings about the others."""
+    faults: list[Exception] = []
+    try:
+        with Report(form) as report:
+            for model in models:
+                try:
+                    read(model, paths, report)
+                except ModelError as error:
+                    report.add(error.diagnostics)
+                except (click.ClickException, click.exceptions.Exit, OSError):
+                    raise
+                except Exception as fault:
+                    if interruption.happened():
+                        raise
+                    faults.append(fault)
+    finally:
+        if faults:
+            raise faults[0]

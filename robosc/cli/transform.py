@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
@@ -117,7 +118,7 @@ def command(
     """Check a robot, synthesize its supervisor and generate the TARGETs from it, all of them or none.
 
     MODEL is a .rscd file with a robot, or an .xmi file that an earlier `--to xmi` wrote; where no ROS is asked for also
-    a .cif file, beside which its CIF belongs: it imports it.
+    a .cif file, which its CIF imports from where it is.
 
     \b
     Examples:
@@ -149,6 +150,7 @@ def command(
             report.add(target.findings(models, settings))
         report.stop_on_errors()
         folder = Path(output or f"build/{models.sct.name}")
+        models = replace(models, folder=folder)
         tests: dict[Target, TraceTest | None] = {}
         files = {}
         with together(), bounded(megabytes << 20, "generating"):

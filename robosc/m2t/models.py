@@ -9,6 +9,7 @@ from robosc.m2m import sct_to_engine
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+    from pathlib import Path
 
     from robosc.metamodel import engine, robosc, rosgraph, sct
     from robosc.ros_types import RosTypes
@@ -19,12 +20,14 @@ class Models:
     """The models of one robot: what the supervisor sees, the ROS side of it, and the model that both came from.
 
     `ros_types` are the definitions of ROS types that they were read with; None: those of the environment.
+    `folder` is where the texts go that are generated from them, where that is known.
     """
 
     sct: sct.SupervisoryControlModel
     rosgraph: rosgraph.RosGraph | None = None
     robosc: robosc.Base | None = None
     ros_types: RosTypes | None = None
+    folder: Path | None = None
 
     @property
     def engine(self) -> engine.EngineModel:

@@ -128,7 +128,8 @@ class Requirement(StatedRequirement):
     kind: RequirementKind
     condition: expression.Expression
     automaton: Plant | None
-    def __init__(self, *, event: Event | None = ..., kind: RequirementKind | None = ..., condition: expression.Expression | None = ..., automaton: Plant | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    ranges: MutableSequence[DiscreteVariable]
+    def __init__(self, *, event: Event | None = ..., kind: RequirementKind | None = ..., condition: expression.Expression | None = ..., automaton: Plant | None = ..., ranges: Iterable[DiscreteVariable] = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class RequirementKind:
     """needs: the event happens only where the condition holds; disables: only where it does not."""

@@ -26,12 +26,18 @@ def plant_of(event: sct.Event) -> sct.Plant:
 
 
 def is_from_cif(model: sct.SupervisoryControlModel) -> bool:
-    """Whether a model was read from CIF: its events stand for no communication, or it may start in several states."""
+    """Whether a model was read from CIF.
+
+    Its events stand for no communication, it may start in several states, or where it has no event at all, its text is
+    called so.
+    """
+    if model.initialPredicates or (model.source and model.source.file and model.source.file.name.endswith(".cif")):
+        return True
     return any(
-        any(event.kind == sct.EventKind.plain for event in plant.events)
+        any(event.kind in (sct.EventKind.plain, sct.EventKind.input) for event in plant.events)
         or any(variable.initial is None for variable in plant.variables)
         for plant in model.plants
-    ) or bool(model.initialPredicates)
+    )
 
 
 def input_values(model: sct.SupervisoryControlModel) -> int:

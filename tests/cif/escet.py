@@ -13,6 +13,10 @@ CONTROLLER_CHECK = "org.eclipse.escet.cif.controllercheck.ControllerCheckerApp"
 EXPLORER = "org.eclipse.escet.cif.explorer.app.ExplorerApplication"
 SYNTHESIS = "org.eclipse.escet.cif.datasynth.CifDataSynthesisApp"
 TRANSFORMER = "org.eclipse.escet.cif.cif2cif.app.CifToCifApp"
+_EXPLORED = re.compile(r"Number of states in state space: ([\d,.\u00a0]+)\.\n.*: ([\d,.\u00a0]+)\.", re.DOTALL)
+_INPUT = re.compile(r"^(\s*)input ([^;]+?) (\$?\w+(?:, *\$?\w+)*);", re.MULTILINE)
+_ENUMERATION = re.compile(r"^\s*enum (\w+) =([^;]*);", re.MULTILINE)
+_RANGE = re.compile(r"int\[(\d+)\.\.(\d+)\]")
 _COUNT = re.compile(r"Controlled system: exactly ([\d,.\u00a0]+) states?\.")
 _CALLED = re.compile(r"called: (\d+) (\d+) (\d+)\n")
 
@@ -46,6 +50,41 @@ class Counted(NamedTuple):
 
     states: int | None
     call: Call
+
+
+class Explored(NamedTuple):
+    """The states and edges that the explorer reaches; None where it ends in an error."""
+
+    size: tuple[int, int] | None
+    call: Call
+
+
+def without_inputs(text: str) -> str:
+    """A specification with an automaton in place of each input, since the explorer takes none.
+
+    As in CIF's synthesis, an input has any value at the start and changes to any other at any time. Raises KeyError for
+    an input of a type that is neither a range of numbers nor an enumeration of the whole specification.
+    """
+    literals = {name: [part.strip() for part in parts.split(",")] for name, parts in _ENUMERATION.findall(text)}
+    automata: list[str] = []
+
+    def moved(found: re.Match[str]) -> str:
+        indent, kind, names = found.groups()
+        numbers = _RANGE.fullmatch(kind)
+        literals["bool"] = ["true", "false"]
+        values = [*map(str, range(int(numbers[1]), int(numbers[2]) + 1))] if numbers else literals[kind]
+        equations = []
+        for name in names.split(","):
+            own = f"input_{len(automata)}"
+            edges = " ".join(f"edge change when held != {value} do held := {value};" for value in values)
+            automata.append(
+                f"plant {own}: uncontrollable change; disc {kind} held in any; "
+                f"location: initial; marked; {edges} end\n"
+            )
+            equations.append(f"alg {kind} {name.strip()} = ^{own}.held;")
+        return indent + " ".join(equations)
+
+    return _INPUT.sub(moved, text) + "\n" + "".join(automata)
 
 
 class Tools:
@@ -91,3 +130,18 @@ class Tools:
             return Counted(0, call)
         found = _COUNT.search(call.output)
         return Counted(None if found is None else int(re.sub(r"\D", "", found[1])), call)
+
+    def explore(self, path: Path) -> Explored:
+        """How many states and edges a specification has as CIF's simulator runs it: an overflow is an error."""
+        call = self.call(EXPLORER, str(path), "--enable-cif=no")
+        found = _EXPLORED.search(call.output)
+        if call.status != 0 or found is None:
+            return Explored(None, call)
+        states, edges = (int(re.sub(r"\D", "", number)) for number in found.groups())
+        return Explored((states, edges), call)
+
+    def supervised(self, path: Path) -> Explored:
+        """How many states and edges a specification has under the supervisor of CIF's own synthesis."""
+        output = path.with_suffix(".own.cif")
+        call = self.call(SYNTHESIS, str(path), "--forward-reach=yes", "-o", str(output))
+        return Explored(None, call) if call.status != 0 else self.explore(output)

@@ -604,6 +604,19 @@ class Specification:
                 found += [invariant.within(_at(automaton.name, location.name)) for invariant in location.invariants]
         return found
 
+    def differs_in_cif(self) -> bool:
+        """Whether CIF's tool may count other states: docs/coming-from-cif.md, "Differences"."""
+        if not any(invariant.kind == "plant" and not invariant.events for invariant in self.everywhere):
+            return False
+        wide = {name: values for name, (_, values) in self.inputs.items() if len(values) > 2}
+        for state in self.states:
+            if any(not self._kept("plant", {**state, name: value}) for name in wide for value in wide[name]):
+                return True
+            for event, after in self._tried(state):
+                if not self.events[event] and any(after[name] not in values for name, values in self.domains.items()):
+                    return True
+        return False
+
     def _kept(self, kind: str, state: State) -> bool:
         return all(
             invariant.condition.value(state)
@@ -704,6 +717,10 @@ class Specification:
 
     def _after(self, state: State) -> Iterator[tuple[str, State]]:
         """What can happen in a state so far as the plants go, with what follows, also out of the ranges."""
+        return ((event, after) for event, after in self._tried(state) if self._kept("plant", after))
+
+    def _tried(self, state: State) -> Iterator[tuple[str, State]]:
+        """The same without regard to what plant invariants say of states."""
         for event in self.events:
             if any(event in automaton.alphabet for automaton in self.automata) and self._allowed("plant", event, state):
                 for taken in self._taken(event, state):
@@ -711,8 +728,7 @@ class Specification:
                     for automaton, edge in taken:
                         after[automaton.name] = edge.target
                         after.update({name: value.value(state) for name, value in edge.updates})
-                    if self._kept("plant", after):
-                        yield event, after
+                    yield event, after
 
 
 def _closure(start: set[int], steps: list[tuple[int, int]]) -> set[int]:

@@ -136,6 +136,97 @@ end
     )
 
 
+_OVERFLOW = "plant P: controllable up; disc int[0..3] n; location: initial; marked; edge up do n := n + 1; end\n"
+
+
+def test_a_guard_keeps_what_it_is_copied_to_in_its_range(tmp_path: Path) -> None:
+    """CIF's other tools end in an error at an update out of the range; a PLC goes on."""
+    path = tmp_path / "overflow.cif"
+    path.write_text(_OVERFLOW)
+    told = CliRunner().invoke(main, ["synthesize", str(path)]).stdout
+    assert "P.up\n    guard: P.n + 1 <= 3\n" in told
+    assert "`range of n: edge up do n := n + 1` (line 1)\n    forbids something in 1 state\n" in told
+    answer = json.loads(CliRunner().invoke(main, ["synthesize", str(path), "--json"]).stdout)
+    assert [event["guard"] for event in answer["events"]] == ["P.n + 1 <= 3"]
+    CliRunner().invoke(main, ["transform", str(path), "--to", "cif", "-o", str(tmp_path)])
+    assert "edge P.up when P.n + 1 <= 3;" in (tmp_path / "overflow.supervised.cif").read_text()
+    explained = CliRunner().invoke(main, ["explain", str(path), "--event", "P.up", "--state", "P.n=3"]).stdout
+    assert "range of n: edge up do n := n + 1" in explained
+
+
+def test_a_range_that_the_text_keeps_is_no_restriction(tmp_path: Path) -> None:
+    path = tmp_path / "guarded.cif"
+    path.write_text(_OVERFLOW.replace("edge up", "edge up when n < 3"))
+    told = CliRunner().invoke(main, ["synthesize", str(path)]).stdout
+    assert "guard: true" in told
+    assert "range" not in told
+    CliRunner().invoke(main, ["transform", str(path), "--to", "cif", "-o", str(tmp_path)])
+    assert "edge P.up;" in (tmp_path / "guarded.supervised.cif").read_text()
+
+
+@pytest.mark.parametrize(
+    ("update", "guard"),
+    [
+        ("x := x - 1", "P.x >= 1"),
+        ("x := 2 - y", "2 >= P.y"),
+        ("x := Q.z", "Q.z <= 3"),
+        ("y := x + Q.z - 4", "P.x + Q.z >= 4 and P.x + Q.z <= 9"),
+        ("x := x - 1, y := y + 1", "P.x >= 1 and P.y + 1 <= 5"),
+    ],
+)
+def test_what_is_subtracted_is_on_the_other_side(update: str, guard: str, tmp_path: Path) -> None:
+    """CIF's synthesis takes a `-` in assignments only, and so does its controller check."""
+    path = tmp_path / "ranges.cif"
+    path.write_text(
+        f"plant P: controllable c; disc int[0..3] x in any; disc int[0..5] y in any; location: initial; marked; "
+        f"edge c do {update}; end plant Q: controllable z_; disc int[0..9] z; location: initial; marked; "
+        "edge P.c do z := if z = 9: 0 else z + 1 end; end"
+    )
+    CliRunner().invoke(main, ["transform", str(path), "--to", "cif", "-o", str(tmp_path)])
+    assert f"edge P.c when {guard};" in (tmp_path / "ranges.supervised.cif").read_text()
+
+
+def test_edges_that_leave_a_range_exclude_each_other_without_it(tmp_path: Path) -> None:
+    """CIF's synthesis looks at the guards alone, too."""
+    path = tmp_path / "both.cif"
+    path.write_text(_OVERFLOW.replace("; end", "; edge up when n = 3 do n := 0; end"))
+    result = CliRunner().invoke(main, ["synthesize", str(path)])
+    assert result.exit_code == 1
+    assert "[nondeterminism]" in result.output
+
+
+def test_the_written_specification_imports_its_own_from_where_it_is(specification: str, tmp_path: Path) -> None:
+    folder = tmp_path / "build" / "motor"
+    assert CliRunner().invoke(main, ["transform", specification, "--to", "cif", "-o", str(folder)]).exit_code == 0
+    written = folder / "motor.supervised.cif"
+    assert 'import "../../motor.cif";' in written.read_text()
+    checked = CliRunner().invoke(main, ["check", str(written)])
+    # All that it says is in reach: supervisors are what our synthesis does not take.
+    assert "can't be read" not in checked.output
+    assert "synthesis does not take supervisor automata" in checked.output
+
+
+def test_one_model_that_the_tool_fails_at_does_not_hide_the_others(
+    specification: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    failing, wrong = tmp_path / "failing.cif", tmp_path / "wrong.cif"
+    failing.write_text(_TEXT)
+    wrong.write_text(_TEXT.replace("u_fail when", "u_fial when"))
+    checking = importlib.import_module("robosc.cli.check")
+    own = checking.read
+
+    def read(path: str, *others: object) -> object:
+        if path == str(failing):
+            raise KeyError("a fault of the tool")
+        return own(path, *others)
+
+    monkeypatch.setattr(checking, "read", read)
+    result = CliRunner().invoke(main, ["check", specification, str(failing), str(wrong)])
+    assert result.exit_code == 70
+    assert "there is no `u_fial` here" in result.output
+    assert "a fault of robosc itself, please report it: KeyError" in result.output
+
+
 def test_a_saved_model_is_the_same(specification: str, tmp_path: Path) -> None:
     assert CliRunner().invoke(main, ["transform", specification, "--to", "xmi", "-o", str(tmp_path)]).exit_code == 0
     again = CliRunner().invoke(main, ["synthesize", str(tmp_path / "motor.sct.xmi"), "--json"])
@@ -163,10 +254,11 @@ def test_verify_proves_what_it_says_of_robots(specification: str) -> None:
         "non-blocking": "proved",
         "controllability": "proved",
         "requirement c_on needs Motor.n != 2 (line 14)": "proved",
+        "ranges": "proved",
         "maximal permissiveness": "proved",
         "model-translation": "skipped",
         "c-translation": "proved",
-        "cif-translation": "skipped",
+        "cif-translation": "proved",
     }
 
 

@@ -48,6 +48,19 @@ WRONG = {
         "requirement p;",
         [("1:27", None), ("2:51", None), ("3:25", None), ("4:13", "name one of its locations")],
     ),
+    "a variable whose range is its own value": (
+        "plant p: controllable c; disc int[0..d] d; location: initial; marked; edge c; end",
+        [("1:41", None)],
+    ),
+    "an input whose range is its own value": ("controllable c; input int[i..3] i;\n" + _P, [("1:33", None)]),
+    "a range that reads a variable before and one after": (
+        "controllable c; plant q: disc int[0..y] x; disc int[0..x] y; location: initial; end\n" + _P,
+        [("1:38", None)],
+    ),
+    "a constant that is read within the range of what it is": (
+        "controllable c; input int[0..n] i; const int n = i;\n" + _P,
+        [("1:33", None)],
+    ),
     "two of one name": ("controllable c;\ncontrollable c;\n" + _P, [("2:14", "rename one of them")]),
     "an event of no kind": ("event c;\n" + _P, [("2:44", "declare `c` as `controllable` or as `uncontrollable`")]),
     "a continuous variable": ("controllable c; cont x der 1;\n" + _P, [("1:17", None)]),
@@ -246,6 +259,72 @@ def test_a_chain_of_instances_may_be_long(parameter: str, use: str, argument: st
     start = f"group def H(): controllable e; end h: H(); group def G0({parameter}): {use} end"
     text = "\n".join([start, *definitions, f"x: G{_MANY}({argument});"])
     assert findings("controllable c;\n" + _P + text) == []
+
+
+def test_a_namespace_and_an_automaton_do_not_share_a_name() -> None:
+    root = "import 'leaf.cif'; namespace a; plant b: controllable e; location: initial; marked; edge e; end"
+    found = reading(main=root.replace("'", '"'), leaf="namespace a.b.c; plant p: location: initial; end")
+    assert [(finding.rule, finding.message) for finding in found.findings] == [
+        ("cif-declaration", "there are two of the name `b`")
+    ]
+
+
+@pytest.mark.parametrize(
+    "declared",
+    [
+        "const int[0..{0}] {0} = 1;",
+        "alg int[0..{0}] {0} = 1;",
+        "type {0} = int[0..{0}];",
+        "input int[0..{0}] {0};",
+        "const int {0} = {0};",
+        "alg bool {0} = {0};",
+        "type {0} = {0};",
+        "input {0} {0};",
+        "enum {0} = {0};",
+        "plant {0}: disc {0} {0} = {0}; location {0}: initial {0}; equation {0} = {0}; end",
+        "{0}: {0}();",
+        "{0}: G({0});",
+        "group {0}: {0}: {0}(); end",
+        "group def {0}({0} {0}; alg {0} {0}; location {0}): {0}: {0}({0}); end",
+        "plant def {0}(alg bool {0}; event {0}): location: initial {0}; edge {0} when {0}; end",
+        'import "main.cif";',
+        "namespace {0}.{0};",
+        "requirement {0}: {0};",
+        "equation {0} = {0};",
+        "controllable {0}, {0};",
+        "event {0} {0};",
+        "plant q: disc int[0..{0}] {0} in {{{0}}}; location: initial; edge c do {0} := {0}; edge {0} goto {0}; end",
+    ],
+)
+@pytest.mark.parametrize("name", ["x", "p", "c", "G"])
+def test_what_is_read_within_itself_or_named_like_something_ends_in_findings(declared: str, name: str) -> None:
+    own = declared.format(name)
+    for text in (own, own + own, f"group g: {own} end", f"group def G(alg bool x): {own} end a: G(x); b: G(true);"):
+        if not text.startswith("group") or not own.startswith(("import", "namespace")):
+            found = reading(main=f"controllable c; {text}\n{_P}")
+            assert (found.model is None) == any(finding.severity.value == "error" for finding in found.findings)
+
+
+@pytest.mark.parametrize("name", ["@requirement:reachable", "@requirement:of_tomorrow", "@@requirement:reachable"])
+@pytest.mark.parametrize("before", ["plant p", "location a"])
+def test_a_requirement_in_an_annotation_is_refused(name: str, before: str) -> None:
+    text = "controllable c;\n" + _P.replace(before, f"{name}(a)\n{before}")
+    if name.startswith("@@"):
+        text = f"{name}(p.a) {text.replace(name + '(a)', '')}"
+    [finding] = reading(main=text).findings
+    assert (finding.rule, finding.severity.value) == ("cif-construct", "error")
+    assert finding.message == f"synthesis does not take the requirement `{name}`"
+    assert reading(main=text).model is None
+
+
+def test_an_unknown_annotation_is_warned_about() -> None:
+    known = '@@controller:properties(confluence: true)\n@doc("x") controllable c;\n'
+    found = reading(main=known + _P.replace("edge c", "@state(x: 1) @own:one edge c"))
+    assert [(finding.span.line, finding.severity.value, finding.rule) for finding in found.findings] == [
+        (3, "warning", "cif-construct")
+    ]
+    assert "`@own:one`" in found.findings[0].message
+    assert found.model is not None
 
 
 _LIST = "a variable for each element"

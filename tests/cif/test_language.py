@@ -155,6 +155,10 @@ COUNTS = {
         "edge c do x := (x + 3) mod 10; edge d when x div 3 = 2 or x > 8 and not false do x := 0; end",
         10,
     ),
+    "a requirement in a namespace of two parts": (
+        "namespace a.b;" + _EVENTS + _ROOM + "initial p.x = 0; requirement p.x != 2;",
+        2,
+    ),
     # CIF's synthesis refuses what follows.
     "min, max, abs and products": (
         _EVENTS + "plant p: disc int[-2..9] x; location: initial; marked;"

@@ -133,8 +133,41 @@ def _say_hostile(tokens: list[str], random: Random) -> None:
     tokens[at] += random.choice((said, f" // {said}\n", f'"{said}"'))
 
 
+def _names(tokens: list[str]) -> list[int]:
+    """The places of names, those with something in them among them."""
+    found = [
+        (place, re.fullmatch(r"[.^]?[$\w]+(?:\.[$\w]+)*", token.split()[-1])) for place, token in enumerate(tokens)
+    ]
+    return [place for place, name in found if name and not name[0].isdigit() and name[0] not in _WORDS]
+
+
+def _name_alike(tokens: list[str], random: Random) -> None:
+    """Something is called like something else: it is declared twice, or read within its own declaration."""
+    if len(places := _names(tokens)) > 1:
+        near = random.random() < 0.5
+        first = random.randrange(len(places))
+        second = min(first + random.randint(1, 4), len(places) - 1) if near else random.randrange(len(places))
+        tokens[places[first]] = f" {tokens[places[second]].split()[-1]} "
+
+
+def _name_its_space(tokens: list[str], random: Random) -> None:
+    """The file is in a namespace that is called like something."""
+    if places := _names(tokens):
+        names = [tokens[random.choice(places)].split()[-1].lstrip(".^") for _ in range(random.choice((1, 1, 2, 3)))]
+        place = random.choice((0, 0, random.choice(places)))
+        tokens[place:place] = [f" namespace {'.'.join(names)}; "]
+
+
+def _annotate(tokens: list[str], random: Random) -> None:
+    name = random.choice(("@doc", "@@doc", "@requirement:reachable", "@@requirement:later", "@other:one"))
+    arguments = random.choice(("", "(true)", '("x")'))
+    at = random.randrange(len(tokens))
+    tokens[at:at] = [f" {name}{arguments} "]
+
+
 #: Those that leave a text that can be read to its end come more often.
 _MUTATIONS: list[Callable[[list[str], Random], None]] = [
     *[_drop, _double, _swap, _replace] * 3,
-    *[_replace, _exchange, _insert, _cut_off, _say_hostile],
+    *[_name_alike] * 6,
+    *[_replace, _exchange, _insert, _cut_off, _say_hostile, _name_its_space, _annotate],
 ]

@@ -14,7 +14,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.system import GuardedSystem
-from robosc.analysis.verify import c_validation, cif_validation, controller_reading, model_reading
+from robosc.analysis.verify import c_validation, cif_extension_validation, controller_reading, model_reading
 from robosc.analysis.verify.c_exploration import Effort
 from robosc.analysis.verify.c_validation import validate_c, validate_generated_c, validate_loop
 from robosc.analysis.verify.cif_validation import validate_cif
@@ -92,7 +92,7 @@ def validate(models: Models, configuration: Configuration) -> list[Verdict]:
     """
     targets: list[tuple[Sequence[str], Any, Callable[..., list[Verdict]]]] = [
         (c_validation.PROPERTIES[: 1 if is_from_cif(models.sct) else None], supervisor, validate_generated_c),
-        ((cif_validation.PROPERTY,), cif, lambda *generated: [timed(validate_cif, *generated)]),
+        ((cif_extension_validation.PROPERTY,), cif, lambda *generated: [timed(validate_cif, *generated)]),
     ]
     verdicts = []
     for questions, target, examine in targets:

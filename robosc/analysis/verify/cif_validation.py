@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from robosc.analysis.system import GuardedSystem, counted
+from robosc.analysis.verify.cif_extension_validation import PROPERTY, TEXT, validate_extension
 from robosc.analysis.verify.cif_reading import CifError, Specification, read
 from robosc.analysis.verify.correspondence import Correspondence
 from robosc.analysis.verify.differences import different, event_in_words, on_one_side, refuted, where
@@ -34,8 +35,6 @@ if TYPE_CHECKING:
 
     _Bits = tuple[Element | None, tuple[Diagram, ...], tuple[Diagram, ...], Diagram]
 
-PROPERTY = "cif-translation"
-TEXT = "the generated CIF"
 UNSUPERVISED = f"{TEXT} without supervisor"
 
 
@@ -44,12 +43,10 @@ def validate_cif(model: sct.SupervisoryControlModel, files: Mapping[str, str]) -
 
     States correspond by `Correspondence`; then initial and marked states must be the same, and every event must do the
     same in every state, reachable or not. `files` are the texts by their names. Raises MemoryError where the decision
-    diagrams take more than 4 GB.
-
-    A model from CIF is not written as CIF again: that it was read as CIF means it is not examined.
+    diagrams take more than 4 GB. Of a model from CIF, which is not written again, `validate_extension` says what holds.
     """
     if is_from_cif(model):
-        return Verdict(PROPERTY, Outcome.SKIPPED, "", "the model was read from CIF, and its own text stays")
+        return validate_extension(model, files[f"{model.name}.supervised.cif"])
     verdicts = (
         _validate(model, files[f"{model.name}.cif"], supervised=False),
         _validate(model, files[f"{model.name}.supervised.cif"], supervised=True),

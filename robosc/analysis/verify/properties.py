@@ -54,11 +54,13 @@ def properties(system: GuardedSystem) -> list[Callable[[], Verdict]]:
     A model from CIF has no control loop, and its plants may refuse what comes.
     """
     stepwise = is_from_cif(system.model)
+    written = [requirement for requirement in system.model.requirements if not requirement.ranges]
     return [
         partial(non_blocking, system),
         partial(controllability, system),
         *([] if stepwise else [partial(input_enabledness, system)]),
-        *(partial(_stated, requirement_holds, system, stated) for stated in system.model.requirements),
+        *(partial(_stated, requirement_holds, system, stated) for stated in written),
+        *([partial(ranges, system)] if len(written) < len(system.model.requirements) else []),
         *(partial(_stated, invariant_holds, system, stated) for stated in system.model.invariants),
         *(partial(_stated, claim_holds, system, stated) for stated in system.model.properties),
         *([] if stepwise else [partial(no_dead_events, system)]),
@@ -176,6 +178,23 @@ def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Ve
     return _nowhere(
         requirement_name(requirement), system, evidence, broken, explanation, last=lambda relation: relation.event
     )
+
+
+def ranges(system: GuardedSystem) -> Verdict:
+    """In no reachable state an event can happen that would bring a variable out of its range."""
+    kept = [requirement for requirement in system.model.requirements if requirement.ranges]
+    leaving = {
+        requirement: system.controlled & system.allowed[requirement.event] & ~system.encoding.permits(requirement)
+        for requirement in kept
+    }
+
+    def explanation(requirement: sct.Requirement, path: Path) -> str:
+        at = system.where(path.states[-1], referenced(requirement.condition))
+        variables = listed([f"`{own.name}`" for own in requirement.ranges])
+        return f"{words(requirement.event)} brings {variables} out of range" + (f" where `{at}`" if at else "")
+
+    evidence = f"{system.size}, {counted(len(kept), 'edge')} that could leave a range"
+    return _nowhere("ranges", system, evidence, leaving, explanation, last=lambda requirement: requirement.event)
 
 
 def invariant_holds(system: GuardedSystem, invariant: sct.StateInvariant | sct.InvariantProperty) -> Verdict:

@@ -69,7 +69,7 @@ def together(automata: Iterable[Sequence[sct.Edge]], encoding: Encoding, *, satu
             for update in edge.updates:
                 codes[update.variable] = encoding.code(update.value, update.variable)
                 if not saturates:
-                    taken &= _in_range(update, encoding)
+                    taken &= in_range(update, encoding)
             if (taken & possible).satisfiable():
                 raise AmbiguityError(f"two edges for {event_name(edge.event)} are enabled at once")
             possible |= taken
@@ -80,7 +80,7 @@ def together(automata: Iterable[Sequence[sct.Edge]], encoding: Encoding, *, satu
     return Transition(enabled, after)
 
 
-def _in_range(update: sct.Update, encoding: Encoding) -> Diagram:
+def in_range(update: sct.Update, encoding: Encoding) -> Diagram:
     """Where the variable can have the value."""
     least = arithmetic.constant(encoding.diagrams, smallest(update.variable))
     value = arithmetic.subtract(encoding.vector(update.value), least)

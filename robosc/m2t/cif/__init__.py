@@ -55,13 +55,13 @@ def preconditions(models: Models, _configuration: Configuration) -> list[Diagnos
 def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
     """`<robot>.cif`, and where the model has a supervisor `<robot>.supervised.cif`; of the sct model alone.
 
-    Of a model that was read from CIF the latter only: it imports the specification.
+    Of a model that was read from CIF the latter only: it imports the specification, from where that is.
 
     Raises ModelError where `preconditions` finds something.
     """
     name, supervisor = models.sct.name, models.sct.supervisor
     if is_from_cif(models.sct):
-        return {} if supervisor is None else {f"{name}.supervised.cif": extended(models.sct, supervisor)}
+        return {} if supervisor is None else {f"{name}.supervised.cif": extended(models.sct, supervisor, models.folder)}
     lowered = transform(models.sct)
     writer = Writer(lowered)
     files = {f"{name}.cif": writer.unsupervised()}

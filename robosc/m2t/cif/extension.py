@@ -1,33 +1,53 @@
-"""The supervisor of a specification that was read from CIF: it imports the specification and adds an automaton."""
+"""The supervisor of a specification that was read from CIF: it imports the specification and adds an automaton.
+
+The guards of that automaton hold for the text that is imported. In it nothing keeps a variable in its range: there an
+update out of the range is an error of whoever runs the text.
+"""
 
 from __future__ import annotations
 
+import os
+from contextlib import suppress
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robosc.m2t.cif.expressions import CifPrinter
 from robosc.m2t.cif.names import AbsoluteNames, escaped
 from robosc.m2t.cif.specification import document, edge_text, folded, listed
 from robosc.semantics.naming import Names
+from robosc.semantics.printing import conjunction
 from robosc.semantics.roles import event_name
+from robosc.semantics.walks import copied
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from robosc.metamodel import expression as ex
     from robosc.metamodel import sct
 
 
-def extended(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor) -> str:
-    """A specification that imports the one that the model was read from, with an automaton of what synthesis added.
+def extended(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor, folder: Path | None) -> str:
+    """Return a specification that imports the model's own, with an automaton of what that lacks.
 
-    Its requirements stay what they are: all of CIF's tools but synthesis take them as automata like others.
+    The requirements of the text stay what they are: all of CIF's tools but synthesis take them as automata like others.
+    `folder` is where it is to be written; None: beside the model's own, as it is where that place is not known.
     """
-    return folded(list(_lines(model, supervisor)))
+    return folded(list(_lines(model, supervisor, folder)))
 
 
-def _lines(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor) -> Iterator[str]:
-    printer = CifPrinter(AbsoluteNames(), None)
+def _imported(model: sct.SupervisoryControlModel, folder: Path | None) -> str:
+    """The path of a model's own specification, from the folder of the one that imports it."""
     assert model.source is not None
     assert model.source.file is not None
+    file = model.source.file
+    if folder is not None and Path(file.path).is_file():  # A saved model does not say where its text is.
+        with suppress(ValueError):  # On another drive.
+            return Path(os.path.relpath(Path(file.path).resolve(), folder.resolve())).as_posix()
+    return file.name
+
+
+def _lines(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor, folder: Path | None) -> Iterator[str]:
+    printer = CifPrinter(AbsoluteNames(), None)
     # What stands first in each name, of all that the specification has.
     taken = {plant.origin.partition(".")[0] for plant in model.plants if plant.origin}
     taken |= {event_name(event).partition(".")[0] for plant in model.plants for event in plant.events}
@@ -35,18 +55,43 @@ def _lines(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor) -> It
     for enumeration in model.enumerations:
         taken |= {enumeration.name, *(literal.name for literal in enumeration.literals)}
     yield from document([f"{model.name} under its supervisor: {supervisor.controlledStates} states."], sign="@@")
-    yield f'import "{model.source.file.name}";'
+    yield f"import {_string(_imported(model, folder))};"
     yield ""
-    added = any(guard.synthesis for guard in supervisor.guards)
+    lacking = _lacking(model, supervisor)
+    added = any(lacking.values())
     yield from document(["What synthesis added." if added else "Synthesis added nothing to the requirements."])
     yield f"supervisor automaton {Names(taken).fresh('sup')}:"
-    events = [(guard, escaped(event_name(guard.event))) for guard in supervisor.guards]
-    yield f"  alphabet {listed(event for _, event in events)};" if events else "  alphabet;"
+    events = {event: escaped(event_name(event)) for event in lacking}
+    yield f"  alphabet {listed(events.values())};" if events else "  alphabet;"
     if supervisor.initial is not None:
         yield f"  initial {printer(supervisor.initial)};"
     yield ""
     yield "  location:"
     yield "    initial; marked;"
-    for guard, event in events:
-        yield edge_text(event, "" if guard.synthesis is None else printer(guard.synthesis))
+    for event, parts in lacking.items():
+        guard = conjunction(map(copied, parts))
+        yield edge_text(events[event], "" if guard is None else printer(guard))
     yield "end"
+
+
+def _string(text: str) -> str:
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
+
+
+def _lacking(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor) -> dict[sct.Event, list[ex.Expression]]:
+    """Return what the text lacks of each event's guard: its ranges where they matter, and what synthesis added."""
+    lacking: dict[sct.Event, list[ex.Expression]] = {guard.event: [] for guard in supervisor.guards}
+    # Another synthesizer does not list the requirements behind a guard: then each may matter.
+    behind = {
+        guard.event: set(guard.requirements) if guard.requirements or guard.requirement is None else None
+        for guard in supervisor.guards
+    }
+    for requirement in model.requirements:
+        if requirement.ranges and requirement.event in lacking:
+            mattering = behind[requirement.event]
+            if mattering is None or requirement in mattering:
+                lacking[requirement.event].append(requirement.condition)
+    for guard in supervisor.guards:
+        if guard.synthesis is not None:
+            lacking[guard.event].append(guard.synthesis)
+    return lacking

@@ -1,0 +1,164 @@
+"""Compares the CIF that is written for a model from CIF with the model: each event, in all states, symbolically.
+
+That CIF imports the text that the model was read from. It is run as CIF's explorer, simulator and code generators run
+it: supervisors and requirements restrict as plants do, and an update out of a range is an error, not a restriction.
+"""
+
+from __future__ import annotations
+
+from copy import copy
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from robosc.analysis.system import GuardedSystem, counted
+from robosc.analysis.verify.differences import event_in_words, on_one_side, refuted, where
+from robosc.analysis.verify.transitions import in_range
+from robosc.analysis.verify.verdict import Outcome, Verdict
+from robosc.cif import read_supervised
+from robosc.metamodel import sct
+from robosc.semantics.domains import domain
+from robosc.semantics.edges import edges_by_event
+from robosc.synthesis import MEMORY
+from robosc.synthesis.bdd import Diagrams, with_enough_memory
+from robosc.synthesis.encoding import Encoding, Layout
+from robosc.synthesis.relation import EventRelation, requirements_by_event
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robosc.metamodel import expression as ex
+    from robosc.synthesis.bdd import Diagram
+
+PROPERTY = "cif-translation"
+TEXT = "the generated CIF"
+
+
+def validate_extension(model: sct.SupervisoryControlModel, text: str) -> Verdict:
+    """Return whether `<model>.supervised.cif` allows what the supervisor of a model from CIF allows, without an error.
+
+    Every event must be enabled in the same reachable states, lead to the same ones, and leave no range. Raises
+    MemoryError where the decision diagrams take more than 4 GB.
+    """
+    reading = read_supervised(model, text)
+    if reading is None:
+        return Verdict(PROPERTY, Outcome.SKIPPED, "", "the CIF that the model was read from can't be read any more")
+    if reading.model is None:
+        finding = reading.findings[0]
+        return refuted(PROPERTY, f"{TEXT} is wrong: line {finding.span.line}: {finding.message}")
+    try:
+        comparison = _Comparison(model, reading.model)
+    except _DifferenceError as fault:
+        return refuted(PROPERTY, f"{TEXT} is wrong: {fault}")
+    return with_enough_memory(comparison.run, MEMORY)
+
+
+class _DifferenceError(ValueError):
+    """That a specification has other plants, events or values than the model that imports it."""
+
+
+class _Comparison:
+    """A model and its CIF over the same decision diagrams."""
+
+    def __init__(self, model: sct.SupervisoryControlModel, specification: sct.SupervisoryControlModel) -> None:
+        """Raises _DifferenceError where the two differ in more than supervisors."""
+        self._model = model
+        self._specification = specification
+        self._theirs: dict[Any, Any] = {}
+        names = {plant.name for plant in model.plants}
+        supervisors = [plant for plant in specification.plants if plant.name not in names]
+        others = [plant for plant in specification.plants if plant.name in names]
+        self._pair("enumerations", model.enumerations, specification.enumerations)
+        self._pair("plants", model.plants, others)
+        for plant in model.plants:
+            for kind in ("locations", "variables", "inputs", "events"):
+                self._pair(kind, getattr(plant, kind), getattr(self._theirs[plant], kind))
+        if any(len(plant.locations) != 1 or plant.variables for plant in supervisors):
+            raise _DifferenceError("the supervisor has a state")
+        only = [location for plant in supervisors for location in plant.locations]
+        if not all(location.initial and location.marked for location in only):
+            raise _DifferenceError("the supervisor does not start, or is not marked")
+        self._layout = Layout(model)
+        self._their_layout = copy(self._layout)
+        self._their_layout.model = specification
+        self._their_layout.domains = {
+            self._theirs[element]: replace(own, element=self._theirs[element])
+            for element, own in self._layout.domains.items()
+        }
+        self._their_layout.state = [self._their_layout.domains[self._theirs[own.element]] for own in self._layout.state]
+        some = next(iter(self._layout.domains.values()))
+        for plant in supervisors:
+            self._their_layout.domains[plant] = replace(
+                some, element=plant, size=1, levels=(), halfway_levels=(), next_levels=()
+            )
+        self._edges = edges_by_event(specification.plants)
+        stated = [requirement for requirement in specification.requirements if not requirement.ranges]
+        self._requirements = requirements_by_event(stated)
+
+    def _pair(self, what: str, ours: Sequence[ex.NamedElement], theirs: Sequence[ex.NamedElement]) -> None:
+        if [_kind(element) for element in ours] != [_kind(element) for element in theirs]:
+            raise _DifferenceError(f"its {what} are not those of the text that it imports")
+        self._theirs.update(zip(ours, theirs, strict=True))
+
+    def run(self, capacity: int) -> Verdict:
+        """Return the verdict, with so many nodes for the decision diagrams."""
+        diagrams = Diagrams(self._layout.levels, capacity)
+        encoding, theirs = (Encoding(layout, diagrams) for layout in (self._layout, self._their_layout))
+        system = GuardedSystem(self._model, encoding)
+        if (system.initial ^ theirs.initial).satisfiable():
+            return refuted(PROPERTY, f"{TEXT} starts in other states")
+        relations = {event: self._relation(event, theirs) for event in system.relations}
+        differences = {event: self._differ(system, event, relation) for event, relation in relations.items()}
+        anywhere = diagrams.any_of(differences.values())
+        if not anywhere.satisfiable():
+            return Verdict(PROPERTY, Outcome.PROVED, f"{counted(len(relations), 'event')} in {system.size}")
+        path = system.path_to(anywhere)
+        codes = path.states[-1]
+        event = next(event for event, states in differences.items() if system.is_in(codes, states))
+        said = self._said(system, theirs, event, relations[event], encoding.state(codes))
+        return refuted(PROPERTY, f"{said}{where(system, event, codes)}", system.trace(path))
+
+    def _relation(self, event: sct.Event, theirs: Encoding) -> EventRelation:
+        counterpart = self._theirs[event]
+        edges = list(self._edges.get(counterpart, {}).values())
+        return EventRelation(counterpart, edges, self._requirements.get(counterpart, []), theirs)
+
+    @staticmethod
+    def _differ(system: GuardedSystem, event: sct.Event, relation: EventRelation) -> Diagram:
+        """The reachable states in which an event does something else in the two."""
+        allowed, permitted = system.allowed[event], relation.enabled & relation.requirement
+        differ = (allowed ^ permitted) & system.controlled
+        if differ.satisfiable():
+            return differ
+        both = allowed & system.controlled
+        moved = (system.relations[event].with_inputs() ^ relation.with_inputs()) & both
+        return both if moved.satisfiable() else differ
+
+    def _said(
+        self, system: GuardedSystem, theirs: Encoding, event: sct.Event, relation: EventRelation, here: Diagram
+    ) -> str:
+        """What an event does in the generated CIF and not in the model, in a state."""
+        step = event_in_words(event, {})
+        happens = (relation.enabled & relation.requirement & here).satisfiable()
+        for edge in (edge for edges in self._edges.get(self._theirs[event], {}).values() for edge in edges):
+            taken = here & theirs.source(edge) & theirs.holds(edge.guard)
+            for update in edge.updates if happens else ():
+                if (taken & ~in_range(update, theirs)).satisfiable():
+                    return f"{step} brings `{update.variable.name}` out of its range in {TEXT}"
+        if happens and (system.allowed[event] & here).satisfiable():
+            return f"{step} leads elsewhere in {TEXT}"
+        return on_one_side(step, TEXT, translated=happens)
+
+
+def _kind(element: Any) -> tuple[Any, ...]:
+    """What two elements have in common that stand for each other."""
+    match element:
+        case sct.DiscreteVariable() | sct.Input():
+            own = domain(element.type)
+            return element.name, own.low, own.size
+        case sct.Event():
+            return element.name, element.controllable
+        case sct.Location():
+            return element.name, element.initial, element.marked
+        case sct.Plant():
+            return element.name, element.kind
+    return (element.name,)
