@@ -78,8 +78,7 @@ def without_inputs(text: str) -> str:
             own = f"input_{len(automata)}"
             edges = " ".join(f"edge change when held != {value} do held := {value};" for value in values)
             automata.append(
-                f"plant {own}: uncontrollable change; disc {kind} held in any; "
-                f"location: initial; marked; {edges} end\n"
+                f"plant {own}: uncontrollable change; disc {kind} held in any; location: initial; marked; {edges} end\n"
             )
             equations.append(f"alg {kind} {name.strip()} = ^{own}.held;")
         return indent + " ".join(equations)
