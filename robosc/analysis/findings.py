@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.analysis.blocking_in_words import counterexample_in_words, way_out
 from robosc.analysis.causes import causes, with_causes
 from robosc.analysis.observations import Forbidden
-from robosc.analysis.wording import condition, forbid, in_words, listed, name, words
+from robosc.analysis.wording import called, condition, forbid, in_words, listed, name, words
 from robosc.diagnostics import Diagnostic, Severity, in_order
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         Observations,
         ProvideGap,
         SelfCancelling,
+        SharedServer,
         SharedTopicConflict,
         SilentRestricted,
         UnreachableState,
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from robosc.synthesis.encoding import Element
 
 _DONE = {sct.PlantKind.service: "called", sct.PlantKind.action: "started"}
-_FOLLOWED = {sct.EventKind.reset: "the end of `{}`", sct.EventKind.cancel: "the cancelling of `{}`"}
+_FOLLOWED = {sct.EventKind.reset: "the end of `{}`"}
 
 
 def findings_of(model: sct.SupervisoryControlModel, observations: Observations) -> list[Diagnostic]:
@@ -50,6 +51,7 @@ def findings_of(model: sct.SupervisoryControlModel, observations: Observations) 
             *with_causes(absent, causes(observations)),
             *map(words_for.silent_restricted, observations.silent_restricted),
             *map(words_for.self_cancelling, observations.self_cancelling),
+            *map(words_for.shared_server, observations.shared_servers),
             *map(words_for.provide_gap, observations.provide_gaps),
             *map(words_for.shared_topic_conflict, observations.shared_topic_conflicts),
             *map(words_for.unrestricted_call, observations.unrestricted_calls),
@@ -101,6 +103,8 @@ class _Findings:
         )
 
     def silent_restricted(self, observed: SilentRestricted) -> Diagnostic:
+        if observed.event.kind == sct.EventKind.cancel:
+            return self._cancel_held_back(observed)
         plant = name(plant_of(observed.event))
         what = _FOLLOWED.get(observed.event.kind, "this transition of `{}`").format(plant)
         return _finding(
@@ -109,6 +113,24 @@ class _Findings:
             f"the supervisor has to hold back {what}, so that the model may no longer follow the robot: otherwise, "
             f"{counterexample_in_words(observed.counterexample, self._model)}",
             way_out(observed.counterexample),
+        )
+
+    def _cancel_held_back(self, observed: SilentRestricted) -> Diagnostic:
+        action, trace = name(plant_of(observed.event)), observed.counterexample
+        told = [requirement for requirement in trace.violated if isinstance(requirement, sct.Requirement)]
+        hint = way_out(trace)
+        if ends := [requirement for requirement in told if requirement.automaton is not None]:
+            hint = (
+                f"a start can be refused, a cancel can't: take the end of `{action}` out of {called(ends)}, "
+                f"or restrict the start of `{action}`"
+            )
+        return _finding(
+            observed.event,
+            "cancel-held-back",
+            f"the supervisor would have to hold back the cancel of `{action}`, and could not stop it: otherwise, "
+            f"{counterexample_in_words(trace, self._model)}",
+            hint,
+            Severity.ERROR,
         )
 
     @staticmethod
@@ -122,6 +144,16 @@ class _Findings:
             f"{forbid(observed.requirements, 'it')}",
             f"what an action needs must hold while it runs, too: {led}",
             Severity.ERROR,
+        )
+
+    def shared_server(self, observed: SharedServer) -> Diagnostic:
+        first, second = name(observed.first), name(observed.second)
+        return _finding(
+            observed.second,
+            "shared-server",
+            f"`{first}` and `{second}` use one server, and both can be under way at the same time: after "
+            f"{in_words(observed.trace, self._model)}",
+            f"let the requirements keep `{second}` from starting while `{first}` is running",
         )
 
     def provide_gap(self, observed: ProvideGap) -> Diagnostic:
@@ -151,13 +183,13 @@ class _Findings:
 
     @staticmethod
     def unrestricted_call(event: sct.Event) -> Diagnostic:
-        called = name(plant_of(event))
+        action = name(plant_of(event))
         return _finding(
             event,
             "unrestricted-call",
-            f"`{called}` is {_DONE[plant_of(event).kind]} again and again, as soon as it has ended: no requirement "
+            f"`{action}` is {_DONE[plant_of(event).kind]} again and again, as soon as it has ended: no requirement "
             "restricts it, and no component waits for its request",
-            f"add `requirement {called} needs ...`, or `on request to {called}` in the states that allow it",
+            f"add `requirement {action} needs ...`, or `on request to {action}` in the states that allow it",
         )
 
     def unreachable_state(self, observed: UnreachableState) -> Diagnostic:

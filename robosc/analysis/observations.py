@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from robosc.analysis.blocking import BlockingCounterexample, blocking_counterexample, forbidding, never_ready
 from robosc.analysis.paths import Layers, Path
 from robosc.metamodel import sct
+from robosc.semantics.communication import RUNNING
 from robosc.semantics.roles import plant_of, provide_numbers
 from robosc.synthesis.decoding import Value, value
 from robosc.synthesis.encoding import pick
@@ -70,6 +71,15 @@ class SilentRestricted:
 
     event: sct.Event
     counterexample: BlockingCounterexample
+
+
+@dataclass(frozen=True)
+class SharedServer:
+    """Two services or two actions of one ROS name that can be under way together; `trace` leads there."""
+
+    first: sct.Plant
+    second: sct.Plant
+    trace: tuple[TraceStep, ...]
 
 
 @dataclass(frozen=True)
@@ -159,6 +169,7 @@ class Observations:
     never_enabled: tuple[NeverEnabled, ...]
     silent_restricted: tuple[SilentRestricted, ...]
     self_cancelling: tuple[SelfCancelling, ...]
+    shared_servers: tuple[SharedServer, ...]
     provide_gaps: tuple[ProvideGap, ...]
     shared_topic_conflicts: tuple[SharedTopicConflict, ...]
     unrestricted_calls: tuple[sct.Event, ...]
@@ -181,6 +192,7 @@ class Observer:
             tuple(self._never_enabled()),
             tuple(self._silent_restricted()),
             tuple(self._self_cancelling()),
+            tuple(self._shared_servers()),
             tuple(self._provide_gaps()),
             tuple(self._shared_topic_conflicts()),
             tuple(self._unrestricted_calls()),
@@ -282,6 +294,21 @@ class Observer:
                 yield SelfCancelling(
                     event, tuple(requirement for requirement in at_fault if requirement.automaton is None)
                 )
+
+    def _shared_servers(self) -> Iterator[SharedServer]:
+        calls = [plant for plant in self._system.model.plants if plant.kind in _CALLS and plant.topic]
+        for first, second in combinations(calls, 2):
+            if (first.kind, _server(first)) != (second.kind, _server(second)):
+                continue
+            both = self._system.controlled & self._running(first) & self._running(second)
+            if both.satisfiable():
+                yield SharedServer(first, second, self._system.trace(self._system.path_to(both)))
+
+    def _running(self, plant: sct.Plant) -> Diagram:
+        """The states in which a service or action is under way."""
+        encoding = self._system.encoding
+        running = [location for location in plant.locations if location.name in RUNNING]
+        return encoding.diagrams.any_of(map(encoding.location, running))
 
     def _provide_gaps(self) -> Iterator[ProvideGap]:
         for event in self._triggers:
@@ -391,3 +418,8 @@ class Observer:
         """The controlled states in which only synthesis forbids the event."""
         relation = permission.relation
         return self._system.controlled & (relation.enabled & relation.requirement & ~permission.where)
+
+
+def _server(plant: sct.Plant) -> str:
+    """The ROS name of a service or action: with a slash before it or without, it is one."""
+    return (plant.topic or "").removeprefix("/")

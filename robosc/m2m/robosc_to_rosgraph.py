@@ -10,7 +10,7 @@ from robosc.m2m.kept_types import KeptTypes
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.ros_types import RosTypes
-from robosc.semantics.communication import CONTROLLABLE, data_type, event_of, events
+from robosc.semantics.communication import CONTROLLABLE, basis, data_type, event_of, events, ros_type
 from robosc.semantics.cone_of_influence import guard_of
 from robosc.semantics.durations import set_on_robot
 from robosc.semantics.expansion import constant_value
@@ -30,14 +30,6 @@ if TYPE_CHECKING:
     from robosc.semantics.inputs import Told
     from robosc.semantics.instances import Instance, InstanceParameter, InstanceVariable, PortInstance
 
-#: The wire types of basic data without `links`, all of std_msgs.
-_BASIC = {
-    robosc.BooleanDataType: "Bool",
-    robosc.IntegerDataType: "Int16",
-    robosc.DoubleDataType: "Float32",
-    robosc.StringDataType: "String",
-    robosc.NoneDataType: "Empty",
-}
 #: The field that holds a basic value in a type of std_msgs.
 _FIELD = "data"
 
@@ -173,12 +165,9 @@ class _Transformation:
     def interface(self, communication: robosc.CommunicationType) -> rosgraph.Interface:
         """The ROS type that a communication links, or the one of `std_msgs` or `std_srvs` for its basic data."""
         kind, linked = _KINDS[type(communication)], communication.interface
-        if linked is not None:
-            package, name = linked.package, linked.type
-        elif isinstance(communication, robosc.Message):
-            package, name = "std_msgs", _BASIC[type(_basis(communication.type))]
-        else:
-            package, name = "std_srvs", "Empty"
+        named = ros_type(communication)
+        assert named is not None
+        package, name = named
         key = (package, name, kind.name)
         if key not in self.interfaces:
             interface = rosgraph.Interface(package=package, type=name, kind=kind)
@@ -268,7 +257,7 @@ class _Transformation:
         """What `value` means where a ROS message carries the data of an event."""
         carried = data_type(port.communication, event)
         assert carried is not None
-        is_object = isinstance(_basis(carried), robosc.ComplexDataTypeReference)
+        is_object = isinstance(basis(carried), robosc.ComplexDataTypeReference)
         return Carried(carried, port.instance, () if is_object else (self.field(port, event),))
 
     def wire(
@@ -398,13 +387,6 @@ class _Transformation:
         event = event_of(transition.communicationType, transition.resultType)
         has_data = port is not None and event is not None and event.feature and not event.is_sent
         return self.value_of(port, event) if has_data else None  # type: ignore[arg-type]
-
-
-def _basis(kind: robosc.DataType) -> robosc.DataType:
-    """An enum has the wire type of its base."""
-    if isinstance(kind, robosc.ComplexDataTypeReference) and isinstance(kind.type, robosc.EnumDataType):
-        return _basis(kind.type.type)
-    return kind
 
 
 def _steps(

@@ -147,5 +147,36 @@ def section_of(declared: robosc.DataType) -> Section:
     return next(sections, None) or Section.MESSAGE
 
 
+#: The types of std_msgs that carry basic data without `links`.
+_BASIC = {
+    robosc.BooleanDataType: "Bool",
+    robosc.IntegerDataType: "Int16",
+    robosc.DoubleDataType: "Float32",
+    robosc.StringDataType: "String",
+    robosc.NoneDataType: "Empty",
+}
+
+
+def ros_type(communication: robosc.CommunicationType) -> tuple[str, str] | None:
+    """The package and the name of a communication's ROS type.
+
+    That is the linked one, or the one of `std_msgs` or `std_srvs` for basic data; None where there is none.
+    """
+    linked = communication.interface
+    if linked is not None:
+        return linked.package, linked.type
+    if not isinstance(communication, robosc.Message):
+        return "std_srvs", "Empty"
+    name = _BASIC.get(type(basis(communication.type)))
+    return None if name is None else ("std_msgs", name)
+
+
+def basis(declared: robosc.DataType | None) -> robosc.DataType | None:
+    """The type that carries data of a type: that of an enum is the type that it is made from."""
+    if isinstance(declared, robosc.ComplexDataTypeReference) and isinstance(declared.type, robosc.EnumDataType):
+        return basis(declared.type.type)
+    return declared
+
+
 def _section_index(row: PortEvent) -> int:
     return row.section.index if row.section else 0

@@ -14,6 +14,7 @@ from tests.checks.test_rule_pages import models
 
 RULES = {
     "empty-supervisor": Severity.ERROR,
+    "cancel-held-back": Severity.ERROR,
     "self-cancelling": Severity.ERROR,
     "never-enabled": Severity.WARNING,
     "silent-restricted": Severity.WARNING,

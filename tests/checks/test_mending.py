@@ -119,6 +119,11 @@ TOLD = {
         "write what it has where it is needed",
     ),
     "a construct is to be written anew": (
+        "assign it `on canceled from",
+        "give both one type",
+        "go to a state",
+        "let `",
+        "provide other data",
         "`identifier` stands before all else",
         "`links` stands behind all else",
         "`send: change` stands behind the type",

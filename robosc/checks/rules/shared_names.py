@@ -1,0 +1,139 @@
+"""What shares a topic or a server: `topic-types`, `shared-server` and `indistinct-commands`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.checks.libraries import instances
+from robosc.checks.rule import Finding, rule
+from robosc.diagnostics import Severity
+from robosc.metamodel import robosc as rsc
+from robosc.semantics.communication import ros_type, sent_type
+from robosc.semantics.naming import written
+from robosc.semantics.printing import RoboscPrinter
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.metamodel import expression as ex
+    from robosc.semantics.instances import Instances, PortInstance
+
+
+@rule("topic-types")
+def topic_types(base: rsc.Base) -> Iterator[Finding]:
+    """All messages on one topic have one ROS type."""
+    for first, second in _of_other_types(base, rsc.Message):
+        yield Finding(
+            _place(second, base),
+            f"{_described(second)} has the type `{_type(second)}` on the topic `{_name(second)}`, on which"
+            f" {_described(first)} has the type `{_type(first)}`: ROS keeps the two apart",
+            "give both one type, or one of them a topic of its own",
+            related=first.communication,
+        )
+
+
+@rule("shared-server")
+def shared_server(base: rsc.Base) -> Iterator[Finding]:
+    """All services of one name have one ROS type, and so have all actions."""
+    for kind in (rsc.Service, rsc.Action):
+        for first, second in _of_other_types(base, kind):
+            yield Finding(
+                _place(second, base),
+                f"{_described(second)} has the type `{_type(second)}`, and {_described(first)} of the same name"
+                f" `{_name(second)}` has the type `{_type(first)}`: only one of them can ever be answered",
+                "give both one type, or one of them a name of its own",
+                related=first.communication,
+            )
+
+
+@rule("indistinct-commands", Severity.WARNING)
+def indistinct_commands(base: rsc.Base) -> Iterator[Finding]:
+    """Two messages that the controller sends on one topic differ in their data."""
+    if not isinstance(base, rsc.Robot):
+        return
+    known = instances(base)
+    firsts: dict[str, list[PortInstance]] = {}
+    for second in _ports(known, rsc.Message):
+        if sent_type(second.communication) is None:
+            continue
+        others = firsts.setdefault(_name(second).removeprefix("/"), [])
+        same = next((first for first in others if _are_alike(first, second, known)), None)
+        others.append(second)
+        if same is not None:
+            provided = known.provided(second)
+            why = "carry the same data" if provided else "have no `provide`, so that both carry zeros"
+            yield Finding(
+                _place(second, base),
+                f"{_described(same)} and {_described(second)} go to the topic `{_name(second)}` and {why}: the robot"
+                " can't tell them apart",
+                f"provide other data with `{written(second.communication.name)}`, or use one message for both",
+                related=same.communication,
+            )
+
+
+def _are_alike(first: PortInstance, second: PortInstance, known: Instances) -> bool:
+    """Whether two commands always carry the same data, as far as their texts say."""
+    if ros_type(first.communication) != ros_type(second.communication):
+        return False
+    if isinstance(sent_type(second.communication), rsc.NoneDataType):
+        return False
+    return _statements(first, known) == _statements(second, known)
+
+
+def _statements(port: PortInstance, known: Instances) -> list[tuple[str, str]]:
+    """The data of each effective `provide` for a command and its condition, with names written out."""
+    found = []
+    for statement in known.provided(port):
+        data, condition = statement.element.data, statement.element.condition
+        shown = _shown(data, statement.within, known) if data is not None else ""
+        found.append((shown, "" if condition is None else _shown(condition, statement.within, known)))
+    return found
+
+
+def _shown(expression: ex.Expression, within: object, known: Instances) -> str:
+    if isinstance(expression, rsc.ObjectValue):
+        fields = (
+            (field.property.name if field.property else "", _shown(field.value, within, known))
+            for field in expression.properties
+            if field.value is not None
+        )
+        return "{" + ", ".join(f"{name}: {value}" for name, value in sorted(fields)) + "}"
+    return RoboscPrinter()(known.expanded(expression, within))  # type: ignore[arg-type]
+
+
+def _of_other_types(base: rsc.Base, kind: type[rsc.CommunicationType]) -> Iterator[tuple[PortInstance, PortInstance]]:
+    """Each communication that has another ROS type than the first one of its name, and that one before it."""
+    if not isinstance(base, rsc.Robot):
+        return
+    firsts: dict[str, PortInstance] = {}
+    for second in _ports(instances(base), kind):
+        if ros_type(second.communication) is None:
+            continue
+        first = firsts.setdefault(_name(second).removeprefix("/"), second)
+        if ros_type(first.communication) != ros_type(second.communication):
+            yield first, second
+
+
+def _ports(known: Instances, kind: type[rsc.CommunicationType]) -> Iterator[PortInstance]:
+    """The communications of a kind whose instances have all their arguments (else it is `argument`)."""
+    for port in known.ports():
+        complete = not {*port.instance.definition.parameters} - port.instance.arguments.keys()
+        if complete and isinstance(port.communication, kind) and port.communication.name:
+            yield port
+
+
+def _place(port: PortInstance, base: rsc.Base) -> ex.Located:
+    return port.communication if port.instance.unit is base else port.instance.component
+
+
+def _described(port: PortInstance) -> str:
+    kind = type(port.communication).__name__.lower()
+    return f"{kind} `{port.communication.name}` of `{port.instance.name}`"
+
+
+def _name(port: PortInstance) -> str:
+    return port.instance.topic(port.communication)
+
+
+def _type(port: PortInstance) -> str:
+    return "/".join(ros_type(port.communication) or ())

@@ -1,0 +1,295 @@
+"""Who waits for whom: `cancel-is-not-the-end`, `answer-unheard` and `failure-unheard`.
+
+A request, a call and a cancel are asked for at one moment and done at a later one. These rules look for components that
+take the first moment for the second.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeGuard
+
+from robosc.checks.definitions import assigned_variable, behaviours, common_transitions, communication_of, states
+from robosc.checks.definitions import statements as stated
+from robosc.checks.libraries import instances
+from robosc.checks.rule import Finding, rule
+from robosc.diagnostics import Severity
+from robosc.metamodel import robosc as rsc
+from robosc.semantics.communication import data_type, event, meant
+from robosc.semantics.cone_of_influence import accesses
+from robosc.semantics.naming import written
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from robosc.metamodel import expression as ex
+    from robosc.semantics.instances import Instance, Instances, PortInstance
+
+_END = (rsc.ResultType.response, rsc.ResultType.error, rsc.ResultType.canceled)
+
+
+@rule("cancel-is-not-the-end", Severity.WARNING)
+def cancel_is_not_the_end(base: rsc.Base) -> Iterator[Finding]:
+    """A component or requirement that reacts to the cancel of an action goes on to wait for the end of the action."""
+    for component, behaviour in behaviours(base):
+        common = common_transitions(behaviour.automaton)
+        every = [*common, *(transition for state in states(behaviour.automaton) for transition in state.transitions)]
+        for transition in every:
+            if transition.target is None or not _is_on(transition, rsc.ResultType.cancel):
+                continue
+            action = communication_of(transition.communicationType)
+            waits = [*transition.target.transitions, *common]
+            if action is not None and not _hears(waits, action, rsc.ResultType.canceled):
+                yield _taken_for_the_end(transition, action, f"{component.name}.{transition.target.name}")
+    for automaton in stated(rsc.AutomatonRequirement, base):
+        yield from _forbidden_ends(automaton)
+    yield from _variables_read(base)
+
+
+def _taken_for_the_end(element: ex.Located, action: rsc.CommunicationType, state: str) -> Finding:
+    name = written(action.name)
+    return Finding(
+        element,
+        f"`cancel from {name}` leads to `{state}`, which does not wait for the end of `{name}`: the controller has only"
+        " asked the server to cancel, and the robot may still move",
+        f"go to a state `stopping` that `canceled from {name}`, `response from {name}` and `error from {name}` leave",
+    )
+
+
+def _forbidden_ends(automaton: rsc.AutomatonRequirement) -> Iterator[Finding]:
+    """The transitions on a cancel to a state in which the automaton forbids an end that it names."""
+    every = [transition for state in automaton.states for transition in state.transitions]
+    named = {(communication_of(one.event.communicationType), _kind(one.event)) for one in every}
+    for transition in every:
+        action = communication_of(transition.event.communicationType)
+        if transition.target is None or action is None or _kind(transition.event) != rsc.ResultType.cancel:
+            continue
+        there = {
+            _kind(other.event)
+            for other in transition.target.transitions
+            if communication_of(other.event.communicationType) is action
+        }
+        missing = [str(end) for end in _END if (action, end) in named and end not in there]
+        if missing:
+            name, state = written(action.name), transition.target.name
+            yield Finding(
+                transition,
+                f"`cancel from {name}` leads to `{state}`, which forbids the {missing[0]} of `{name}`: the controller"
+                " has only asked the server to cancel, and the goal ends later",
+                f"let `{written(state)}` allow `{missing[0]} from {name}`",
+            )
+
+
+def _variables_read(base: rsc.Base) -> Iterator[Finding]:
+    """The transitions on a cancel that assign a variable which a requirement on another command reads."""
+    known = instances(base)
+    read: dict[rsc.Variable, list[tuple[rsc.CommunicationRequirement, set[rsc.CommunicationType | None]]]] = {}
+    for requirement in known.statements(rsc.CommunicationRequirement):
+        if requirement.element.condition is None or requirement.element.target is None:
+            continue
+        restricted = {communication_of(target) for target in requirement.element.target.communicationTypes}
+        for access in accesses(known.expanded(requirement.element.condition, requirement.within)):
+            if isinstance(access.item, rsc.Variable):
+                read.setdefault(access.item, []).append((requirement.element, restricted))
+    for _, behaviour in behaviours(base) if read else ():
+        every = [*common_transitions(behaviour.automaton)]
+        every += (transition for state in states(behaviour.automaton) for transition in state.transitions)
+        for transition in every:
+            if not _is_on(transition, rsc.ResultType.cancel):
+                continue
+            action = communication_of(transition.communicationType)
+            for assignment in transition.assignments:
+                variable = assigned_variable(assignment)
+                others = (
+                    [one for one, restricted in read.get(variable, ()) if restricted - {action}] if variable else []
+                )
+                if action is not None and variable is not None and others:
+                    name = written(action.name)
+                    yield Finding(
+                        assignment,
+                        f"`{variable.name}` changes when the controller asks to cancel `{name}`, and a requirement on"
+                        f" another command reads it: the robot may still move",
+                        f"assign it `on canceled from {name}`, or read `{name}.running` in the requirement",
+                        related=others[0],
+                    )
+
+
+@rule("answer-unheard", Severity.WARNING)
+def answer_unheard(base: rsc.Base) -> Iterator[Finding]:
+    """A component that changes its state with a call waits somewhere for the answer."""
+    if not isinstance(base, rsc.Robot):
+        return
+    known = instances(base)
+    heard = _answers_heard(known)
+    restricted = _restricted(known)
+    read = _states_read(known)
+    reported: set[ex.Located] = set()
+    for instance in known:
+        for transition, state in instance.transitions:
+            target = transition.target
+            if target is None or target is state or not _is_on(transition, rsc.ResultType.request):
+                continue
+            port = known.port(transition.communicationType, instance)
+            if port is None or isinstance(port.communication, rsc.Message) or port in heard:
+                continue
+            unread = port not in restricted and (instance, target) not in read
+            if unread and _answers_nothing(port.communication) and not _commands(target, instance, port, known):
+                continue
+            place = transition if instance.unit is base else instance.component
+            if place not in reported:
+                reported.add(place)
+                name = written(port.communication.name)
+                yield Finding(
+                    place,
+                    f"`{instance.name}` goes to `{target.name}` with the request to `{name}`, and nothing waits for the"
+                    f" answer of `{name}`: what `{target.name}` allows may begin before `{name}` has ended",
+                    f"go to a state that `on response from {name} goto {written(target.name)}` leaves, and give it"
+                    f" `on error from {name}`, too",
+                )
+
+
+def _answers_heard(known: Instances) -> set[PortInstance]:
+    """The services and actions whose response a transition, an order, a count or a requirement automaton names."""
+    found: set[PortInstance | None] = set()
+    for instance in known:
+        for transition, _ in instance.transitions:
+            if _is_on(transition, rsc.ResultType.response):
+                found.add(known.port(transition.communicationType, instance))
+    for kind in (rsc.OrderRequirement, rsc.CountRequirement, rsc.AutomatonRequirement):
+        for requirement in known.statements(kind):
+            for reference in _events_of(requirement.element):
+                if _kind(reference) == rsc.ResultType.response:
+                    found.add(known.port(reference.communicationType, requirement.within))
+    return {port for port in found if port is not None}
+
+
+def _events_of(requirement: rsc.Requirement) -> list[rsc.EventReference]:
+    match requirement:
+        case rsc.AutomatonRequirement():
+            return [transition.event for state in requirement.states for transition in state.transitions]
+        case rsc.OrderRequirement() | rsc.CountRequirement():
+            named = [*(requirement.target.events if requirement.target else ()), requirement.anchor]
+            return [reference for reference in named if reference is not None]
+    return []
+
+
+def _restricted(known: Instances) -> set[PortInstance]:
+    """What a requirement restricts the start of."""
+    found: set[PortInstance | None] = set()
+    for requirement in known.statements(rsc.CommunicationRequirement):
+        targets = requirement.element.target.communicationTypes if requirement.element.target else ()
+        found |= {known.port(target, requirement.within) for target in targets}
+    for kind in (rsc.OrderRequirement, rsc.CountRequirement, rsc.AutomatonRequirement):
+        for statement in known.statements(kind):
+            for reference in _events_of(statement.element):
+                found.add(known.port(reference.communicationType, statement.within))
+    return {port for port in found if port is not None}
+
+
+def _states_read(known: Instances) -> set[tuple[Instance | None, rsc.State]]:
+    """The states that requirements read."""
+    conditions: list[tuple[ex.Expression | None, Instance | None]] = []
+    required, invariants = known.statements(rsc.CommunicationRequirement), known.statements(rsc.StateInvariant)
+    conditions += ((statement.element.condition, statement.within) for statement in required)
+    conditions += ((statement.element.condition, statement.within) for statement in invariants)
+    for automaton in known.statements(rsc.AutomatonRequirement):
+        for state in automaton.element.states:
+            conditions += ((transition.guard, automaton.within) for transition in state.transitions)
+    return {
+        (known.instance(access.component, within), access.item)
+        for condition, within in conditions
+        if condition is not None
+        for access in accesses(known.expanded(condition, within))
+        if isinstance(access.item, rsc.State)
+    }
+
+
+def _answers_nothing(communication: rsc.CommunicationType) -> bool:
+    row = event(communication, rsc.ResultType.response)
+    return isinstance(data_type(communication, row), rsc.NoneDataType)
+
+
+def _commands(state: rsc.State, instance: Instance, port: PortInstance, known: Instances) -> bool:
+    """Whether a component allows another command in a state."""
+    common = [transition for transition, where in instance.transitions if where is None]
+    requests = [
+        known.port(transition.communicationType, instance)
+        for transition in [*state.transitions, *common]
+        if _is_on(transition, rsc.ResultType.request)
+    ]
+    return any(other != port for other in requests)
+
+
+@rule("failure-unheard", Severity.WARNING)
+def failure_unheard(base: rsc.Base) -> Iterator[Finding]:
+    """A state that waits for an answer also reacts to the failure, and to the end of a cancel that can come."""
+    if not isinstance(base, rsc.Robot):
+        return
+    known = instances(base)
+    cancelable = {
+        known.port(target, requirement.within)
+        for requirement in known.statements(rsc.CommunicationRequirement)
+        for target in (requirement.element.target.communicationTypes if requirement.element.target else ())
+    }
+    reported: set[ex.Located] = set()
+    for instance in known:
+        common = [transition for transition, where in instance.transitions if where is None]
+        for transition, state in instance.transitions:
+            target = transition.target
+            if state is None or target is None or target is state or not _is_on(transition, rsc.ResultType.response):
+                continue
+            port = known.port(transition.communicationType, instance)
+            if port is None or isinstance(port.communication, rsc.Message):
+                continue
+            missing = _unheard(state, common, port, port in cancelable)
+            place = transition if instance.unit is base else instance.component
+            if missing and place not in reported:
+                reported.add(place)
+                name = written(port.communication.name)
+                ends = " or ".join(f"`{end} from {name}`" for end in missing)
+                yield Finding(
+                    place,
+                    f"`{instance.name}` leaves `{state.name}` at the response of `{name}`, and does not react to {ends}"
+                    f" there: it may wait forever",
+                    f"let `{written(state.name)}` react to {ends}: with `goto` it gives up, without it may try again",
+                )
+
+
+def _unheard(
+    state: rsc.State, common: Iterable[rsc.Transition], port: PortInstance, cancelable: bool
+) -> list[rsc.ResultType]:
+    """The ends of a call or goal that a state which waits for its response does not react to."""
+    own, action = [*state.transitions, *common], port.communication
+    missing: list[rsc.ResultType] = []
+    timed = any(isinstance(transition, rsc.TimedTransition) for transition in state.transitions)
+    if not timed and not _hears(own, action, rsc.ResultType.error):
+        missing.append(rsc.ResultType.error)
+    if isinstance(action, rsc.Action) and cancelable and not _hears(own, action, rsc.ResultType.canceled):
+        leaves = any(
+            transition.target is not None and transition.target is not state
+            for transition in own
+            if _is_on(transition, rsc.ResultType.cancel) and _names(transition, action)
+        )
+        if not leaves and not timed:
+            missing.append(rsc.ResultType.canceled)
+    return missing
+
+
+def _is_on(transition: rsc.Transition, kind: rsc.ResultType) -> TypeGuard[rsc.ResultTransition]:
+    return isinstance(transition, rsc.ResultTransition) and transition.resultType == kind
+
+
+def _names(transition: rsc.Transition, communication: rsc.CommunicationType) -> bool:
+    if not isinstance(transition, rsc.ResultTransition):
+        return False
+    return communication_of(transition.communicationType) is communication
+
+
+def _hears(transitions: Iterable[rsc.Transition], communication: rsc.CommunicationType, kind: rsc.ResultType) -> bool:
+    return any(_is_on(transition, kind) and _names(transition, communication) for transition in transitions)
+
+
+def _kind(reference: rsc.EventReference) -> rsc.ResultType | None:
+    if isinstance(reference, rsc.NamedEvent):
+        return reference.resultType
+    implied = meant(reference)
+    return None if implied is None or not implied.name else getattr(rsc.ResultType, implied.name)
