@@ -110,7 +110,8 @@ def _of_other_types(base: rsc.Base, kind: type[rsc.CommunicationType]) -> Iterat
         if ros_type(second.communication) is None:
             continue
         first = firsts.setdefault(_name(second).removeprefix("/"), second)
-        if ros_type(first.communication) != ros_type(second.communication):
+        same_name = first.communication.name == second.communication.name  # the matter of `unique-communication`
+        if not same_name and ros_type(first.communication) != ros_type(second.communication):
             yield first, second
 
 

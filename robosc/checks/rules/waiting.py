@@ -58,7 +58,7 @@ def _taken_for_the_end(element: ex.Located, action: rsc.CommunicationType, state
 def _forbidden_ends(automaton: rsc.AutomatonRequirement) -> Iterator[Finding]:
     """The transitions on a cancel to a state in which the automaton forbids an end that it names."""
     every = [transition for state in automaton.states for transition in state.transitions]
-    named = {(communication_of(one.event.communicationType), _kind(one.event)) for one in every}
+    named = {(communication_of(other.event.communicationType), _kind(other.event)) for other in every}
     for transition in every:
         action = communication_of(transition.event.communicationType)
         if transition.target is None or action is None or _kind(transition.event) != rsc.ResultType.cancel:
@@ -100,7 +100,9 @@ def _variables_read(base: rsc.Base) -> Iterator[Finding]:
             for assignment in transition.assignments:
                 variable = assigned_variable(assignment)
                 others = (
-                    [one for one, restricted in read.get(variable, ()) if restricted - {action}] if variable else []
+                    [reader for reader, restricted in read.get(variable, ()) if restricted - {action}]
+                    if variable
+                    else []
                 )
                 if action is not None and variable is not None and others:
                     name = written(action.name)
