@@ -17,18 +17,23 @@ from robosc.runtime.core.controller import Controller
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.layer import Layer
 from robosc.runtime.core.node_data import BLANK
-from robosc.runtime.core.port import Outcome
+from robosc.runtime.core.port import CancelAnswer, Outcome
 from robosc.runtime.core.settings import Settings
 
 from .playing import tell
 from .simulation import Answer, GoalNews
 
 EXAMPLES = Path(__file__).resolve().parents[1]
-OUTCOMES = {"succeeded": Outcome.SUCCEEDED, "canceled": Outcome.CANCELLED, "aborted": Outcome.ABORTED}
+OUTCOMES = {"succeeded": Outcome.SUCCEEDED, "canceled": Outcome.CANCELED, "aborted": Outcome.ABORTED}
 ZERO = {"x": 0.0, "y": 0.0, "z": 0.0}
 #: Fields that are there also if nobody sets them.
 POSE = {"header": {"frame_id": ""}, "pose": {"position": ZERO, "orientation": {**ZERO, "w": 1.0}}}
-DEFAULTS = {"Twist": {"linear": ZERO, "angular": ZERO}, "Int16": {"data": 0}, "NavigateToPose": {"pose": POSE}}
+DEFAULTS = {
+    "Twist": {"linear": ZERO, "angular": ZERO},
+    "Int16": {"data": 0},
+    "NavigateToPose": {"pose": POSE},
+    "SpeedLimit": {"percentage": False},
+}
 
 
 def play(simulation, until, models=None, kind=Controller, quiet=False):
@@ -200,8 +205,8 @@ class WorldPort:
         if self._simulation.start(client.identifier, number, _plain(goal)):
             handlers.accepted()
         else:
-            handlers.rejected("rejected")
-        return Goal(self._simulation, client.identifier, number)
+            handlers.rejected()
+        return Goal(self._simulation, client.identifier, number, handlers)
 
     def take(self, news):
         """Hands on an answer or news of a goal."""
@@ -242,12 +247,21 @@ class WorldPort:
 class Goal:
     """A goal that the world has."""
 
-    def __init__(self, simulation, action, number):
-        self._simulation, self._action, self._number = simulation, action, number
+    def __init__(self, simulation, action, number, handlers):
+        self._simulation, self._action, self._number, self._handlers = simulation, action, number, handlers
 
     def cancel(self):
-        """Asks the world to end it."""
-        self._simulation.cancel(self._action, self._number)
+        """Asks the world to end it; a goal that has ended can no longer be canceled."""
+        accepted = self._simulation.cancel(self._action, self._number)
+        self._handlers.cancel_answered(CancelAnswer.ACCEPTED if accepted else CancelAnswer.TERMINATED)
+
+    def is_canceling(self):
+        """A goal ends at once."""
+        return False
+
+    def is_gone(self):
+        """The world stays."""
+        return False
 
 
 class Received:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from .devices import BOOLEAN, NUMBER, RANGE_MAX, TRIGGER, Device, header
+from .devices import BOOLEAN, RANGE_MAX, TRIGGER, Device, header
 from .geometry import Pose, cast, turned
 from .navigation import Navigation
 from .world import STEP
@@ -216,7 +216,7 @@ class Docking(Server):
 class WarehouseNavigation(Navigation):
     """Nav2 that knows where the robot starts, keeps further away from everything, and keeps to a limit of its speed."""
 
-    hears = {"/speed_limit": NUMBER}  # noqa: RUF012
+    hears = {"/speed_limit": "nav2_msgs/SpeedLimit"}  # noqa: RUF012
     clearance = 0.65
     #: Without a limit it creeps; near the goal, too.
     creep = 0.2
@@ -233,9 +233,10 @@ class WarehouseNavigation(Navigation):
         return self._goal is not None
 
     def hear(self, world, topic, data):
-        """Takes a limit, in metres a second."""
+        """Takes a limit, in metres a second; percentages are not taken."""
         del world, topic
-        self._limit = data["data"]
+        if not data["percentage"]:
+            self._limit = data["speed_limit"]
 
     def _speed(self, pose):
         left = math.hypot(self._destination[0] - pose.x, self._destination[1] - pose.y)

@@ -74,9 +74,26 @@ def test_the_warehouse_robot_stops_for_what_it_touches_or_no_longer_sees() -> No
 @pytest.mark.slow
 def test_the_warehouse_robot_turns_back_where_its_power_is_low() -> None:
     low = heard("charge", {"percentage": 0.1})
-    lines = [*shelved(), *scans(), low, "action_navigate.u_response"]
+    lines = [*shelved(), *scans(), low, "action_navigate.u_canceled", "action_navigate.u_response"]
     sent = work(play("warehouse_robot", *lines))
-    assert sent[-2:] == [["cancel navigate", "navigate"], ["leave", "dock"]]
+    assert sent[-3:] == [["cancel navigate"], ["navigate"], ["leave", "dock"]]
+
+
+def test_the_warehouse_robot_leaves_the_aisle_when_its_goal_has_ended() -> None:
+    """A goal that succeeds before its cancel arrives is one that has arrived: the robot leaves the aisle then."""
+    lines = [*shelved(), *scans(), heard("Left_pressed", True), "tick", "action_navigate.u_response"]
+    assert work(play("warehouse_robot", *lines))[-3:] == [["cancel navigate"], [], ["leave"]]
+
+
+def test_the_warehouse_robot_asks_again_where_nobody_answers() -> None:
+    lines = [
+        *shelved(),
+        *scans(),
+        "action_navigate.u_response",
+        "service_leave.u_error",
+        f"service_leave.u_response{DONE}",
+    ]
+    assert work(play("warehouse_robot", *lines))[-3:] == [["leave"], ["leave"], ["raise"]]
 
 
 def test_the_warehouse_robot_asks_for_its_dock_three_times() -> None:
@@ -125,21 +142,23 @@ def test_the_sprayer_drives_a_route_to_its_end() -> None:
 @pytest.mark.slow
 def test_the_sprayer_gives_up_its_way_where_it_may_not_go_on() -> None:
     for trouble in (heard("stop"), at(100.5), at(0.0, -40.5), heard("automatic", False), "wait 1"):
-        assert wheels(play("sprayer", *AUTOMATIC, route(3), trouble))[-1] == ["cancel drive", "halt"]
+        sent = wheels(play("sprayer", *AUTOMATIC, route(3), trouble, "tick", "action_drive.u_canceled"))
+        assert sent[-3:] == [["cancel drive"], [], ["halt"]]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("before", "release", "sent_then"),
     [
-        pytest.param([*AUTOMATIC, route(3)], heard("automatic", False), ["cancel drive", "halt"], id="mode"),
+        pytest.param([*AUTOMATIC, route(3)], heard("automatic", False), ["cancel drive"], id="mode"),
         pytest.param([heard("heartbeat"), heard("stop")], heard("continue"), ["halt"], id="stop"),
     ],
 )
 def test_a_stick_that_was_held_before_it_counted_has_to_be_let_go(
     before: list[str], release: str, sent_then: list[str]
 ) -> None:
-    lines = [*before, heard("wish"), release, heard("wish"), "wait 0.4", heard("heartbeat"), heard("wish")]
+    end = ["action_drive.u_canceled"] if sent_then == ["cancel drive"] else []
+    lines = [*before, heard("wish"), release, heard("wish"), *end, "wait 0.4", heard("heartbeat"), heard("wish")]
     sent = wheels(play("sprayer", *lines))
     assert sent[len(before) + 1] == sent_then
     assert not any("obey" in names for names in sent[:-1])

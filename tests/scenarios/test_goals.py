@@ -159,7 +159,7 @@ def test_the_dock_is_asked_again_after_ever_longer_pauses() -> None:
 @pytest.mark.slow
 def test_the_warehouse_robot_is_slow_where_it_comes_near_to_something() -> None:
     run = run_of("warehouse_robot")
-    limits = [entry["data"]["data"] for entry in run.record if entry["topic"] == "/speed_limit"]
+    limits = [entry["data"]["speed_limit"] for entry in run.record if entry["topic"] == "/speed_limit"]
     assert limits[:4] == [0.3, 1.0, 0.3, 1.0]
 
 

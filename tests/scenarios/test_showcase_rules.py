@@ -28,6 +28,10 @@ def scans(*ranges: float, time: float = 1.0) -> Log:
     return [heard(f"{lidar}_scan", {"ranges": [*ranges]}, time) for lidar in ("Ahead", "Behind")]
 
 
+def limit(speed: float) -> dict[str, Any]:
+    return sent("speed_limit", {"speed_limit": speed})
+
+
 FREE = [*scans(2.0), *(heard(f"{side}_pressed", False) for side in ("Front", "Rear", "Left", "Right"))]
 IN_DOCK = [*FREE, heard("charge", {"percentage": 0.8})]
 ORDERED = [*IN_DOCK, heard("order", {})]
@@ -42,6 +46,9 @@ AT_HOME = [*HOMEBOUND, sent("navigate", HOME), heard("navigate"), sent("leave"),
 TWICE = [sent("dock"), heard("dock", REFUSED), sent("dock", time=6.0), heard("dock", REFUSED, 6.0)]
 THRICE = [*TWICE, sent("dock", time=36.0), heard("dock", event="u_error", time=36.0)]
 STOP = heard("stop")
+CANCELED = [sent("navigate", event="c_cancel"), heard("navigate", event="u_canceled")]
+STOPPED = [sent("drive", event="c_cancel"), heard("drive", event="u_canceled")]
+AGAIN = sent("navigate", {})
 
 WAREHOUSE = [
     ([*IN_AISLE, STOP], sent("navigate", {}), "stop is pressed"),
@@ -54,7 +61,7 @@ WAREHOUSE = [
     ([*UNDER_WAY, heard("charge", {"percentage": 0.19})], STOP, "the journey has not been cancelled"),
     ([*UNDER_WAY, STOP], STOP, "the journey has not been cancelled"),
     (UNDER_WAY, heard("served", time=1.6 + SLACK), "the journey has not been cancelled"),
-    ([*FREE, sent("speed_limit", 1.0), *scans(1.0)], STOP, "the limit is too high"),
+    ([*FREE, limit(1.0), *scans(1.0)], STOP, "the limit is too high"),
     (UNDER_WAY, sent("navigate", {}), "there is a journey already"),
     (OFF_DOCK, sent("navigate", {}), "nobody has let it into the aisle"),
     ([*ORDERED, heard("enter", DONE)], sent("navigate", {}), "it is in its dock"),
@@ -71,6 +78,11 @@ WAREHOUSE = [
     ([*OFF_DOCK, sent("enter")], sent("enter"), "it is there already"),
     (OFF_DOCK, sent("leave"), "it is not there"),
     (UNDER_WAY, sent("leave"), "it drives there"),
+    # The goal has not ended.
+    ([*UNDER_WAY, STOP, CANCELED[0]], sent("leave"), "it drives there"),
+    ([*UNDER_WAY, STOP, CANCELED[0], heard("continue")], sent("navigate", {}), "there is a journey already"),
+    ([*UNDER_WAY, STOP, CANCELED[0]], CANCELED[0], "there is no journey"),
+    ([*ARRIVED, sent("leave"), heard("order", {})], sent("navigate", {}), "nobody has let it into the aisle"),
     (IN_AISLE, sent("leave"), "it is not yet done there"),
     ([*AT_SHELF, STOP], sent("raise"), "the lift is stopped"),
     (ARRIVED, sent("raise"), "it is among people"),
@@ -89,9 +101,9 @@ WAREHOUSE = [
     ([*AT_HOME, *THRICE], sent("dock", time=100.0), "nobody was asked"),
     ([*AT_HOME, *TWICE[:2]], sent("dock", time=5.9), "it was refused just now"),
     ([*AT_HOME, *TWICE], sent("dock", time=35.9), "it was refused just now"),
-    (FREE, sent("speed_limit", 0.5), "that is no limit"),
-    ([*FREE, *scans(1.4)], sent("speed_limit", 1.0), "too fast for what is near"),
-    (FREE, sent("speed_limit", 0.3), "nothing is near"),
+    (FREE, limit(0.5), "that is no limit"),
+    ([*FREE, *scans(1.4)], limit(1.0), "too fast for what is near"),
+    (FREE, limit(0.3), "nothing is near"),
 ]
 
 
@@ -122,6 +134,9 @@ SPRAYER = [
     (DRIVING, sent("Left_shut", False), "that is to be sprayed"),
     (BY_HAND, sent("Left_shut", False), "that is to be sprayed"),
     (DRIVING, sent("obey", {}), "it drives by itself"),
+    ([*DRIVING, STOP, STOPPED[0]], sent("obey", {}), "it drives by itself"),
+    ([*DRIVING, STOP, STOPPED[0]], sent("halt"), "the wheels are not its own"),
+    ([*DRIVING, STOP, STOPPED[0]], STOPPED[0], "there is no journey"),
     ([*BY_HAND, STOP], sent("obey", {}), "the stick does not count"),
     ([*BY_HAND, heard("automatic", True)], sent("obey", {}), "the stick does not count"),
     (BY_HAND, sent("obey", {}, 2.1 + SLACK), "the stick does not count"),
@@ -156,9 +171,10 @@ def test_a_bad_recording_is_noticed(
     [
         (WarehouseRobot, [*AT_HOME, *THRICE, heard("try_again", time=50.0), sent("dock", time=50.0)]),
         (WarehouseRobot, [*UNDER_WAY, *scans(1.0), scans(0.4)[0], sent("navigate", event="c_cancel"), STOP]),
-        (WarehouseRobot, [*FREE, sent("speed_limit", 1.0), scans(1.0)[0], sent("speed_limit", 0.3), STOP]),
+        (WarehouseRobot, [*FREE, limit(1.0), scans(1.0)[0], limit(0.3), STOP]),
         (Sprayer, [*DRIVING, sent("Left_open", True), sent("Right_shut", False), heard("drive"), sent("halt")]),
-        (Sprayer, [*DRIVING, STOP, sent("drive", event="c_cancel"), sent("halt"), sent("Left_shut", False)]),
+        (WarehouseRobot, [*UNDER_WAY, heard("Left_pressed", True), *CANCELED, heard("Left_pressed", False), AGAIN]),
+        (Sprayer, [*DRIVING, STOP, *STOPPED, sent("halt"), sent("Left_shut", False)]),
         (Sprayer, [*BY_HAND, sent("obey", {}), place(100.1), sent("Left_shut", False), sent("obey", {})]),
         (
             Sprayer,

@@ -93,6 +93,10 @@ class EventHandler:
         """Has the event log written there; before the start."""
         self._log = log
 
+    def flush_log(self) -> None:
+        """Waits until all events so far are in the log."""
+        self._log.flush()
+
     def start(self) -> None:
         """Begins to act."""
         raise NotImplementedError

@@ -29,7 +29,10 @@ class WarehouseRobot(RuleBook):
         self.docked, self.asks_dock = True, False
         self.refused, self.refused_at = 0, NEVER
         self.phase = "idle"
-        self.under_way, self.failed_at = False, NEVER
+        #: Under way to the end of the goal: also while the goal is being cancelled.
+        self.under_way, self.canceling, self.failed_at = False, False, NEVER
+        #: Whether it has asked to leave the dock, or the aisle, and has no answer.
+        self.undocking = self.leaving = False
         self.limit: float | None = None
 
     def heard(self, name: str, value: Any) -> None:
@@ -52,7 +55,7 @@ class WarehouseRobot(RuleBook):
         """Takes what became of something that the robot was told to do, or what a person says of it."""
         match name:
             case "undock":
-                self.docked = self.docked and not done
+                self.docked, self.undocking = self.docked and not done, False
             case "dock" | "dock.u_error":
                 self.docked, self.asks_dock = done, False
                 self.refused, self.refused_at = 0 if done else self.refused + 1, self.time
@@ -61,11 +64,11 @@ class WarehouseRobot(RuleBook):
             case "enter" | "enter.u_error":
                 self.in_aisle, self.asks_aisle = done, False
             case "leave":
-                self.in_aisle = self.in_aisle and not done
+                self.in_aisle, self.leaving = self.in_aisle and not done, False
             case "lower":
                 self.lifted = self.lifted and not done
-            case "navigate" | "navigate.u_error":
-                self.under_way = False
+            case "navigate" | "navigate.u_error" | "navigate.u_canceled":
+                self.under_way = self.canceling = False
                 self.failed_at = self.time if name == "navigate.u_error" else NEVER
 
     def _go_on(self, name: str, *, done: bool) -> None:
@@ -117,7 +120,7 @@ class WarehouseRobot(RuleBook):
         wrong = first_fault(*self.obstacles)
         free = all(zone == "free" for zone in self.zones.values())
         return first_fault(
-            (self.under_way and wrong is not None, "the journey has not been cancelled"),
+            (self.under_way and not self.canceling and wrong is not None, "the journey has not been cancelled"),
             (self.limit == self.fast and not free, "the limit is too high"),
         )
 
@@ -130,7 +133,7 @@ class WarehouseRobot(RuleBook):
         fault = first_fault(
             *self.obstacles,
             (self.under_way, "there is a journey already"),
-            (not self.in_aisle, "nobody has let it into the aisle"),
+            (not self.in_aisle or self.leaving, "nobody has let it into the aisle"),
             (self.docked or self.asks_dock, "it is in its dock"),
             (self.phase not in ("outbound", "homebound"), "it has nowhere to go"),
             (self.lifted, "the shelf is lifted"),
@@ -143,8 +146,8 @@ class WarehouseRobot(RuleBook):
     def _navigate_cancel(self, _: Any) -> Fault:
         blind = self.time - min(self.scanned.values()) >= self.silence
         may_go_on = not blind and first_fault(*self.obstacles) is None
-        fault = first_fault((not self.under_way, "there is no journey"), (may_go_on, "it may go on"))
-        self.under_way = False
+        fault = first_fault((not self.under_way or self.canceling, "there is no journey"), (may_go_on, "it may go on"))
+        self.canceling = True
         return fault
 
     def _enter(self, _: Any) -> Fault:
@@ -158,11 +161,13 @@ class WarehouseRobot(RuleBook):
         return fault
 
     def _leave(self, _: Any) -> Fault:
-        return first_fault(
+        fault = first_fault(
             (not self.in_aisle, "it is not there"),
             (self.under_way, "it drives there"),
-            (self.phase in ("outbound", "homebound"), "it is not yet done there"),
+            (self.phase in ("outbound", "homebound") and not self.leaving, "it is not yet done there"),
         )
+        self.leaving = True
+        return fault
 
     def _raise(self, _: Any) -> Fault:
         fault = first_fault(
@@ -182,12 +187,14 @@ class WarehouseRobot(RuleBook):
         )
 
     def _undock(self, _: Any) -> Fault:
-        return first_fault(
+        fault = first_fault(
             (self.stopped, "the dock is stopped"),
             (not self.docked, "it is off its dock"),
             (self.phase != "outbound", "nothing is ordered"),
-            (not self.charged, "little power"),
+            (not self.charged and not self.undocking, "little power"),
         )
+        self.undocking = True
+        return fault
 
     def _dock(self, _: Any) -> Fault:
         fault = first_fault(
@@ -202,7 +209,7 @@ class WarehouseRobot(RuleBook):
 
     def _speed_limit(self, value: Any) -> Fault:
         free = all(zone == "free" for zone in self.zones.values())
-        self.limit = round(value, 3)
+        self.limit = round(value["speed_limit"], 3)
         return first_fault(
             (self.limit not in (self.slow, self.fast), "that is no limit"),
             (self.limit == self.fast and not free, "too fast for what is near"),
@@ -229,7 +236,9 @@ class Sprayer(RuleBook):
     def __init__(self) -> None:
         super().__init__()
         self.heard_at = dict.fromkeys(self.silences, NEVER)
-        self.within = self.filled = self.automatic = self.driving = False
+        self.within = self.filled = self.automatic = False
+        #: Driving to the end of the goal: also while the goal is being cancelled.
+        self.driving = self.canceling = False
         #: Whether the stick, while it is held, was pushed when it counted; None: nobody can tell.
         self.pushed: bool | None = False
         self.left, self.failed_at = 0, NEVER
@@ -243,7 +252,7 @@ class Sprayer(RuleBook):
     @property
     def may_steer(self) -> bool | None:
         """Whether the stick counts."""
-        return both(not self.stopped, self.speaks("radio"), not self.automatic)
+        return both(not self.stopped, self.speaks("radio"), not self.automatic, not self.driving)
 
     @property
     def safe(self) -> bool | None:
@@ -254,7 +263,7 @@ class Sprayer(RuleBook):
     def by_hand(self) -> bool | None:
         """Whether the stick is obeyed."""
         self._let_go()
-        return both(self.may_steer, self.pushed, self.speaks("stick"), not self.driving)
+        return both(self.may_steer, self.pushed, self.speaks("stick"))
 
     def sprays(self, section: str) -> bool | None:
         """Whether a section's valve is open."""
@@ -288,8 +297,8 @@ class Sprayer(RuleBook):
                 self.automatic = value
             case "route":
                 self.left = self.left if self.driving else len(value["poses"])
-            case "drive" | "drive.u_error":
-                self.driving = False
+            case "drive" | "drive.u_error" | "drive.u_canceled":
+                self.driving = self.canceling = False
                 self.failed_at = self.time if name == "drive.u_error" else NEVER
                 self.left -= name == "drive"
             case _ if name.endswith("_sprayed"):
@@ -297,7 +306,7 @@ class Sprayer(RuleBook):
         self._let_go()
 
     def overdue(self) -> Fault:
-        must_end = self.driving and both(self.safe, self.automatic) is False
+        must_end = self.driving and not self.canceling and both(self.safe, self.automatic) is False
         return first_fault((must_end, "the journey has not been cancelled"))
 
     def sent(self, name: str, value: Any) -> Fault:
@@ -321,8 +330,10 @@ class Sprayer(RuleBook):
                 )
             case "drive.c_cancel":
                 may_go_on = both(self.safe, self.automatic) is True
-                fault = first_fault((not self.driving, "there is no journey"), (may_go_on, "it may go on"))
-                self.driving = False
+                fault = first_fault(
+                    (not self.driving or self.canceling, "there is no journey"), (may_go_on, "it may go on")
+                )
+                self.canceling = True
                 return fault
         fault = first_fault(
             (self.driving, "there is a journey already"),

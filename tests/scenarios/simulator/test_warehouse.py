@@ -122,7 +122,7 @@ def test_nav2_keeps_to_the_limit_and_to_its_distance() -> None:
     speeds = []
     for limit in (None, 0.3, 0.8):
         if limit is not None:
-            navigation.hear(world, "/speed_limit", {"data": limit})
+            navigation.hear(world, "/speed_limit", {"percentage": False, "speed_limit": limit})
         passed(world, navigation, 2.0)
         speeds.append(world.drive.speed[0])
     assert speeds == pytest.approx([0.2, 0.3, 0.8], abs=0.05)
