@@ -26,7 +26,8 @@ def play(name: str, *lines: str) -> list[list[str]]:
     assert [answer["by"] for answer in answers] == [None] * 2 * len(lines)
     pairs = zip(answers[::2], answers[1::2], strict=True)
     happened = [" ".join(line["happened"] + tick["happened"]) for line, tick in pairs]
-    return [[*dict.fromkeys(re.findall(r"(?:message|service)_(\w+)\.c_trigger", text))] for text in happened]
+    sent = [re.findall(r"(?:message|service|action)_(\w+)\.c_(trigger|cancel)", text) for text in happened]
+    return [[*dict.fromkeys(name if way == "trigger" else f"cancel {name}" for name, way in names)] for names in sent]
 
 
 def heard(name: str, value: object = None) -> str:
@@ -35,6 +36,12 @@ def heard(name: str, value: object = None) -> str:
 
 def answered(name: str, result: str = "") -> str:
     return f"service_{name}.u_response{result}"
+
+
+@pytest.fixture(autouse=True)
+def nav2(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The definitions of Nav2 are known, as they are beside a robot that drives with it."""
+    monkeypatch.setenv("ROBOSC_INTERFACE_PATH", str(PAGE.parent.parent / "tests" / "ros" / "interfaces" / "ros2"))
 
 
 @EACH
@@ -48,7 +55,7 @@ def test_nothing_is_said_of_it(name: str, command: str) -> None:
 def test_the_page_shows_each_model() -> None:
     shown = re.findall(r"^```robosc\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
     assert sorted(shown) == sorted((PATTERNS / f"{name}.rscd").read_text(encoding="utf-8") for name in NAMES)
-    assert len(NAMES) == 13
+    assert len(NAMES) == 15
 
 
 def test_the_spindle_turns_behind_the_closed_guard() -> None:
@@ -67,6 +74,19 @@ def test_the_part_is_held_by_one_hand_at_least() -> None:
     steps = ("grip", "take", "release", "put")
     assert play("hand_over", "tick", *map(answered, steps)) == [["grip"], ["take"], ["release"], ["put"], ["grip"]]
     assert play("hand_over", "tick", "service_grip.u_error")[1] == ["grip"]
+
+
+def test_the_lift_rises_when_the_goal_of_the_base_has_ended() -> None:
+    coming, going = heard("present", True), heard("present", False)
+    sent = play("stop_then_act", "tick", coming, "tick", "action_patrol.u_canceled", answered("raise"), going)
+    assert sent == [["patrol"], ["cancel patrol"], [], ["raise"], [], ["lower"]]
+    assert play("stop_then_act", "tick", coming, "action_patrol.u_error")[2] == ["raise"]
+
+
+def test_a_new_point_replaces_the_old_goal() -> None:
+    point = heard("point", {"pose": {"position": {"x": 1.0}}})
+    lines = (point, point, "tick", point, "action_go.u_canceled", "tick", "action_go.u_response")
+    assert play("replace_goal", *lines) == [["go"], ["cancel go"], [], [], ["go"], [], []]
 
 
 def test_docking_is_tried_three_times_with_pauses() -> None:
