@@ -174,3 +174,11 @@ def test_a_section_sprays_where_it_is_due_in_the_field() -> None:
         last = play("sprayer", *ready, end)[-1]
         assert "Left_open" not in last
         assert "Left_shut" in last
+
+
+@pytest.mark.parametrize(("name", "view"), [("object_finder", "scan_front"), ("push_ball", "scan")])
+def test_a_robot_whose_lidar_falls_silent_halts(name: str, view: str) -> None:
+    clear = heard(view, {"ranges": [2.0] * 360})
+    lines = [heard("ball_correction", 0.0), clear] if name == "push_ball" else [clear]
+    sent = play(name, *lines, "wait 0.4", clear, "wait 0.4", "wait 0.2", clear)
+    assert sent[-6:] == [*[["move"]] * 4, ["halt"], ["move"]]
