@@ -131,10 +131,13 @@ def test_a_route_is_driven_to_its_end() -> None:
 
 
 def test_the_button_comes_before_the_joystick_and_that_before_the_planner() -> None:
-    lines = ("tick", heard("Planner_wish"), heard("Stick_wish"), heard("stop"), heard("continue"))
-    assert play("priority", *lines) == [["halt"], ["follow"], ["obey"], ["halt"], ["obey"]]
-    lines = (*lines[:3], "wait 0.4", heard("Planner_wish"), "wait 0.1")
-    assert play("priority", *lines)[3:] == [["obey"], ["obey"], ["follow"]]
+    released, pressed, again = heard("pressed", False), heard("pressed", True), heard("continue")
+    wishes = (released, again, heard("Planner_wish"), heard("Stick_wish"))
+    sent = play("priority", *wishes, pressed, released, again)
+    assert sent == [["halt"], ["halt"], ["follow"], ["obey"], ["halt"], ["halt"], ["obey"]]
+    lines = (*wishes, "wait 0.4", released, heard("Planner_wish"), "wait 0.1")
+    assert play("priority", *lines)[4:] == [["obey"], ["obey"], ["obey"], ["follow"]]
+    assert play("priority", *wishes, "wait 0.4", heard("Stick_wish"), "wait 0.1")[-1] == ["halt"]
 
 
 def test_nothing_moves_before_the_test_has_passed() -> None:
