@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic, Edit
     from robosc.language import Reading, Reference, Text
 
+#: So many syntax errors of one item, of which each hides the next, are mended.
+_MOST_HIDDEN = 8
 _STRINGS = (Kind.STRING, Kind.OPEN_STRING)
 
 
@@ -71,8 +73,8 @@ def objection(
 
     `edits` are those of each file, by the paths that findings carry, `mended` the findings that they are to mend. A
     model is worse where less of it can be read, where a finding is new or one of `mended` stays, where a name stands
-    for something else, or where a comment or a string has changed. A syntax error hides findings: to mend it may
-    reveal them.
+    for something else, or where a comment or a string has changed. A syntax error hides findings of the rules: to mend
+    it may reveal them. But for each syntax error that is mended there must be one less.
     """
     return _Comparison(before, after, edits).objection(mended)
 
@@ -81,7 +83,8 @@ def safe_edits(before: Checked, check: Callable[[str], Checked]) -> list[Edit]:
     """The edits of a file's findings, of those with exactly one way to mend them, that leave it no worse.
 
     `check` reads and checks the model with another text in place of the file's. Syntax errors come first: other edits
-    are returned where no edit mends one.
+    are returned where no edit mends one. A syntax error that hides others of its item is mended only where those can
+    be mended, too.
     """
     text = before.reading.file.text
     own = [finding for finding in before.findings if finding.file == text.file and finding.edits]
@@ -100,7 +103,7 @@ def _safe(findings: Sequence[Diagnostic], before: Checked, check: Callable[[str]
     if objection(before, check(text.after(edits)), {text.file: edits}, chosen) is None:
         return chosen
     if len(findings) == 1:
-        return ()
+        return chosen if _leads_on(chosen[0], before, check) else ()
     half = len(findings) // 2
     first, last = _safe(findings[:half], before, check), _safe(findings[half:], before, check)
     both = _apart([*first, *last])
@@ -108,6 +111,24 @@ def _safe(findings: Sequence[Diagnostic], before: Checked, check: Callable[[str]
         return first or last
     edits = _edits(both)
     return both if objection(before, check(text.after(edits)), {text.file: edits}, both) is None else first
+
+
+def _leads_on(finding: Diagnostic, before: Checked, check: Callable[[str], Checked]) -> bool:
+    """Whether to mend a syntax error reveals another one, and to mend that in the end leaves fewer than before."""
+    if finding.rule != "syntax":
+        return False
+    for _ in range(_MOST_HIDDEN):
+        text = before.reading.file.text
+        edits = _edits([finding])
+        after = check(text.after(edits))
+        comparison = _Comparison(before, after, {text.file: edits})
+        if comparison.objection([finding]) is None:
+            return True
+        revealed = comparison.revealed(finding)
+        if revealed is None or comparison.objection([finding], revealed=1) is not None:
+            return False
+        finding, before = revealed, after
+    return False
 
 
 def _apart(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
@@ -140,8 +161,8 @@ class _Comparison:
         self._files_after = after.reading.files
         self._moved = {path: _Offsets(file.text, edits.get(path, ())) for path, file in self._files.items()}
 
-    def objection(self, mended: Sequence[Diagnostic]) -> str | None:
-        """Why it is worse."""
+    def objection(self, mended: Sequence[Diagnostic], *, revealed: int = 0) -> str | None:
+        """Why it is worse, so many syntax errors that were hidden aside."""
         for path in self._files:
             if path not in self._files_after:
                 return f"{path} would be imported no more"
@@ -150,7 +171,7 @@ class _Comparison:
             if not self._keeps_strings(path, mended):
                 return "a string would change"
         is_syntax = any(finding.rule == "syntax" for finding in mended)
-        worse = self._syntax_error(mended) if is_syntax else self._new_finding(mended)
+        worse = self._syntax_error(mended, revealed) if is_syntax else self._new_finding(mended)
         if worse is not None:
             return f"line {worse.span.line}: {worse.message}"
         name = None if is_syntax else next(self._changed_names(), None)
@@ -176,13 +197,21 @@ class _Comparison:
         strings = set(_strings(self._files_after[path].text))
         return kept <= strings and all(moved.is_written(*string) for string in strings - kept)
 
-    def _syntax_error(self, mended: Sequence[Diagnostic]) -> Diagnostic | None:
-        """A syntax error that stays, or the first of them where there are more than before."""
-        before, after = (
-            [finding for finding in checked.findings if finding.rule == "syntax"]
-            for checked in (self._before, self._after)
-        )
-        if len(after) > len(before):
+    def revealed(self, mended: Diagnostic) -> Diagnostic | None:
+        """The first syntax error that is new and stands behind a mended one; None where it has no edit."""
+        before, after = _syntax_errors(self._before), _syntax_errors(self._after)
+        known = {(self._start(found), found.message) for found in before if found.file == mended.file}
+        text = self._files_after[mended.file].text
+        for found in after:
+            place = _start(found, text) if found.file == mended.file else -1
+            if place >= self._start(mended) and (place, found.message) not in known:
+                return found if found.edits else None
+        return None
+
+    def _syntax_error(self, mended: Sequence[Diagnostic], revealed: int) -> Diagnostic | None:
+        """A syntax error that stays, or the first of them where not one less is left for each that is mended."""
+        before, after = _syntax_errors(self._before), _syntax_errors(self._after)
+        if len(after) > len(before) - len(mended) + revealed:
             return after[0]
         places = {(found.file, _start(found, self._files_after[found.file].text), found.message) for found in after}
         return next((found for found in mended if (found.file, self._start(found), found.message) in places), None)
@@ -230,6 +259,10 @@ class _Comparison:
                     found = declared_after.get(after.target)
                     if found is None or found[:2] != (place[0], self._moved[place[0]].after(place[1])):
                         yield name
+
+
+def _syntax_errors(checked: Checked) -> list[Diagnostic]:
+    return [finding for finding in checked.findings if finding.rule == "syntax"]
 
 
 def _strings(text: Text) -> Iterator[tuple[int, int]]:

@@ -102,12 +102,17 @@ def _mend(model: str, paths: Paths) -> None:
         content = before = written.decode("utf-8")
     except UnicodeDecodeError:
         return  # To write the text anew would lose the bytes that can't be read.
+    seen = {content}
     for _ in range(_ROUNDS):
         found = checked(content)
         edits = safe_edits(found, checked)
         if not edits:
             break
-        content = found.reading.file.text.after(edits, content)
+        after = found.reading.file.text.after(edits, content)
+        if after in seen:
+            break
+        seen.add(after)
+        content = after
     if content != before:
         write_file(model, content)
 

@@ -163,7 +163,7 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Rep
     token, before = tokens[index], tokens[index - 1]
     symbols = _symbols(token, wanted)
     if index < block.after and _is_name(tokens, index, wanted):
-        return Repair(f"write `^{token.text}` where a keyword is used as a name", f"^{token.text}")
+        return _as_name(tokens, index, wanted)
     stated = _foreign(tokens, index) if token.text in _FOREIGN else _statement_hint(tokens, index, wanted, block)
     if stated is not None:
         return stated
@@ -174,7 +174,7 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Rep
     if before.is_keyword(",") and token.kind is Kind.SYMBOL:
         return Repair("leave out the comma before it", elsewhere=((before.start, before.end, ""),))
     if "->" in wanted and block.level is RULES and (token.is_first or before.text == "default"):
-        return _before(token, "write `->` before the value that the rule gives", "->")
+        return _value_hint(token, has_value=index < block.after and not token.is_keyword("}"))
     if token.text in {"=", ":", ":=", "=>", "->"} and len(symbols) == 1:
         return Repair(f"write `{symbols[0]}`", symbols[0])
     if "." in {token.text, before.text} and Kind.NUMBER in {token.kind, before.kind, tokens[index + 1].kind}:
@@ -187,11 +187,21 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Rep
 def _is_name(tokens: Tokens, index: int, wanted: Sequence[str]) -> bool:
     """Whether a keyword stands where a name was meant, and no name is missing before it."""
     token, before, after = tokens[index], tokens[index - 1], tokens[index + 1]
-    if "UnreservedName" not in wanted or not is_reserved(token.text) or token.text not in following():
+    if token.kind is not Kind.WORD or "UnreservedName" not in wanted:
+        return False
+    if not is_reserved(token.text) or token.text not in following():
         return False
     if before.is_keyword("requirement", "property") and after.text in following()[token.text]:
         return False
     return after.is_first or after.kind is not Kind.WORD or after.text in words_of("Base")
+
+
+def _as_name(tokens: Tokens, index: int, wanted: Collection[str]) -> Repair:
+    """A hint for a keyword that was meant as a name. Where a type stands there is an edit if such a name is written."""
+    written_so = f"^{tokens[index].text}"
+    is_type = any(name == "a type" and core <= set(wanted) for name, _, core in _GROUPS)
+    is_edit = not is_type or any(token.text == written_so for token in tokens)
+    return Repair(f"write `{written_so}` where a keyword is used as a name", written_so if is_edit else None)
 
 
 def misread(tokens: Tokens, index: int, wanted: Collection[str]) -> int:
@@ -219,6 +229,12 @@ def _foreign(tokens: Tokens, index: int) -> Repair:
 def _before(token: Token, said: str, text: str) -> Repair:
     """A hint that something is to be written before a token."""
     return Repair(said, elsewhere=((token.start, token.start, f"{text} "),))
+
+
+def _value_hint(token: Token, *, has_value: bool) -> Repair | str:
+    if has_value:
+        return _before(token, "write `->` before the value that the rule gives", "->")
+    return "write `->` and the value that the rule gives"
 
 
 def _other_quotes(tokens: Tokens, index: int) -> tuple[tuple[int, int, str], ...]:
@@ -347,4 +363,13 @@ def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) 
         return "a name is made of the letters a to z and A to Z, of digits and of `_`"
     if token.text == "if" and tokens[block.first].is_keyword("on"):
         return "the condition of a transition stands before `do` and `goto`, as in `on … if … do … goto …`"
-    return Repair(f"did you mean `{close[0]}`?", close[0]) if close else None
+    return _keyword_hint(token.text, close[0]) if close else None
+
+
+def _keyword_hint(word: str, close: str) -> Repair | str:
+    """The hint for a word that is like a keyword; where the keyword is a part of it, what is left is no mistyping."""
+    if word.startswith(close):
+        return f"is a blank missing behind `{close}`?"
+    if word.endswith(close):
+        return f"is a blank missing before `{close}`?"
+    return Repair(f"did you mean `{close}`?", close)

@@ -219,6 +219,88 @@ def test_a_lone_brace_too_many_goes() -> None:
     assert fixed(content) == ROBOT.replace("goto moving }", "goto moving }\n    \n   ")
 
 
+DOORS = """robot R {
+  datatype enum Level from double to { value > 1.0 -> high default -> low }
+  constant c: integer = 1
+  component Door {
+    action fold with request: none, response: none, feedback: none
+    incoming message togo with type: none
+    behaviour {
+      variable n: integer(0..3)
+      variable eager: boolean
+      variable locked: boolean
+      initial marked state idle { on request to togo do n := 2 goto idle }
+    }
+  }
+  requirement togo needs Door.eager
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "keyword"),
+    [
+        ("action fold", "actionfold", "behind `action`"),
+        ("component Door", "componentDoor", "behind `component`"),
+        ("datatype enum", "datatypeenum", "behind `datatype`"),
+        ("initial marked", "initialmarked", "behind `initial`"),
+        ("request to togo", "requesttotogo", "behind `request`"),
+        ("goto idle", "gotos", "behind `goto`"),
+        ("feedback: none", "feedback0.5 none", "behind `feedback`"),
+        ("type: none\n    behaviour", "type: none nonebehaviour", "before `behaviour`"),
+    ],
+)
+def test_no_keyword_takes_the_place_of_a_longer_word(old: str, new: str, keyword: str) -> None:
+    content = DOORS.replace(old, new)
+    assert content != DOORS
+    assert f"is a blank missing {keyword}?" in {finding.hint for finding in checked(content).findings}
+    assert fixed(content) == content
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("= 1", "= ()"),
+        ("= 1", "= 1.0*/"),
+        ("eager: boolean", "eager:: boolean"),
+        ("Door.eager", "Door.{"),
+        (":= 2", ":= := 2"),
+        ("locked: boolean", "locked: type = true"),
+        ("-> high default", "default"),
+        ("1.0 -> high default -> low", "1.0\n default -> low"),
+        ("default -> low", "default"),
+    ],
+)
+def test_nothing_is_written_before_what_is_no_name_or_value(old: str, new: str) -> None:
+    content = DOORS.replace(old, new)
+    assert content != DOORS
+    syntax = [finding for finding in checked(content).findings if finding.rule == "syntax"]
+    assert syntax
+    assert not any(finding.edits for finding in syntax)
+    assert fixed(content) == content
+
+
+def test_the_name_of_a_type_that_is_a_keyword() -> None:
+    content = DOORS.replace("Level", "^type").replace("locked: boolean", "locked: type = low")
+    assert fixed(content) == content.replace("locked: type", "locked: ^type")
+
+
+def test_a_syntax_error_that_becomes_another_one_stays() -> None:
+    content = DOORS.replace("action fold", "actionfold")
+    before = checked(content)
+    (finding,) = [found for found in before.findings if found.rule == "syntax"]
+    text, edits = before.reading.file.text, [at(content, "actionfold", "action")]
+    why = objection(before, checked(text.after(edits)), {text.file: edits}, [finding])
+    assert why == "line 5: found `request`, expected `with`"
+
+
+def test_errors_of_one_item_of_which_one_hides_the_next() -> None:
+    content = DOORS.replace("needs Door.eager", "needs not Door.eager or not Door.locked")
+    assert fixed(content) == content.replace("not ", "! ")
+    hopeless = DOORS.replace("needs Door.eager", "needs not Door.eager or not Door.{")
+    assert fixed(hopeless) == hopeless
+
+
 def objected(content: str, *edits: Edit) -> str | None:
     before = checked(content)
     text = before.reading.file.text

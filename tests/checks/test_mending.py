@@ -112,6 +112,7 @@ TOLD = {
         "write a whole number or declare it double",
         "write an integer from 1 on",
         "write an object value",
+        "write `->` and the value",
         "write a larger one",
         "write a smaller one",
         "write another expression",

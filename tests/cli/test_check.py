@@ -5,6 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from robosc.checks.fixing import Checked
+from robosc.diagnostics import Edit
+
 from .conftest import DOOR, Run
 
 
@@ -126,6 +129,21 @@ def test_a_fix_that_makes_a_model_worse_is_left_out(run: Run, tmp_path: Path) ->
     answer = run("check", model, "--fix")
     assert "did you mean `limit`?" in answer.stdout
     assert model.read_text() == text
+
+
+def test_rounds_end_where_a_text_was_seen_before(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    seen = []
+
+    def forth_and_back(found: Checked, _: object) -> list[Edit]:
+        text = found.reading.file.text
+        seen.append(text.content)
+        start = text.content.index(" {")
+        return [Edit(text.span(start - 1, start), "n" if text.content[start - 1] == "r" else "r")]
+
+    monkeypatch.setattr("robosc.cli.check.safe_edits", forth_and_back)
+    (tmp_path / "door.rscd").write_text(DOOR)
+    run("check", tmp_path / "door.rscd", "--fix")
+    assert seen == [DOOR, DOOR.replace("Door", "Doon", 1)]
 
 
 def test_what_is_to_be_chosen_is_not_fixed(run: Run, tmp_path: Path) -> None:
