@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.communication import IDLE
 from robosc.semantics.durations import LONGEST, SHORTEST, UNITS
 from robosc.semantics.edges import edges_of
 from robosc.semantics.operators import FUNCTIONS
@@ -41,6 +42,14 @@ def _initial_location(plant: sct.Plant, model: Model) -> Iterator[Fault]:
     initial = sum(location.initial for location in plant.locations)
     if initial != 1 and not (initial and is_from_cif(model.root)):
         yield plant, f"plant '{plant.name}' has {initial or 'no'} initial locations; it starts in exactly one"
+
+
+def _end_of_action(plant: sct.Plant, _model: Model) -> Iterator[Fault]:
+    """An action that can be canceled ends later: models of the first two editions took the cancel for the end."""
+    ended = (edge for edge in edges_of(plant) if edge.event.kind == sct.EventKind.cancel and edge.target.name == IDLE)
+    if plant.kind == sct.PlantKind.action and any(ended):
+        found = f"the action '{plant.origin or plant.name}' ends where it is canceled, as in older models"
+        yield plant, f"{found}; make this model anew from its text: `robosc transform MODEL.rscd --to xmi`"
 
 
 def _initial_value(variable: sct.DiscreteVariable, model: Model) -> Iterator[Fault]:
@@ -195,7 +204,7 @@ CHECKS: Checks = {
     ex.Expression: [fitting_operands],
     sct.SupervisoryControlModel: [unique("plants", "enumerations"), _used, _predicates],
     ex.Enumeration: [unique("literals")],
-    sct.Plant: [unique("events", "inputs", "variables", "locations"), _initial_location, _one_edge],
+    sct.Plant: [unique("events", "inputs", "variables", "locations"), _initial_location, _one_edge, _end_of_action],
     object: [_references],
     sct.Input: [_PLAIN],
     sct.DiscreteVariable: [_PLAIN, typed("initial", lambda variable: declared_type(variable.type)), _initial_value],

@@ -100,6 +100,13 @@ def _updated_twice(given: Any) -> None:
     p.locations[0].edges[0].updates.append(update)
 
 
+def _older_action(given: Any) -> None:
+    p = _plants(given)[0]
+    p.kind, p.origin = sct.PlantKind.action, "Base.drive"
+    p.events[0].kind = sct.EventKind.cancel
+    p.locations[0].edges[0].target.name = "idle"
+
+
 def _wrong_update(given: Any) -> None:
     _plants(given)[0].locations[0].edges[0].updates[0].value = ex.BooleanLiteral(value=True)
 
@@ -279,6 +286,15 @@ BROKEN: list[tuple[Callable[[Any], None], list[str]]] = [
     ),
     (_negative_literal, ["a literal has no sign; the sign is a UnaryMinus around it"]),
     (_access, ["Access belongs in a robosc model only"]),
+    (
+        _older_action,
+        [
+            (
+                "the action 'Base.drive' ends where it is canceled, as in older models; make this model anew from its"
+                " text: `robosc transform MODEL.rscd --to xmi`"
+            )
+        ],
+    ),
     (_function_of_arrays, ["this call of 'max' has no place in an sct model"]),
     (_unknown_function, ["there is no function 'median'"]),
     (_no_argument, ["'min' has another number of arguments"]),
