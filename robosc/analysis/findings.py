@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from robosc.analysis.causes import Absent
     from robosc.analysis.observations import (
         Example,
+        ForbiddenCancel,
         Hindrance,
         NeverEnabled,
         Observations,
@@ -51,6 +52,7 @@ def findings_of(model: sct.SupervisoryControlModel, observations: Observations) 
             *with_causes(absent, causes(observations)),
             *map(words_for.silent_restricted, observations.silent_restricted),
             *map(words_for.self_cancelling, observations.self_cancelling),
+            *map(words_for.forbidden_cancel, observations.forbidden_cancels),
             *map(words_for.shared_server, observations.shared_servers),
             *map(words_for.provide_gap, observations.provide_gaps),
             *map(words_for.shared_topic_conflict, observations.shared_topic_conflicts),
@@ -143,6 +145,18 @@ class _Findings:
             f"`{name(plant_of(observed.event))}` is cancelled as soon as it has started: right after its start "
             f"{forbid(observed.requirements, 'it')}",
             f"what an action needs must hold while it runs, too: {led}",
+            Severity.ERROR,
+        )
+
+    def forbidden_cancel(self, observed: ForbiddenCancel) -> Diagnostic:
+        action, requirement = name(plant_of(observed.event)), called([observed.requirement])
+        return _finding(
+            observed.requirement,
+            "cancel-held-back",
+            f"{requirement} holds back the cancel of `{action}` where it is due, and the controller could not stop it: after"
+            f"  {in_words(observed.trace, self._model)}",
+            f"a start can be refused, a cancel can't: take `cancel from {action.rpartition('.')[2]}` out of the"
+            f" requirement, or restrict the start of `{action}`",
             Severity.ERROR,
         )
 

@@ -74,6 +74,15 @@ class SilentRestricted:
 
 
 @dataclass(frozen=True)
+class ForbiddenCancel:
+    """A cancel that is due, and that an order, a count or an automaton forbids after `trace`."""
+
+    event: sct.Event
+    requirement: sct.Requirement
+    trace: tuple[TraceStep, ...]
+
+
+@dataclass(frozen=True)
 class SharedServer:
     """Two services or two actions of one ROS name that can be under way together; `trace` leads there."""
 
@@ -169,6 +178,7 @@ class Observations:
     never_enabled: tuple[NeverEnabled, ...]
     silent_restricted: tuple[SilentRestricted, ...]
     self_cancelling: tuple[SelfCancelling, ...]
+    forbidden_cancels: tuple[ForbiddenCancel, ...]
     shared_servers: tuple[SharedServer, ...]
     provide_gaps: tuple[ProvideGap, ...]
     shared_topic_conflicts: tuple[SharedTopicConflict, ...]
@@ -192,6 +202,7 @@ class Observer:
             tuple(self._never_enabled()),
             tuple(self._silent_restricted()),
             tuple(self._self_cancelling()),
+            tuple(self._forbidden_cancels()),
             tuple(self._shared_servers()),
             tuple(self._provide_gaps()),
             tuple(self._shared_topic_conflicts()),
@@ -294,6 +305,21 @@ class Observer:
                 yield SelfCancelling(
                     event, tuple(requirement for requirement in at_fault if requirement.automaton is None)
                 )
+
+    def _forbidden_cancels(self) -> Iterator[ForbiddenCancel]:
+        for event, permission in self._permissions.items():
+            if event.kind != sct.EventKind.cancel:
+                continue
+            relation = permission.relation
+            due = self._system.controlled & relation.enabled
+            stated = [requirement for requirement in relation.asked if requirement.automaton is not None]
+            for requirement, allowing in relation.asked.items():
+                if requirement.automaton is None:
+                    due &= allowing
+            for requirement in stated:
+                held = due & ~relation.asked[requirement]
+                if held.satisfiable():
+                    yield ForbiddenCancel(event, requirement, self._system.trace(self._system.path_to(held)))
 
     def _shared_servers(self) -> Iterator[SharedServer]:
         calls = [plant for plant in self._system.model.plants if plant.kind in _CALLS and plant.topic]

@@ -16,6 +16,7 @@ from robosc.diagnostics import Severity
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import data_type, event, meant
 from robosc.semantics.cone_of_influence import accesses
+from robosc.semantics.instances import InstanceVariable
 from robosc.semantics.naming import written
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ def cancel_is_not_the_end(base: rsc.Base) -> Iterator[Finding]:
                 continue
             action = communication_of(transition.communicationType)
             waits = [*transition.target.transitions, *common]
-            if action is not None and not _hears(waits, action, rsc.ResultType.canceled):
+            if action is not None and not _hears(waits, transition.communicationType, rsc.ResultType.canceled):
                 yield _taken_for_the_end(transition, action, f"{component.name}.{transition.target.name}")
     for automaton in stated(rsc.AutomatonRequirement, base):
         yield from _forbidden_ends(automaton)
@@ -82,37 +83,53 @@ def _forbidden_ends(automaton: rsc.AutomatonRequirement) -> Iterator[Finding]:
 def _variables_read(base: rsc.Base) -> Iterator[Finding]:
     """The transitions on a cancel that assign a variable which a requirement on another command reads."""
     known = instances(base)
-    read: dict[rsc.Variable, list[tuple[rsc.CommunicationRequirement, set[rsc.CommunicationType | None]]]] = {}
-    for requirement in known.statements(rsc.CommunicationRequirement):
-        if requirement.element.condition is None or requirement.element.target is None:
-            continue
-        restricted = {communication_of(target) for target in requirement.element.target.communicationTypes}
-        for access in accesses(known.expanded(requirement.element.condition, requirement.within)):
-            if isinstance(access.item, rsc.Variable):
-                read.setdefault(access.item, []).append((requirement.element, restricted))
-    for _, behaviour in behaviours(base) if read else ():
-        every = [*common_transitions(behaviour.automaton)]
-        every += (transition for state in states(behaviour.automaton) for transition in state.transitions)
-        for transition in every:
-            if not _is_on(transition, rsc.ResultType.cancel):
-                continue
-            action = communication_of(transition.communicationType)
-            for assignment in transition.assignments:
+    read = _readers(known)
+    reported: set[ex.Located] = set()
+    for instance in known if read else ():
+        for transition, _ in instance.transitions:
+            port = (
+                known.port(transition.communicationType, instance)
+                if _is_on(transition, rsc.ResultType.cancel)
+                else None
+            )
+            for assignment in transition.assignments if port is not None else ():
                 variable = assigned_variable(assignment)
-                others = (
-                    [reader for reader, restricted in read.get(variable, ()) if restricted - {action}]
-                    if variable
-                    else []
-                )
-                if action is not None and variable is not None and others:
-                    name = written(action.name)
+                readers = read.get(InstanceVariable(instance, variable), ()) if variable is not None else ()
+                others = [reader for reader, restricted in readers if restricted - {port}]
+                place = assignment if instance.unit is base else instance.component
+                if port is not None and variable is not None and others and place not in reported:
+                    reported.add(place)
+                    name = written(port.communication.name)
                     yield Finding(
-                        assignment,
+                        place,
                         f"`{variable.name}` changes when the controller asks to cancel `{name}`, and a requirement on"
                         f" another command reads it: the robot may still move",
                         f"assign it `on canceled from {name}`, or read `{name}.running` in the requirement",
                         related=others[0],
                     )
+
+
+def _readers(known: Instances) -> dict[InstanceVariable, list[tuple[rsc.Requirement, set[PortInstance | None]]]]:
+    """The requirements that read each variable, each with what it restricts."""
+    conditions: list[tuple[rsc.Requirement, set[PortInstance | None], ex.Expression | None, Instance | None]] = []
+    for required in known.statements(rsc.CommunicationRequirement):
+        targets = required.element.target.communicationTypes if required.element.target else ()
+        restricted = {known.port(target, required.within) for target in targets}
+        conditions.append((required.element, restricted, required.element.condition, required.within))
+    for automaton in known.statements(rsc.AutomatonRequirement):
+        events = _events_of(automaton.element)
+        requests = [reference for reference in events if _kind(reference) == rsc.ResultType.request]
+        restricted = {known.port(reference.communicationType, automaton.within) for reference in requests}
+        for state in automaton.element.states:
+            guards = (transition.guard for transition in state.transitions)
+            conditions += ((automaton.element, restricted, guard, automaton.within) for guard in guards)
+    found: dict[InstanceVariable, list[tuple[rsc.Requirement, set[PortInstance | None]]]] = {}
+    for requirement, restricted, condition, within in conditions:
+        for access in accesses(None if condition is None else known.expanded(condition, within)):
+            variable = known.variable(access, within)
+            if variable is not None:
+                found.setdefault(variable, []).append((requirement, restricted))
+    return found
 
 
 @rule("answer-unheard", Severity.WARNING)
@@ -242,7 +259,7 @@ def failure_unheard(base: rsc.Base) -> Iterator[Finding]:
             port = known.port(transition.communicationType, instance)
             if port is None or isinstance(port.communication, rsc.Message):
                 continue
-            missing = _unheard(state, common, port, port in cancelable)
+            missing = _unheard(state, common, transition.communicationType, port in cancelable)
             place = transition if instance.unit is base else instance.component
             if missing and place not in reported:
                 reported.add(place)
@@ -257,37 +274,48 @@ def failure_unheard(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _unheard(
-    state: rsc.State, common: Iterable[rsc.Transition], port: PortInstance, cancelable: bool
+    state: rsc.State, common: Iterable[rsc.Transition], awaited: rsc.CommunicationReference, cancelable: bool
 ) -> list[rsc.ResultType]:
     """The ends of a call or goal that a state which waits for its response does not react to."""
-    own, action = [*state.transitions, *common], port.communication
+    own, call = [*state.transitions, *common], awaited.communicationType
+    if any(isinstance(transition, rsc.TimedTransition) for transition in state.transitions) or _leaves_at_the_end(
+        own, call
+    ):
+        return []
     missing: list[rsc.ResultType] = []
-    timed = any(isinstance(transition, rsc.TimedTransition) for transition in state.transitions)
-    if not timed and not _hears(own, action, rsc.ResultType.error):
+    if not _hears(own, awaited, rsc.ResultType.error):
         missing.append(rsc.ResultType.error)
-    if isinstance(action, rsc.Action) and cancelable and not _hears(own, action, rsc.ResultType.canceled):
+    if isinstance(call, rsc.Action) and cancelable and not _hears(own, awaited, rsc.ResultType.canceled):
         leaves = any(
             transition.target is not None and transition.target is not state
             for transition in own
-            if _is_on(transition, rsc.ResultType.cancel) and _names(transition, action)
+            if _is_on(transition, rsc.ResultType.cancel) and _names(transition, awaited)
         )
-        if not leaves and not timed:
+        if not leaves:
             missing.append(rsc.ResultType.canceled)
     return missing
+
+
+def _leaves_at_the_end(transitions: Iterable[rsc.Transition], call: rsc.CommunicationType | None) -> bool:
+    """Whether a silent transition asks whether a call is running."""
+    silent = (transition for transition in transitions if isinstance(transition, rsc.TauTransition))
+    return any(access.item is call for transition in silent for access in accesses(transition.guard))
 
 
 def _is_on(transition: rsc.Transition, kind: rsc.ResultType) -> TypeGuard[rsc.ResultTransition]:
     return isinstance(transition, rsc.ResultTransition) and transition.resultType == kind
 
 
-def _names(transition: rsc.Transition, communication: rsc.CommunicationType) -> bool:
-    if not isinstance(transition, rsc.ResultTransition):
+def _names(transition: rsc.Transition, reference: rsc.CommunicationReference) -> bool:
+    """Whether a transition names the communication of the component that a reference in the same text names."""
+    named = transition.communicationType if isinstance(transition, rsc.ResultTransition) else None
+    if named is None:
         return False
-    return communication_of(transition.communicationType) is communication
+    return (named.component, named.communicationType) == (reference.component, reference.communicationType)
 
 
-def _hears(transitions: Iterable[rsc.Transition], communication: rsc.CommunicationType, kind: rsc.ResultType) -> bool:
-    return any(_is_on(transition, kind) and _names(transition, communication) for transition in transitions)
+def _hears(transitions: Iterable[rsc.Transition], reference: rsc.CommunicationReference, kind: rsc.ResultType) -> bool:
+    return any(_is_on(transition, kind) and _names(transition, reference) for transition in transitions)
 
 
 def _kind(reference: rsc.EventReference) -> rsc.ResultType | None:
