@@ -153,8 +153,8 @@ class _Findings:
         return _finding(
             observed.requirement,
             "cancel-held-back",
-            f"{requirement} holds back the cancel of `{action}` where it is due, and the controller could not stop it: after"
-            f"  {in_words(observed.trace, self._model)}",
+            f"{requirement} holds back the cancel of `{action}` where it is due, and the controller could not stop it: "
+            f"after {in_words(observed.trace, self._model)}",
             f"a start can be refused, a cancel can't: take `cancel from {action.rpartition('.')[2]}` out of the"
             f" requirement, or restrict the start of `{action}`",
             Severity.ERROR,
