@@ -53,8 +53,9 @@ def line(number: int) -> str:
 def line_states(number: int) -> int:
     """Which places are full, what is inspected, and what each action is at.
 
-    An action is idle or ready; from a full place to an empty one it may also run, or have failed. Synthesis gives up
-    what has no empty place left while a tray is inspected or rejected.
+    An action is idle or ready; from a full place to an empty one it may also run, or have failed. While it runs, what
+    it needs holds, so it is never asked to cancel. Synthesis gives up what has no empty place left while a tray is
+    inspected or rejected.
     """
 
     def ways(*, first_full: bool, inspection_full: bool) -> int:
@@ -85,9 +86,10 @@ def _line(name: str, number: int) -> list[Lines]:
                 {
                     "initial marked state empty": [
                         f"on {arrivals[i - 1]} goto full",
-                        *([f"on response from {back} goto full"] if i == 1 else []),
+                        *(_tried_again(f"{name}_move{i - 1}") if i > 1 else []),
+                        *([f"on response from {back} goto full", *_tried_again(back)] if i == 1 else []),
                     ],
-                    "state full": [f"on response from {name}_move{i} goto empty"],
+                    "state full": [f"on response from {name}_move{i} goto empty", *_tried_again(f"{name}_move{i}")],
                 },
             )
             for i in _count(number)
@@ -96,7 +98,10 @@ def _line(name: str, number: int) -> list[Lines]:
             f"{name}Inspection",
             [_outgoing(f"{name}_good"), _outgoing(f"{name}_bad"), _action(back)],
             {
-                "initial marked state empty": [f"on response from {name}_move{number} goto inspecting"],
+                "initial marked state empty": [
+                    f"on response from {name}_move{number} goto inspecting",
+                    *_tried_again(f"{name}_move{number}"),
+                ],
                 "state inspecting": [
                     f"on response from {name}_good goto empty",
                     f"on response from {name}_bad goto rejected",
@@ -104,7 +109,7 @@ def _line(name: str, number: int) -> list[Lines]:
                 "state rejected": [f"on request to {back} goto returning"],
                 "state returning": [
                     f"on response from {back} goto empty",
-                    *(f"on {event} from {back} goto rejected" for event in ("error", "cancel")),
+                    *(f"on {event} from {back} goto rejected" for event in ("error", "canceled")),
                 ],
             },
         ),
@@ -117,6 +122,11 @@ def _line(name: str, number: int) -> list[Lines]:
             f"requirement {back} needs {name}Place1.empty",
         ],
     ]
+
+
+def _tried_again(action: str) -> Lines:
+    """Where an action fails or is canceled, all stays where it is, and the action may start again."""
+    return [f"on {event} from {action}" for event in ("error", "canceled")]
 
 
 def sensors(number: int) -> str:
@@ -267,7 +277,10 @@ def warehouse(number: int) -> str:
                 f"Dock{dock}",
                 [],
                 {"initial marked state free": [f"on request to dock{i}_{dock} goto holds{i}" for i in robots]}
-                | {f"state holds{i}": [f"on response from leave{i} goto free"] for i in robots},
+                | {
+                    f"state holds{i}": [f"on response from leave{i} goto free", f"on error from leave{i}"]
+                    for i in robots
+                },
             )
             for dock in docks
         ),
