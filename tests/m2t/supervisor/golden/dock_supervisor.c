@@ -20,6 +20,14 @@ const dock_settings dock_default_settings = {
 
 /* ---- The robot ---- */
 
+/* In the guards of action_approach.u_feedback, action_approach.u_response,
+ * action_approach.u_error. */
+static bool condition_1(const dock_state *state)
+{
+    return state->action_approach == dock_action_approach_executing
+        || state->action_approach == dock_action_approach_canceling;
+}
+
 /* Whether the plants can do the event in this state, and the supervisor allows it. */
 static bool guard(const dock_state *state, dock_event event)
 {
@@ -70,7 +78,9 @@ static bool guard(const dock_state *state, dock_event event)
     case dock_action_approach_u_feedback:
     case dock_action_approach_u_response:
     case dock_action_approach_u_error:
-        return state->action_approach == dock_action_approach_executing;
+        return condition_1(state);
+    case dock_action_approach_u_canceled:
+        return state->action_approach == dock_action_approach_canceling;
     case dock_service_call_help_u_response:
     case dock_service_call_help_u_error:
         return state->service_call_help == dock_service_call_help_wait_for_response;
@@ -91,7 +101,7 @@ static void execute(
 {
     switch (event) {
     case dock_action_approach_c_cancel:
-        state->action_approach = dock_action_approach_idle;
+        state->action_approach = dock_action_approach_canceling;
         break;
     case dock_action_approach_c_trigger:
         state->action_approach = dock_action_approach_executing;
@@ -140,6 +150,9 @@ static void execute(
         }
         state->action_approach = dock_action_approach_error;
         break;
+    case dock_action_approach_u_canceled:
+        state->action_approach = dock_action_approach_idle;
+        break;
     case dock_service_call_help_u_response:
         if (state->component_Station == dock_component_Station_away) {
             state->component_Station_failures = 0;
@@ -163,7 +176,7 @@ static const uint8_t group[QUEUED] = { 0, 1, 2, 0, 0 };
 /* The topic, service or action that an event comes from, by number; 0: it is the controller's own. */
 static unsigned source_of(unsigned event)
 {
-    static const uint8_t source[] = { 1, 2, 3, 3, 3, 4, 4 };
+    static const uint8_t source[] = { 1, 2, 3, 3, 3, 3, 4, 4 };
     return event < 12U ? 0U : source[event - 12U];
 }
 
@@ -482,6 +495,7 @@ const char *dock_event_name(dock_event event)
         "action_approach.u_feedback",
         "action_approach.u_response",
         "action_approach.u_error",
+        "action_approach.u_canceled",
         "service_call_help.u_response",
         "service_call_help.u_error"
     };
@@ -503,9 +517,10 @@ const char *dock_location_name_action_approach(unsigned number)
         "idle",
         "executing",
         "ready",
-        "error"
+        "error",
+        "canceling"
     };
-    return number < 4U ? names[number] : "";
+    return number < 5U ? names[number] : "";
 }
 
 const char *dock_location_name_service_call_help(unsigned number)

@@ -35,7 +35,7 @@ extern "C" {
 typedef enum dock_event {
     /* ---- Cancels: the control loop runs them first. ---- */
 
-    /* Station.approach is cancelled (/approach).
+    /* Station.approach is asked to cancel (/approach).
      * approach is cancelled where a requirement on it no longer holds (dock.rscd) */
     dock_action_approach_c_cancel = 0,
 
@@ -90,13 +90,15 @@ typedef enum dock_event {
     dock_action_approach_u_response,
     /* Station.approach failed (/approach). */
     dock_action_approach_u_error,
+    /* Station.approach is canceled (/approach). */
+    dock_action_approach_u_canceled,
     /* Station.call_help is done (/help). */
     dock_service_call_help_u_response,
     /* Station.call_help failed (/help). */
     dock_service_call_help_u_error
 } dock_event;
 
-#define DOCK_EVENT_COUNT 19
+#define DOCK_EVENT_COUNT 20
 
 /* Values of Order. */
 enum {
@@ -116,7 +118,8 @@ enum {
     dock_action_approach_idle = 0,
     dock_action_approach_executing,
     dock_action_approach_ready,
-    dock_action_approach_error
+    dock_action_approach_error,
+    dock_action_approach_canceling
 };
 
 /* Locations of service_call_help. */
