@@ -399,11 +399,13 @@ def test_hidden_pages_leave_connections_to_others(chromium: Any) -> None:
       document.dispatchEvent(new Event("visibilitychange"));
     }"""
     with served(MODEL) as address, opened(chromium, address) as first:
+        page = first
         for _ in range(7):
-            first.context.pages[-1].evaluate(hide, True)
+            page.evaluate(hide, True)
             page = first.context.new_page()
             page.goto(address)
-        page.wait_for_selector("body[data-drawn][data-moment]")
+            # It has drawn, and it holds its connection: only then is there one to leave.
+            page.wait_for_selector("body[data-drawn][data-moment]")
         assert shown(page) == truth(simulation_of(MODEL), 0)
         page.evaluate(hide, True)
         first.evaluate(hide, False)
