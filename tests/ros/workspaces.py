@@ -260,6 +260,8 @@ def middleware(workspace: Workspace, folder: Path, *, simulated: bool = False) -
         "ROS_IP": "127.0.0.1",
         "ROS_HOSTNAME": "127.0.0.1",
         "ROS_HOME": str(folder),
+        # What a compiled node prints is to be seen at once, in a file, too.
+        "ROSCONSOLE_STDOUT_LINE_BUFFERED": "1",
     }
     with Processes(environment, folder) as processes:
         # What `roscore` starts, too, without what takes it seconds of the processor for each test.

@@ -105,7 +105,7 @@ class Base:
             self.nodes.folder / f"devel/lib/{self.name}/{self.name}",
             [f"_{parameter}" for parameter in parameters],
         )
-        return ["env", "ROSCONSOLE_STDOUT_LINE_BUFFERED=1", executable, f"__name:={self.name}", *own]
+        return [executable, f"__name:={self.name}", *own]
 
     def _careless(self) -> list[str | Path]:
         """What starts the controller behind the layer: compiled beside compiled nodes of ROS 2, else from its model."""

@@ -36,9 +36,7 @@ class Compiled:
         if self.place.ros.version == 2:
             return self.place.node(PACKAGE, *parameters)
         executable = self.place.folder / f"devel/lib/{PACKAGE}/{PACKAGE}"
-        # What it prints is to be seen at once, in a file, too.
-        by_line = ["env", "ROSCONSOLE_STDOUT_LINE_BUFFERED=1"]
-        return [*by_line, executable, f"__name:={PACKAGE}", *(f"_{parameter}" for parameter in parameters)]
+        return [executable, f"__name:={PACKAGE}", *(f"_{parameter}" for parameter in parameters)]
 
 
 @dataclass(frozen=True)
