@@ -75,7 +75,7 @@ CHANGES = {
         "</robosc:Library>",
         (
             '<definitions xsi:type="robosc:Component" name="C"><type xsi:type="robosc:ImportedComponent"><library'
-            ' href="EmergencyStopLibrary.robosc.xmi#/"/><definition href="#//@definitions.1"/></type></definitions>'
+            ' href="EmergencyStopLibrary.robosc.xmi#/"/><definition href="#//@definitions.3"/></type></definitions>'
             "</robosc:Library>"
         ),
         "'C' is made of itself",

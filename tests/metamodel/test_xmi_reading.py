@@ -290,8 +290,8 @@ def test_files_may_refer_to_each_other_in_a_circle(folder: Path, texts: dict[str
         text.replace("</robosc:Library>", f"{imported}</robosc:Library>")
     )
     library = load(folder / "EmergencyStopLibrary.robosc.xmi")
-    assert library.definitions[1].type.library is library
-    assert library.definitions[1].type.definition is library.definitions[0]
+    assert library.definitions[-1].type.library is library
+    assert library.definitions[-1].type.definition is library.definitions[0]
 
 
 @pytest.mark.parametrize("name", ["Warehouse.sct.xmi", "Warehouse.rosgraph.xmi", "EmergencyStopLibrary.robosc.xmi"])
