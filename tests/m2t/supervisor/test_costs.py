@@ -16,7 +16,7 @@ from robosc.metamodel import sct
 
 pytestmark = pytest.mark.build
 
-DISPATCH = 60
+DISPATCH = 64
 #: The deepest stack of any engine, however many events it has.
 STACK = {"x86-64": 360, "Cortex-M3": 240}
 
@@ -35,7 +35,7 @@ def _costs(cells: int) -> Costs:
         return measured(_model(cells, Path(folder)), Path(folder))
 
 
-@pytest.fixture(params=[1, 5, 20], ids=["15 events", "75 events", "300 events"])
+@pytest.fixture(params=[1, 5, 20], ids=["17 events", "85 events", "340 events"])
 def costs(request: pytest.FixtureRequest) -> Costs:
     return _costs(request.param)
 
