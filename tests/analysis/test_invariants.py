@@ -48,7 +48,7 @@ BASE = """
             state driving {
                 on response from drive goto idle
                 on error from drive goto idle
-                on cancel from drive goto idle
+                on canceled from drive goto idle
             }
         }
     }

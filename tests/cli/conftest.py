@@ -109,7 +109,7 @@ robot Courier {{
       state driving {{
         on response from drive goto resting
         on error from drive goto resting
-        on cancel from drive goto resting
+        on canceled from drive goto resting
       }}
     }}
   }}

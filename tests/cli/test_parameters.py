@@ -37,7 +37,7 @@ REFUSED = [
     ("zzz=1", "--param zzz=1: the model has no parameter zzz"),
     ("reach", "--param reach: write reach=VALUE, such as reach=0.5"),
     ("reach=far", "--param reach=far: write reach=VALUE, such as reach=0.5"),
-    ("reach=NaN", "--param reach=NaN: reach is nan, not finite"),
+    ("reach=NaN", "--param reach=NaN: write reach=VALUE, such as reach=0.5"),
     ("least=9", "--param least=9: least is 9, not between 1 and 5"),
     ("doubled=1", "--param doubled=1: doubled is 1, not true or false"),
 ]
