@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.metamodel import expression as ex
-    from robosc.semantics.instances import Instances, PortInstance
+    from robosc.semantics.instances import Instance, Instances, PortInstance
 
 
 @rule("topic-types")
@@ -90,7 +90,7 @@ def _statements(port: PortInstance, known: Instances) -> list[tuple[str, str]]:
     return found
 
 
-def _shown(expression: ex.Expression, within: object, known: Instances) -> str:
+def _shown(expression: ex.Expression, within: Instance | None, known: Instances) -> str:
     if isinstance(expression, rsc.ObjectValue):
         fields = (
             (field.property.name if field.property else "", _shown(field.value, within, known))
@@ -98,7 +98,7 @@ def _shown(expression: ex.Expression, within: object, known: Instances) -> str:
             if field.value is not None
         )
         return "{" + ", ".join(f"{name}: {value}" for name, value in sorted(fields)) + "}"
-    return RoboscPrinter()(known.expanded(expression, within))  # type: ignore[arg-type]
+    return RoboscPrinter()(known.expanded(expression, within))
 
 
 def _of_other_types(base: rsc.Base, kind: type[rsc.CommunicationType]) -> Iterator[tuple[PortInstance, PortInstance]]:
