@@ -18,7 +18,8 @@ from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.layer import Layer
 from robosc.runtime.core.node_data import BLANK
 from robosc.runtime.core.port import CancelAnswer, Outcome
-from robosc.runtime.core.settings import Settings
+from robosc.runtime.core.settings import SafeMessages, Settings
+from robosc.semantics.messages import message_named
 
 from .playing import tell
 from .simulation import Answer, GoalNews
@@ -128,7 +129,8 @@ class SupervisedNode:
             for layer_parameter in layer_parameters(graph, configuration, str(log))
         }
         self._event_loop = EventLoop(lambda: simulation.time)
-        self._layer = Layer(graph, Settings(parameters, configuration), WorldPort(simulation), self._event_loop)
+        safe = SafeMessages(on_blocked=[message_named(graph, name) for name in configuration.on_blocked])
+        self._layer = Layer(graph, Settings(parameters, configuration), WorldPort(simulation), self._event_loop, safe)
         self._subscriptions = {subscription.topic: subscription for subscription in graph.subscriptions}
         self._sendings = {publisher.topic: publisher.sendings[0] for publisher in graph.publishers}
         self._layer.start()

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import json
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from examples.simulator.engine import EXAMPLES, load
 from examples.simulator.scenarios import SCENARIOS
+from tests.scenarios.rules.books import BOOKS
+from tests.scenarios.rules.driving import Stepper
+from tests.scenarios.rules.judging import velocity
 from tests.scenarios.runs import violations_of
 
 if TYPE_CHECKING:
@@ -85,3 +89,50 @@ def test_a_demand_less_is_noticed(name: str, demand: str, instead: str, tmp_path
 
 def test_every_second_opinion_is_tried() -> None:
     assert {name for name, *_ in DEMANDS} == {*SCENARIOS}
+
+
+def step(direction: str, data: Any = None) -> dict[str, Any]:
+    known = {} if data is None else {"data": {"value": data}}
+    return {"time": 1.0, "direction": direction, "event": "message_step.c_trigger", **known}
+
+
+def heard(name: str, value: Any = None) -> dict[str, Any]:
+    return {"time": 1.0, "direction": "in", "event": f"message_{name}.u_response", "data": {"value": value}}
+
+
+FORWARDED = [heard("correction"), heard("scan", "clear"), step("out")]
+STOPPED = [*FORWARDED, step("blocked"), step("outside")]
+
+
+@pytest.mark.parametrize(
+    "log",
+    [
+        STOPPED,
+        [*STOPPED, step("blocked")],
+        [*STOPPED, *FORWARDED, step("blocked"), step("outside", velocity(0.0, 0.0))],
+    ],
+)
+def test_a_stop_takes_the_place_of_the_first_step_that_is_blocked(log: list[dict[str, Any]]) -> None:
+    assert Stepper().violations(log) == []
+
+
+@pytest.mark.parametrize(
+    ("log", "fault"),
+    [
+        ([*FORWARDED, step("outside")], "step outside of the supervisor"),
+        ([*FORWARDED, step("blocked"), heard("scan", "clear"), step("outside")], "no stop takes the place of step"),
+        ([*FORWARDED, step("blocked"), step("blocked")], "no stop takes the place of step"),
+        ([*STOPPED, step("outside")], "step outside of the supervisor"),
+        ([*STOPPED, step("blocked"), step("outside")], "step outside of the supervisor"),
+        ([step("blocked"), step("outside")], "step outside of the supervisor"),
+        ([*FORWARDED, step("blocked"), step("outside", velocity(0.2, 0.0))], "that is no stop"),
+    ],
+)
+def test_any_other_step_that_a_layer_sends_itself_is_noticed(log: list[dict[str, Any]], fault: str) -> None:
+    assert any(violation.endswith(fault) for violation in Stepper().violations(log))
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_second_opinions_know_what_a_layer_replaces(name: str) -> None:
+    configuration = json.loads((EXAMPLES / name / "controller-config.json").read_text())
+    assert {*configuration.get("onBlocked", [])} == BOOKS[name].replaced

@@ -238,6 +238,8 @@ class PersonFollower(RuleBook):
 class Stepper(RuleBook):
     """The layer before a line follower: a step passes only along the line, the way clear, no stop pressed."""
 
+    replaced = frozenset({"step"})
+
     def __init__(self) -> None:
         super().__init__()
         self.line = self.clear = False

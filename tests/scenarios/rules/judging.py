@@ -6,7 +6,7 @@ the controller has been told and says of each thing that goes out what is wrong 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 Entry = Mapping[str, Any]
@@ -15,10 +15,18 @@ Fault = str | None
 
 
 class RuleBook:
-    """Judges one log. `heard` takes what comes in, `sent` judges what goes out, `overdue` what should have by now."""
+    """Judges one log. `heard` takes what comes in, `sent` judges what goes out, `overdue` what should have by now.
+
+    `replaced` are the velocities that a layer replaces: when it blocks one after it forwarded one, it sends a stop at
+    once, and no other until it has forwarded the next.
+    """
+
+    replaced: frozenset[str] = frozenset()
 
     def __init__(self) -> None:
         self.stopped = False
+        self._forwarded: set[str] = set()
+        self._stop_due: str | None = None
         #: When what is judged was heard or sent.
         self.time = 0.0
 
@@ -41,6 +49,7 @@ class RuleBook:
             name = plant.partition("_")[2]
             value = entry.get("data", {}).get("value")
             self.time = entry["time"]
+            found += (f"at {entry['time']:.2f}: {fault}" for fault in self._replacing(entry["direction"], name, value))
             if entry["direction"] == "in":
                 fault = self.overdue()
                 if fault:
@@ -53,13 +62,27 @@ class RuleBook:
                 fault = self.sent(name, value)
                 if fault:
                     found.append(f"at {entry['time']:.2f}: {name} with {value}: {fault} ({self.known()})")
-            elif entry["direction"] == "outside":
-                found.append(f"at {entry['time']:.2f}: {name} outside of the supervisor")
         return found
+
+    def _replacing(self, direction: str, name: str, value: Any) -> Iterator[str]:
+        """What is wrong with the stops that a layer sends in the place of what it blocks."""
+        due, self._stop_due = self._stop_due, None
+        if direction == "outside":
+            if name != due:
+                yield f"{name} outside of the supervisor"
+            elif value not in (None, velocity(0.0, 0.0)):
+                yield f"{name} with {value}: that is no stop"
+        elif due:
+            yield f"no stop takes the place of {due}"
+        if direction == "out" and name in self.replaced:
+            self._forwarded.add(name)
+        elif direction == "blocked" and name in self._forwarded:
+            self._forwarded.remove(name)
+            self._stop_due = name
 
     def known(self) -> str:
         """What the controller knows, for whoever reads a fault."""
-        return ", ".join(f"{name}={value!r}" for name, value in vars(self).items())
+        return ", ".join(f"{name}={value!r}" for name, value in vars(self).items() if not name.startswith("_"))
 
 
 def velocity(linear: float, angular: float) -> dict[str, Any]:
