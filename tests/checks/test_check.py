@@ -123,6 +123,145 @@ def test_what_only_an_instance_of_a_librarys_template_shows_stands_in_the_librar
     ]
 
 
+def waiting_library(members: str) -> str:
+    return f"""
+        library Parts {{
+          interface moving use Move from mover_msgs
+          component Base {{
+            {members}
+          }}
+        }}
+    """
+
+
+CANCEL_BY_STATE = """
+            action drive with request: none, response: none, feedback: none links moving
+            behaviour {
+              initial marked state standing { on request to drive goto driving }
+              state driving {
+                on response from drive goto standing
+                on error from drive goto standing
+                on cancel from drive goto standing
+              }
+            }
+"""
+CANCEL_BY_AUTOMATON = """
+            action drive with request: none, response: none, feedback: none links moving
+            requirement Turns: automaton {
+              initial state waiting { on request to drive goto moving }
+              state moving {
+                on response from drive goto waiting
+                on error from drive goto waiting
+                on cancel from drive goto waiting
+              }
+            }
+"""
+CANCEL_BY_VARIABLE = """
+            action drive with request: none, response: none, feedback: none links moving
+            incoming message open with type: none
+            requirement open needs still
+            behaviour {
+              variable still: boolean = true
+              on response from drive do still := true
+              on error from drive do still := true
+              on cancel from drive do still := true
+              marked initial state only { on request to drive do still := false }
+            }
+"""
+FAILURE = """
+            service go with request: none, response: none
+            behaviour {
+              initial marked state here { on request to go goto going }
+              state going { on response from go goto here }
+            }
+"""
+ANSWER = """
+            service go with request: none, response: none
+            requirement go needs here
+            behaviour {
+              initial marked state here { on request to go goto there }
+              marked state there { }
+            }
+"""
+
+
+@pytest.mark.parametrize(
+    ("rule", "members"),
+    [
+        ("cancel-is-not-the-end", CANCEL_BY_STATE),
+        ("cancel-is-not-the-end", CANCEL_BY_AUTOMATON),
+        ("cancel-is-not-the-end", CANCEL_BY_VARIABLE),
+        ("failure-unheard", FAILURE),
+        ("answer-unheard", ANSWER),
+    ],
+)
+def test_who_waits_for_whom_in_a_library_stands_at_each_import(tmp_path: Path, rule: str, members: str) -> None:
+    """In a library by itself nothing stands; of a robot's own component the finding is in its text."""
+    library = waiting_library(members)
+    robot = """
+        robot House {
+          component Left from Parts import Base
+          component Right from Parts import Base
+        }
+    """
+    waiting = [finding for finding in found(tmp_path, robot, parts=library) if finding.rule == rule]
+    assert places(waiting) == [("robot.rscd", 2, rule), ("robot.rscd", 3, rule)]
+    reading = read(tmp_path / "parts.rscd")
+    assert rule not in {finding.rule for finding in check(reading.base, reading.findings)}
+    own = [finding for finding in found(tmp_path, library.replace("library", "robot")) if finding.rule == rule]
+    assert [finding.span.line > 3 for finding in own] == [True]
+
+
+@pytest.mark.parametrize(
+    ("rule", "ports"),
+    [
+        ("topic-types", ("incoming message a with {0}, type: boolean", "outgoing message b with {0}, type: string")),
+        (
+            "indistinct-commands",
+            ("incoming message a with {0}, type: double", "incoming message b with {0}, type: double"),
+        ),
+        (
+            "shared-server",
+            (
+                "service a with {0}, request: none, response: none links empty",
+                "service b with {0}, request: none, response: none links trigger",
+            ),
+        ),
+    ],
+)
+def test_what_shares_a_name_stands_at_the_import_or_instance_that_makes_it(
+    tmp_path: Path, rule: str, ports: tuple[str, str]
+) -> None:
+    interfaces = "interface empty use Empty from std_srvs\n          interface trigger use Trigger from std_srvs"
+    first, second = (port.format('identifier: "/shared"') for port in ports)
+    library = f"""
+        library Parts {{
+          {interfaces}
+          component One {{ {first} }}
+          component Two {{ {second} }}
+        }}
+    """
+    robot = """
+        robot House {
+          component Left from Parts import One
+          component Right from Parts import Two
+        }
+    """
+    assert places(found(tmp_path, robot, parts=library)) == [("robot.rscd", 3, rule)]
+    reading = read(tmp_path / "parts.rscd")
+    assert check(reading.base, reading.findings) == []
+    made = f"""
+        robot House {{
+          {interfaces}
+          component One {{ {first} }}
+          component Two(name: string) {{ {ports[1].format("identifier: name")} }}
+          component Other is Two("/other")
+          component Right is Two("/shared")
+        }}
+    """
+    assert places(found(tmp_path, made)) == [("robot.rscd", 7, rule)]
+
+
 def test_a_librarys_component_mentions_itself_only(tmp_path: Path) -> None:
     robot = """
         robot House {

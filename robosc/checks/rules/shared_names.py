@@ -24,7 +24,7 @@ def topic_types(base: rsc.Base) -> Iterator[Finding]:
     """All messages on one topic have one ROS type."""
     for first, second in _of_other_types(base, rsc.Message):
         yield Finding(
-            _place(second, base),
+            _place(second),
             f"{_described(second)} has the type `{_type(second)}` on the topic `{_name(second)}`, on which"
             f" {_described(first)} has the type `{_type(first)}`: ROS keeps the two apart",
             "give both one type, or one of them a topic of its own",
@@ -38,7 +38,7 @@ def shared_server(base: rsc.Base) -> Iterator[Finding]:
     for kind in (rsc.Service, rsc.Action):
         for first, second in _of_other_types(base, kind):
             yield Finding(
-                _place(second, base),
+                _place(second),
                 f"{_described(second)} has the type `{_type(second)}`, and {_described(first)} of the same name"
                 f" `{_name(second)}` has the type `{_type(first)}`: only one of them can ever be answered",
                 "give both one type, or one of them a name of its own",
@@ -63,7 +63,7 @@ def indistinct_commands(base: rsc.Base) -> Iterator[Finding]:
             provided = known.provided(second)
             why = "carry the same data" if provided else "have no `provide`, so that both carry zeros"
             yield Finding(
-                _place(second, base),
+                _place(second),
                 f"{_described(same)} and {_described(second)} go to the topic `{_name(second)}` and {why}: the robot"
                 " can't tell them apart",
                 f"provide other data with `{written(second.communication.name)}`, or use one message for both",
@@ -123,8 +123,10 @@ def _ports(known: Instances, kind: type[rsc.CommunicationType]) -> Iterator[Port
             yield port
 
 
-def _place(port: PortInstance, base: rsc.Base) -> ex.Located:
-    return port.communication if port.instance.unit is base else port.instance.component
+def _place(port: PortInstance) -> ex.Located:
+    """The declaration of a communication; where an import or arguments make its instance, the component made."""
+    made = port.instance.component is not port.instance.definition
+    return port.instance.component if made else port.communication
 
 
 def _described(port: PortInstance) -> str:

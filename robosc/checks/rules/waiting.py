@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeGuard
 
-from robosc.checks.definitions import assigned_variable, behaviours, common_transitions, communication_of, states
-from robosc.checks.definitions import statements as stated
+from robosc.checks.definitions import assigned_variable, communication_of
 from robosc.checks.libraries import instances
 from robosc.checks.rule import Finding, rule
 from robosc.diagnostics import Severity
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from robosc.metamodel import expression as ex
-    from robosc.semantics.instances import Instance, Instances, PortInstance
+    from robosc.semantics.instances import Instance, Instances, PortInstance, Statement
 
 _END = (rsc.ResultType.response, rsc.ResultType.error, rsc.ResultType.canceled)
 
@@ -31,60 +30,91 @@ _END = (rsc.ResultType.response, rsc.ResultType.error, rsc.ResultType.canceled)
 @rule("cancel-is-not-the-end", Severity.WARNING)
 def cancel_is_not_the_end(base: rsc.Base) -> Iterator[Finding]:
     """A component or requirement that reacts to the cancel of an action goes on to wait for the end of the action."""
-    for component, behaviour in behaviours(base):
-        common = common_transitions(behaviour.automaton)
-        every = [*common, *(transition for state in states(behaviour.automaton) for transition in state.transitions)]
-        for transition in every:
+    if not isinstance(base, rsc.Robot):
+        return
+    known = instances(base)
+    places = _Places(base)
+    yield from _states_without_end(known, places)
+    yield from _forbidden_ends(known, places)
+    yield from _variables_read(known, places)
+
+
+class _Places:
+    """Where findings about instances stand: in the robot's own text, or at the import of a library's component."""
+
+    def __init__(self, base: rsc.Base) -> None:
+        self._base = base
+        self._reported: set[tuple[ex.Located, rsc.CommunicationType]] = set()
+
+    def new(
+        self, element: ex.Located, instance: Instance | None, communication: rsc.CommunicationType
+    ) -> ex.Located | None:
+        """The place of a finding about an element in the text of an instance; None where one stands there already.
+
+        At one place there is one finding for each communication.
+        """
+        place = element if instance is None or instance.unit is self._base else instance.component
+        if (place, communication) in self._reported:
+            return None
+        self._reported.add((place, communication))
+        return place
+
+
+def _states_without_end(known: Instances, places: _Places) -> Iterator[Finding]:
+    """The transitions on a cancel to a state in which nothing waits for the end of the action."""
+    for instance in known:
+        common = [transition for transition, where in instance.transitions if where is None]
+        for transition, _ in instance.transitions:
             if transition.target is None or not _is_on(transition, rsc.ResultType.cancel):
                 continue
             action = communication_of(transition.communicationType)
             waits = [*transition.target.transitions, *common]
-            if action is not None and not _hears(waits, transition.communicationType, rsc.ResultType.canceled):
-                yield _taken_for_the_end(transition, action, f"{component.name}.{transition.target.name}")
-    for automaton in stated(rsc.AutomatonRequirement, base):
-        yield from _forbidden_ends(automaton)
-    yield from _variables_read(base)
+            if action is None or _hears(waits, transition.communicationType, rsc.ResultType.canceled):
+                continue
+            place = places.new(transition, instance, action)
+            if place is not None:
+                name = written(action.name)
+                yield Finding(
+                    place,
+                    f"`cancel from {name}` leads to `{instance.name}.{transition.target.name}`, which does not wait for"
+                    f" the end of `{name}`: the controller has only asked the server to cancel, and the robot may still"
+                    " move",
+                    f"go to a state `stopping` that `canceled from {name}`, `response from {name}` and"
+                    f" `error from {name}` leave",
+                    related=None if place is transition else transition,
+                )
 
 
-def _taken_for_the_end(element: ex.Located, action: rsc.CommunicationType, state: str) -> Finding:
-    name = written(action.name)
-    return Finding(
-        element,
-        f"`cancel from {name}` leads to `{state}`, which does not wait for the end of `{name}`: the controller has only"
-        " asked the server to cancel, and the robot may still move",
-        f"go to a state `stopping` that `canceled from {name}`, `response from {name}` and `error from {name}` leave",
-    )
+def _forbidden_ends(known: Instances, places: _Places) -> Iterator[Finding]:
+    """The transitions on a cancel to a state in which the requirement automaton forbids an end that it names."""
+    for statement in known.statements(rsc.AutomatonRequirement):
+        every = [transition for state in statement.element.states for transition in state.transitions]
+        named = {(known.port(other.event.communicationType, statement.within), _kind(other.event)) for other in every}
+        for transition in every:
+            port = known.port(transition.event.communicationType, statement.within)
+            if transition.target is None or port is None or _kind(transition.event) != rsc.ResultType.cancel:
+                continue
+            there = {
+                _kind(other.event)
+                for other in transition.target.transitions
+                if known.port(other.event.communicationType, statement.within) == port
+            }
+            missing = [str(end) for end in _END if (port, end) in named and end not in there]
+            place = places.new(transition, statement.within, port.communication) if missing else None
+            if place is not None:
+                name, state = written(port.communication.name), transition.target.name
+                yield Finding(
+                    place,
+                    f"`cancel from {name}` leads to `{state}`, which forbids the {missing[0]} of `{name}`: the"
+                    " controller has only asked the server to cancel, and the goal ends later",
+                    f"let `{written(state)}` allow `{missing[0]} from {name}`",
+                    related=None if place is transition else transition,
+                )
 
 
-def _forbidden_ends(automaton: rsc.AutomatonRequirement) -> Iterator[Finding]:
-    """The transitions on a cancel to a state in which the automaton forbids an end that it names."""
-    every = [transition for state in automaton.states for transition in state.transitions]
-    named = {(communication_of(other.event.communicationType), _kind(other.event)) for other in every}
-    for transition in every:
-        action = communication_of(transition.event.communicationType)
-        if transition.target is None or action is None or _kind(transition.event) != rsc.ResultType.cancel:
-            continue
-        there = {
-            _kind(other.event)
-            for other in transition.target.transitions
-            if communication_of(other.event.communicationType) is action
-        }
-        missing = [str(end) for end in _END if (action, end) in named and end not in there]
-        if missing:
-            name, state = written(action.name), transition.target.name
-            yield Finding(
-                transition,
-                f"`cancel from {name}` leads to `{state}`, which forbids the {missing[0]} of `{name}`: the controller"
-                " has only asked the server to cancel, and the goal ends later",
-                f"let `{written(state)}` allow `{missing[0]} from {name}`",
-            )
-
-
-def _variables_read(base: rsc.Base) -> Iterator[Finding]:
+def _variables_read(known: Instances, places: _Places) -> Iterator[Finding]:
     """The transitions on a cancel that assign a variable which a requirement on another command reads."""
-    known = instances(base)
     read = _readers(known)
-    reported: set[ex.Located] = set()
     for instance in known if read else ():
         for transition, _ in instance.transitions:
             port = (
@@ -96,9 +126,8 @@ def _variables_read(base: rsc.Base) -> Iterator[Finding]:
                 variable = assigned_variable(assignment)
                 readers = read.get(InstanceVariable(instance, variable), ()) if variable is not None else ()
                 others = [reader for reader, restricted in readers if restricted - {port}]
-                place = assignment if instance.unit is base else instance.component
-                if port is not None and variable is not None and others and place not in reported:
-                    reported.add(place)
+                place = places.new(assignment, instance, port.communication) if port is not None and others else None
+                if place is not None and port is not None and variable is not None:
                     name = written(port.communication.name)
                     yield Finding(
                         place,
@@ -113,8 +142,7 @@ def _readers(known: Instances) -> dict[InstanceVariable, list[tuple[rsc.Requirem
     """The requirements that read each variable, each with what it restricts."""
     conditions: list[tuple[rsc.Requirement, set[PortInstance | None], ex.Expression | None, Instance | None]] = []
     for required in known.statements(rsc.CommunicationRequirement):
-        targets = required.element.target.communicationTypes if required.element.target else ()
-        restricted = {known.port(target, required.within) for target in targets}
+        restricted = _targets(required, known)
         conditions.append((required.element, restricted, required.element.condition, required.within))
     for automaton in known.statements(rsc.AutomatonRequirement):
         events = _events_of(automaton.element)
@@ -141,7 +169,7 @@ def answer_unheard(base: rsc.Base) -> Iterator[Finding]:
     heard = _answers_heard(known)
     restricted = _restricted(known)
     read = _states_read(known)
-    reported: set[ex.Located] = set()
+    places = _Places(base)
     for instance in known:
         for transition, state in instance.transitions:
             target = transition.target
@@ -153,9 +181,8 @@ def answer_unheard(base: rsc.Base) -> Iterator[Finding]:
             unread = port not in restricted and (instance, target) not in read
             if unread and _answers_nothing(port.communication) and not _commands(target, instance, port, known):
                 continue
-            place = transition if instance.unit is base else instance.component
-            if place not in reported:
-                reported.add(place)
+            place = places.new(transition, instance, port.communication)
+            if place is not None:
                 name = written(port.communication.name)
                 yield Finding(
                     place,
@@ -191,12 +218,18 @@ def _events_of(requirement: rsc.Requirement) -> list[rsc.EventReference]:
     return []
 
 
+def _targets(requirement: Statement[rsc.CommunicationRequirement], known: Instances) -> set[PortInstance | None]:
+    """The commands that a requirement restricts."""
+    target = requirement.element.target
+    named = target.communicationTypes if target else ()
+    return {known.port(reference, requirement.within) for reference in named}
+
+
 def _restricted(known: Instances) -> set[PortInstance]:
     """What a requirement restricts the start of."""
     found: set[PortInstance | None] = set()
     for requirement in known.statements(rsc.CommunicationRequirement):
-        targets = requirement.element.target.communicationTypes if requirement.element.target else ()
-        found |= {known.port(target, requirement.within) for target in targets}
+        found |= _targets(requirement, known)
     for kind in (rsc.OrderRequirement, rsc.CountRequirement, rsc.AutomatonRequirement):
         for statement in known.statements(kind):
             for reference in _events_of(statement.element):
@@ -245,11 +278,9 @@ def failure_unheard(base: rsc.Base) -> Iterator[Finding]:
         return
     known = instances(base)
     cancelable = {
-        known.port(target, requirement.within)
-        for requirement in known.statements(rsc.CommunicationRequirement)
-        for target in (requirement.element.target.communicationTypes if requirement.element.target else ())
+        port for requirement in known.statements(rsc.CommunicationRequirement) for port in _targets(requirement, known)
     }
-    reported: set[ex.Located] = set()
+    places = _Places(base)
     for instance in known:
         common = [transition for transition, where in instance.transitions if where is None]
         for transition, state in instance.transitions:
@@ -260,9 +291,8 @@ def failure_unheard(base: rsc.Base) -> Iterator[Finding]:
             if port is None or isinstance(port.communication, rsc.Message):
                 continue
             missing = _unheard(state, common, transition.communicationType, port in cancelable)
-            place = transition if instance.unit is base else instance.component
-            if missing and place not in reported:
-                reported.add(place)
+            place = places.new(transition, instance, port.communication) if missing else None
+            if place is not None:
                 name = written(port.communication.name)
                 ends = " or ".join(f"`{end} from {name}`" for end in missing)
                 yield Finding(
