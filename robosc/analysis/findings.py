@@ -11,6 +11,7 @@ from robosc.analysis.wording import called, condition, forbid, in_words, listed,
 from robosc.diagnostics import Diagnostic, Severity, in_order
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
+from robosc.metamodel.reflection import tree
 from robosc.semantics.edges import edges_from, edges_of
 from robosc.semantics.roles import plant_of
 from robosc.synthesis.encoding import referenced
@@ -45,8 +46,10 @@ def findings_of(model: sct.SupervisoryControlModel, observations: Observations) 
     """
     words_for = _Findings(model)
     absent: dict[Absent, Diagnostic] = {}
+    unused = _unused_of_libraries(model, observations)
     absent |= {found.event: words_for.never_enabled(found) for found in observations.never_enabled}
     absent |= {found.location: words_for.unreachable_state(found) for found in observations.unreachable_states}
+    absent = {element: finding for element, finding in absent.items() if element not in unused}
     return in_order(
         [
             *with_causes(absent, causes(observations)),
@@ -59,6 +62,58 @@ def findings_of(model: sct.SupervisoryControlModel, observations: Observations) 
             *map(words_for.unrestricted_call, observations.unrestricted_calls),
         ]
     )
+
+
+def _unused_of_libraries(model: sct.SupervisoryControlModel, observations: Observations) -> set[Absent]:
+    """States and silent transitions of a library's components that this robot never uses, and does not speak of.
+
+    The library serves other robots, too. Requirements in the robot's own text, and a supervisor that keeps the robot
+    from them, are no lack of use.
+    """
+    unreached = {
+        found.location
+        for found in observations.unreachable_states
+        if _of_library(found.location, model)
+        and not any(_is_own_restriction(hindrance, model) for hindrance in found.hindrances)
+    }
+    if unreached:
+        unreached -= _named_in_own_text(model)
+    silent = {
+        found.event
+        for found in observations.never_enabled
+        if found.event.kind == sct.EventKind.tau
+        and _of_library(found.event, model)
+        and not _is_own_restriction(found, model)
+    }
+    return {*unreached, *silent}
+
+
+def _is_own_restriction(observed: Hindrance | NeverEnabled, model: sct.SupervisoryControlModel) -> bool:
+    """Whether a requirement in the robot's own text, or the supervisor, keeps something from happening."""
+    if observed.counterexample is not None or observed.forbidden is Forbidden.BY_SYNTHESIS:
+        return True
+    return any(not _of_library(requirement, model) for requirement in observed.requirements)
+
+
+def _named_in_own_text(model: sct.SupervisoryControlModel) -> set[sct.Location]:
+    """The locations that requirements, properties and guards in the robot's own text read."""
+    texts = [*model.plants, *model.requirements, *model.invariants, *model.properties]
+    return {
+        node.location
+        for text in texts
+        for _, node in tree(text)
+        if isinstance(node, sct.LocationReference) and not _of_library(node, model)
+    }
+
+
+def _of_library(element: Any, model: sct.SupervisoryControlModel) -> bool:
+    """Whether an element comes from another text than the robot."""
+    while element.source is None or element.source.file is None:
+        if element is model or element.eContainer() is None:
+            return False
+        element = element.eContainer()
+    own = model.source.file if model.source else None
+    return own is not None and element.source.file != own
 
 
 class _Findings:
