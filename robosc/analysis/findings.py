@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.blocking_in_words import counterexample_in_words, way_out
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
     from robosc.synthesis.encoding import Element
 
 _DONE = {sct.PlantKind.service: "called", sct.PlantKind.action: "started"}
+#: How many further commands a message names.
+_NAMED = 3
 _FOLLOWED = {sct.EventKind.reset: "the end of `{}`"}
 
 
@@ -221,7 +224,7 @@ class _Findings:
             observed.second,
             "shared-server",
             f"`{first}` and `{second}` use one server, and both can be under way at the same time: after "
-            f"{in_words(observed.trace, self._model)}",
+            f"{in_words(observed.trace, self._model)}{_likewise(second, observed.others)}",
             f"let the requirements keep `{second}` from starting while `{first}` is running",
         )
 
@@ -241,12 +244,14 @@ class _Findings:
     def shared_topic_conflict(self, observed: SharedTopicConflict) -> Diagnostic:
         first, second = observed.first, observed.second
         requirements = [*self._requirements(first), *self._requirements(second)]
+        others = [plant_of(event) for event in observed.others]
         return _finding(
             requirements[-1] if requirements else second,
             "shared-topic-conflict",
             f"`{name(plant_of(first))}` and `{name(plant_of(second))}` go to one topic, and both can be sent at the "
             f"same time, so that they take turns"
-            + _where(observed.example, [*self._asking(first), *self._asking(second)]),
+            + _where(observed.example, [*self._asking(first), *self._asking(second)])
+            + _likewise(name(plant_of(second)), others),
             "let the requirements on the two exclude each other",
         )
 
@@ -291,16 +296,39 @@ class _Findings:
         )
         return f"in `{here.name}` the {words(event)} never happens: {who} in it then"
 
+    @cached_property
+    def _required(self) -> dict[sct.Event, list[sct.Requirement]]:
+        found: dict[sct.Event, list[sct.Requirement]] = {}
+        for requirement in self._model.requirements:
+            if requirement.event is not None:
+                found.setdefault(requirement.event, []).append(requirement)
+        return found
+
     def _requirements(self, event: sct.Event) -> list[sct.Requirement]:
-        return [requirement for requirement in self._model.requirements if requirement.event is event]
+        return self._required.get(event, [])
+
+    @cached_property
+    def _participants(self) -> dict[sct.Event, dict[sct.Plant, None]]:
+        found: dict[sct.Event, dict[sct.Plant, None]] = {}
+        for plant in self._model.plants:
+            for edge in edges_of(plant):
+                found.setdefault(edge.event, {})[plant] = None
+        return found
 
     def _asking(self, event: sct.Event) -> Iterable[Element]:
         """What decides whether an event is allowed: the plants that take part in it and what requirements read."""
-        for plant in self._model.plants:
-            if any(edge.event is event for edge in edges_of(plant)):
-                yield plant
+        yield from self._participants.get(event, ())
         for requirement in self._requirements(event):
             yield from referenced(requirement.condition)
+
+
+def _likewise(second: str, others: Sequence[sct.Plant]) -> str:
+    """What else a message says of a command that also meets others than the one of its finding."""
+    if not others:
+        return ""
+    shown = [f"`{name(plant)}`" for plant in others[:_NAMED]]
+    more = len(others) - len(shown)
+    return f"; the same holds for `{second}` and {listed([*shown, f'{more} more'] if more else shown)}"
 
 
 def _finding(element: Any, rule: str, message: str, hint: str, severity: Severity = Severity.WARNING) -> Diagnostic:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 from functools import cached_property
-from itertools import combinations
-from typing import TYPE_CHECKING
+from itertools import islice
+from typing import TYPE_CHECKING, TypeVar
 
 from robosc.analysis.blocking import BlockingCounterexample, blocking_counterexample, forbidding, never_ready
 from robosc.analysis.paths import Layers, Path
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from robosc.synthesis.encoding import Element
     from robosc.synthesis.guards import Permission
 
+_Key = TypeVar("_Key", sct.Event, sct.Plant)
 _CALLS = (sct.PlantKind.service, sct.PlantKind.action)
 #: What the counterexamples of all guards may cost: the way to them, in nodes looked at, and the steps of all traces.
 _EFFORT = 1_000_000
@@ -84,11 +85,15 @@ class ForbiddenCancel:
 
 @dataclass(frozen=True)
 class SharedServer:
-    """Two services or two actions of one ROS name that can be under way together; `trace` leads there."""
+    """Services or actions of one ROS name that can be under way together: `second`, and the first before it.
+
+    `trace` leads there. `others` are further ones before `second` that can be under way together with it.
+    """
 
     first: sct.Plant
     second: sct.Plant
     trace: tuple[TraceStep, ...]
+    others: tuple[sct.Plant, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -124,11 +129,15 @@ class ProvideGap:
 
 @dataclass(frozen=True)
 class SharedTopicConflict:
-    """Two triggers of messages on one topic that are allowed at once, in the order of the model."""
+    """Commands to one topic that can be sent in one state: `second`, and the first before it, with an example.
+
+    `others` are further ones before `second` that can be sent where `second` can be.
+    """
 
     first: sct.Event
     second: sct.Event
     example: Example
+    others: tuple[sct.Event, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -322,13 +331,27 @@ class Observer:
                     yield ForbiddenCancel(event, requirement, self._system.trace(self._system.path_to(held)))
 
     def _shared_servers(self) -> Iterator[SharedServer]:
-        calls = [plant for plant in self._system.model.plants if plant.kind in _CALLS and plant.topic]
-        for first, second in combinations(calls, 2):
-            if (first.kind, _server(first)) != (second.kind, _server(second)):
-                continue
-            both = self._system.controlled & self._running(first) & self._running(second)
-            if both.satisfiable():
-                yield SharedServer(first, second, self._system.trace(self._system.path_to(both)))
+        servers: dict[tuple[sct.PlantKind, str], list[sct.Plant]] = {}
+        for plant in self._system.model.plants:
+            if plant.kind in _CALLS and plant.topic:
+                servers.setdefault((plant.kind, _server(plant)), []).append(plant)
+        for calls in servers.values():
+            where = {plant: self._system.controlled & self._running(plant) for plant in calls if len(calls) > 1}
+            for (first, *others), second, both in self._meetings(where):
+                yield SharedServer(first, second, self._system.trace(self._system.path_to(both)), tuple(others))
+
+    def _meetings(self, where: Mapping[_Key, Diagram]) -> Iterator[tuple[list[_Key], _Key, Diagram]]:
+        """Each key whose states meet those of keys before it: these keys, the key, the states shared with the first.
+
+        A key that meets none costs one operation, so that hundreds of commands may go to one topic.
+        """
+        before = self._system.diagrams.false
+        for position, (second, states) in enumerate(where.items()):
+            if (before & states).satisfiable():
+                earlier = islice(where.items(), position)
+                shared = {first: both for first, other in earlier if (both := other & states).satisfiable()}
+                yield list(shared), second, next(iter(shared.values()))
+            before |= states
 
     def _running(self, plant: sct.Plant) -> Diagram:
         """The states in which a service or action is under way."""
@@ -350,10 +373,9 @@ class Observer:
 
     def _shared_topic_conflicts(self) -> Iterator[SharedTopicConflict]:
         for events in self._system.roles.shared_topics:
-            for first, second in combinations([event for event in events if event in self._permissions], 2):
-                both = self._permissions[first].allowed & self._permissions[second].allowed
-                if both.satisfiable():
-                    yield SharedTopicConflict(first, second, self._example(both))
+            where = {event: self._permissions[event].allowed for event in events if event in self._permissions}
+            for (first, *others), second, both in self._meetings(where):
+                yield SharedTopicConflict(first, second, self._example(both), tuple(others))
 
     def _unrestricted_calls(self) -> Iterator[sct.Event]:
         for event in self._triggers:

@@ -52,42 +52,33 @@ def indistinct_commands(base: rsc.Base) -> Iterator[Finding]:
     if not isinstance(base, rsc.Robot):
         return
     known = instances(base)
-    firsts: dict[str, list[PortInstance]] = {}
+    firsts: dict[object, PortInstance] = {}
     for second in _ports(known, rsc.Message):
-        if sent_type(second.communication) is None:
+        sent = sent_type(second.communication)
+        if sent is None or isinstance(sent, rsc.NoneDataType):
             continue
-        others = firsts.setdefault(_name(second).removeprefix("/"), [])
-        same = next((first for first in others if _are_alike(first, second, known)), None)
-        others.append(second)
-        if same is not None:
-            provided = known.provided(second)
-            why = "carry the same data" if provided else "have no `provide`, so that both carry zeros"
+        data = _statements(second, known)
+        alike = (_name(second).removeprefix("/"), ros_type(second.communication), data)
+        first = firsts.setdefault(alike, second)
+        if first is not second:
+            why = "carry the same data" if data else "have no `provide`, so that both carry zeros"
             yield Finding(
                 _place(second),
-                f"{_described(same)} and {_described(second)} go to the topic `{_name(second)}` and {why}: the robot"
+                f"{_described(first)} and {_described(second)} go to the topic `{_name(second)}` and {why}: the robot"
                 " can't tell them apart",
                 f"provide other data with `{written(second.communication.name)}`, or use one message for both",
-                related=same.communication,
+                related=first.communication,
             )
 
 
-def _are_alike(first: PortInstance, second: PortInstance, known: Instances) -> bool:
-    """Whether two commands always carry the same data, as far as their texts say."""
-    if ros_type(first.communication) != ros_type(second.communication):
-        return False
-    if isinstance(sent_type(second.communication), rsc.NoneDataType):
-        return False
-    return _statements(first, known) == _statements(second, known)
-
-
-def _statements(port: PortInstance, known: Instances) -> list[tuple[str, str]]:
+def _statements(port: PortInstance, known: Instances) -> tuple[tuple[str, str], ...]:
     """The data of each effective `provide` for a command and its condition, with names written out."""
     found = []
     for statement in known.provided(port):
         data, condition = statement.element.data, statement.element.condition
         shown = _shown(data, statement.within, known) if data is not None else ""
         found.append((shown, "" if condition is None else _shown(condition, statement.within, known)))
-    return found
+    return tuple(found)
 
 
 def _shown(expression: ex.Expression, within: Instance | None, known: Instances) -> str:
