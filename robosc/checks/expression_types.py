@@ -52,7 +52,7 @@ class Restriction(Enum):
 class Place:
     """Where an expression stands: the type of `value` there, or why there is none, and which names it may read.
 
-    `what` and `instead` are for what must be constant: what it is, and what a hint says behind what it may be.
+    `has_reason` says whether it may read `error`. `what` and `instead` are for what must be constant: what it is, and what a hint says behind what it may be.
     """
 
     value: Type | None
@@ -60,8 +60,10 @@ class Place:
     restriction: Restriction = Restriction.FREE
     what: str = "an initial value"
     instead: str = "; a transition can assign the rest"
+    has_reason: bool = False
 
 
+_STORE_REASON = "store it in a variable by `on error from … do why := error`, and read the variable"
 #: What functions want that is no basic type.
 _FITTING: Mapping[Rule, tuple[Callable[[Type], bool], str]] = {
     Rule.SIZE: (lambda found: isinstance(found, ArrayType) or found == STRING, "an array or a string"),
@@ -126,6 +128,9 @@ class ExpressionCheck:
                 return UNKNOWN
             case rsc.Access():
                 return self._access(expression, types)
+            case rsc.ErrorReason() if not self.place.has_reason:
+                self.report(expression, "`error` can't be read here: it is the reason of one `error`", _STORE_REASON)
+                return UNKNOWN
             case rsc.ArrayQuantifier():
                 array = expression.array
                 if types[0] != UNKNOWN and not isinstance(types[0], ArrayType):

@@ -40,11 +40,12 @@ class Domain:
 
     def internal(self, value: Value) -> int:
         """A reader's value as the engine sees it; an integer saturates. ValueError: it is of another type."""
-        if self._names is not None and isinstance(value, str) and value in self._names:
-            return self._names.index(value)
+        possible = None if self._names is None else self._names[self.low : self.high + 1]
+        if possible is not None and isinstance(value, str) and value in possible:
+            return self.low + possible.index(value)
         if self._names is None and isinstance(value, int) and isinstance(value, bool) == self._boolean:
             return self.clamp(value)
-        expected = "a boolean" if self._boolean else "an integer" if self._names is None else ", ".join(self._names)
+        expected = "a boolean" if self._boolean else "an integer" if possible is None else ", ".join(possible)
         raise ValueError(f"{value!r} is none of the values: {expected}")
 
     def clamp(self, value: int) -> int:

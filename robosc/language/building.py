@@ -12,6 +12,7 @@ from robosc.interruption import checkpoint
 from robosc.language.grammar import attribute
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.failures import FAILURE
 from robosc.semantics.operators import BY_CLASS, Associativity
 
 if TYPE_CHECKING:
@@ -91,6 +92,9 @@ class Builder:
             start, end = node.position + self._offset, node.position_end + self._offset
             name = f"{element.package}/{element.rosType}"
             self.references[element] = {"type": Name(name, start, end)}
+        elif isinstance(element, rsc.ErrorReason):
+            start, end = node.position + self._offset, node.position_end + self._offset
+            self.references[element] = {"enumeration": Name(FAILURE, start, end)}
         elif isinstance(element, rsc.IntegerDataType) and element.lower is not None:
             self.bounded.append(element)
         elif isinstance(element, rsc.Parameter):

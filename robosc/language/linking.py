@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from robosc.diagnostics import Related, Repair
 from robosc.interruption import checkpoint
 from robosc.language.explaining import BASIC_TYPES, CONSTRUCTS, did_you_mean
+from robosc.language.failures import VALUES, expects_failure
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
 from robosc.language.scopes import Declared, File, Names, Scope, by_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import RUNNING_WORD
 from robosc.semantics.expansion import constant_value
+from robosc.semantics.failures import FAILURE
 from robosc.semantics.naming import enumeration, written
 from robosc.semantics.operators import FUNCTIONS
 from robosc.semantics.typing import (
@@ -139,14 +141,37 @@ class Linker:
                     linked = "interface" in self._file.references.get(definition, ())
                     if isinstance(definition, rsc.CommunicationType) and not linked:
                         link_interface(definition)
+        reasons = {}
         for element, names in list(self._file.references.items()):
             checkpoint()
-            if element in self._file.references:  # `.running` is no property
+            if self._may_be_reason(element):
+                reasons[element] = names
+            elif element in self._file.references:  # `.running` is no property
                 self._use(element, names)
+        for element, names in reasons.items():
+            self._reason(element, names)
         for declared in self._file.bounded:
             low, high = constant_value(declared.lower), constant_value(declared.upper)
             if type(low) is int and type(high) is int:
                 declared.minimum, declared.maximum = low, high
+
+    def _may_be_reason(self, element: ex.Located) -> bool:
+        """Whether a bare name is a value of `Failure` if the text expects one there, which other names tell."""
+        is_bare = self._file.predefined is not None and self._is_bare(element)
+        return is_bare and self._file.references[element]["item"].text in VALUES
+
+    def _is_bare(self, element: ex.Located) -> bool:
+        if not isinstance(element, rsc.Access) or element.value or element.segments:
+            return False
+        return "component" not in self._file.references.get(element, {})
+
+    def _reason(self, access: rsc.Access, names: Mapping[str, Name]) -> None:
+        """A bare name that is called like a value of `Failure`."""
+        if not expects_failure(access, self._is_bare):
+            self._access(access, names)
+            return
+        assert self._file.predefined is not None
+        access.item = self._file.predefined.declared[rsc.EnumValue][names["item"].text]
 
     def _declaration(self, element: ex.Located, names: Mapping[str, Name]) -> None:
         match element:
@@ -157,6 +182,9 @@ class Linker:
                 unknown = declare(element, self.interfaces)
                 if unknown is not None:
                     self._report(names["type"], *unknown)
+            case rsc.ErrorReason():
+                assert self._file.predefined is not None
+                element.enumeration = self._file.predefined.declared[rsc.ComplexDataType][FAILURE]
             case rsc.ComplexDataTypeReference():
                 name = names["type"]
                 found = self._definition(rsc.ComplexDataType, "object or enum", Declared.DATA_TYPE, name)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from robosc.diagnostics import Repair, in_order
 from robosc.files.resources import locate
 from robosc.language.explaining import did_you_mean
+from robosc.language.failures import names_failures
 from robosc.language.libraries import LibraryPath
 from robosc.language.linking import RULE, link
 from robosc.language.recovery import parse_file
@@ -100,6 +101,9 @@ class _Reader:
             if name is not None:
                 file.libraries[name.text] = self._library(file, self._paths[identity], name)
                 continue
+            if file.predefined is None and names_failures(file):
+                file.predefined = self._predefined()
+                continue
             if file.base is not None:
                 importable = partial(self._path.components, self._paths[identity])
                 self.findings += link(file, self._ros_types, self._resolved, importable)
@@ -131,7 +135,7 @@ class _Reader:
         Of two files with one name the one that is read later gets as many of the folders around it as tell them apart.
         """
         whole = path.parent.resolve() / path.name
-        shipped = whole.parent == locate("stdlib")
+        shipped = locate("stdlib") in whole.parents
         name = (
             path.name
             if shipped or not whole.is_relative_to(self._folder)
@@ -142,6 +146,12 @@ class _Reader:
             parts += 1
             name = PurePath(*whole.parts[-parts:]).as_posix()
         return name
+
+    def _predefined(self) -> File:
+        """The library that every model knows."""
+        path = locate("stdlib/predefined/predefined.rscd")
+        identity = path.resolve()
+        return self._files[identity] if identity in self._files else self._open(path, str(path))
 
     def _library(self, file: File, path: Path, name: Name) -> File | None:
         found = self._path.find(name.text, path)

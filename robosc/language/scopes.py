@@ -115,6 +115,8 @@ class File:
     #: The types whose bounds are expressions.
     bounded: list[rsc.IntegerDataType] = field(default_factory=list)
     regions: SkippedRegions = field(default_factory=SkippedRegions)
+    #: The library that every model knows; None where the file names nothing of it.
+    predefined: File | None = None
     #: The files of the libraries that it imports from, by the libraries' names; None: none that can be used.
     libraries: dict[str, File | None] = field(default_factory=dict)
     #: The faults of the text itself, in order.
@@ -222,17 +224,25 @@ class Scope:
         self.components: Names = file.declared[rsc.Component]
         self._file = file
         self._imports = [library for library in file.libraries.values() if library is not None]
+        self._predefined = [] if file.predefined is None else [file.predefined]
         self._instances = Instances(base, resolved)
         self._contents: dict[rsc.Component, _Content | None] = {}
         #: Whether a component is imported of which nothing is known.
         self.incomplete = any(self.members(component) is None for component in self.components.values())
 
     def find(self, kind: type[Any], name: str) -> list[tuple[File, Any]]:
-        """The definitions of a kind with a name, with their files: the own one, else those of imported libraries."""
+        """The definitions of a kind with a name, with their files.
+
+        They are the own one, else those of imported libraries, else the predefined one.
+        """
         own = self._file.declared[kind].get(name)
         if own is not None:
             return [(self._file, own)]
-        return [(library, library.declared[kind][name]) for library in self._imports if name in library.declared[kind]]
+        for libraries in (self._imports, self._predefined):
+            found = [(library, library.declared[kind][name]) for library in libraries if name in library.declared[kind]]
+            if found:
+                return found
+        return []
 
     def values(self, name: str) -> list[rsc.EnumValue]:
         """The enum values with a name, of each enum the first: those of the own file, else of imported libraries."""

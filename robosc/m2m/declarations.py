@@ -8,12 +8,13 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
 from robosc.semantics.evaluation import Value, literal, saturate
 from robosc.semantics.expansion import constant_value
+from robosc.semantics.failures import reasons
 from robosc.semantics.naming import Names
 from robosc.semantics.typing import EnumType
 
 if TYPE_CHECKING:
     from robosc.metamodel import rosgraph, sct
-    from robosc.semantics.inputs import Computed
+    from robosc.semantics.inputs import Computed, FailureReason
     from robosc.semantics.instances import InstanceVariable
 
 #: The type that becomes of a basic type without bounds, and the value of a variable without initial one.
@@ -57,6 +58,14 @@ class Declarations:
         if told.bounds is None:
             return ex.BooleanType()
         return ex.IntegerType(minimum=told.bounds[0], maximum=told.bounds[1])
+
+    def reason(self, told: FailureReason) -> ex.Type:
+        """The reasons for which the service or action of an error can fail, which follow each other in the enum."""
+        literals = {literal.name: literal for literal in self.enumeration(told.enum).literals}
+        possible = [literal for name, literal in literals.items() if name in reasons(told.port.communication)]
+        return ex.EnumerationType(
+            enumeration=self.enumerations[told.enum], first=possible[0], last=possible[-1]
+        )
 
     def enumeration(self, enum: robosc.EnumDataType) -> ex.Enumeration:
         """The enumeration of an enum."""

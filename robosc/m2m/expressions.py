@@ -15,7 +15,7 @@ from robosc.semantics.evaluation import Value, evaluate, literal
 from robosc.semantics.instances import PortInstance
 from robosc.semantics.naming import Names
 from robosc.semantics.operators import COMPARISONS, FUNCTIONS, Rule, operator_of
-from robosc.semantics.printing import disjunction
+from robosc.semantics.printing import conjunction, disjunction
 from robosc.semantics.typing import DOUBLE, STRING, ArrayType, ObjectType, Types, declared_type
 from robosc.semantics.walks import fold, operands, with_operands
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from robosc.m2m.declarations import Declarations
     from robosc.m2m.trace import Trace
+    from robosc.semantics.cone_of_influence import Reading
     from robosc.semantics.instances import Instance, InstanceParameter, InstanceVariable
 
     #: What an access with segments means, whose indices are translated: the expression, and the type of what it reads.
@@ -103,7 +104,7 @@ class SctExpressions(_Expressions):
         self,
         expression: ex.Expression,
         within: Instance | None,
-        transition: robosc.Transition | None = None,
+        transition: robosc.Transition | robosc.RequirementTransition | None = None,
         assigned: InstanceVariable | None = None,
     ) -> ex.Expression:
         """A condition, or what a transition assigns to a variable; it may read the data of the transition's event.
@@ -111,7 +112,20 @@ class SctExpressions(_Expressions):
         `within` is the instance whose text it is. Raises ModelError where a comparison of doubles has too many cases.
         """
         written = self._trace.instances.expanded(expression, within)
-        inputs = self._inputs(written, within, transition, assigned)
+        readings = list(read_data(self._trace.instances, written, within, transition, assigned))
+        inputs = {reading.part: self._input(reading) for reading in readings if reading.told and not reading.is_readable}
+        made = self._translated(written, within, inputs)
+        present = conjunction(sct.InputReference(input=self._input(reading)) for reading in readings if reading.is_readable)
+        if present is None or assigned is None:
+            return made
+        # An assignment that can't be read is left out.
+        kept = sct.VariableReference(variable=self._trace.variables[assigned])
+        return ex.Conditional(condition=present, then=made, otherwise=kept)
+
+    def _translated(
+        self, written: ex.Expression, within: Instance | None, inputs: Mapping[ex.Expression, sct.Input]
+    ) -> ex.Expression:
+        """A written out expression, of which some parts are inputs."""
 
         def translated(original: ex.Expression, operands: list[ex.Expression]) -> ex.Expression:
             if original in inputs:
@@ -131,16 +145,9 @@ class SctExpressions(_Expressions):
 
         return fold(translated, written, lambda part: () if part in inputs else operands(part))
 
-    def _inputs(
-        self,
-        expression: ex.Expression,
-        within: Instance | None,
-        transition: robosc.Transition | None,
-        assigned: InstanceVariable | None,
-    ) -> dict[ex.Expression, sct.Input]:
-        """The parts of an expression that are inputs."""
-        readings = read_data(self._trace.instances, expression, within, transition, assigned)
-        return {reading.part: self._trace.inputs[reading.told] for reading in readings if reading.told is not None}
+    def _input(self, reading: Reading) -> sct.Input:
+        assert reading.told is not None
+        return self._trace.inputs[reading.told]
 
 
 class NodeExpressions(_Expressions):
@@ -195,6 +202,8 @@ class NodeExpressions(_Expressions):
         def translated(original: ex.Expression, operands: list[ex.Expression]) -> ex.Expression:
             if isinstance(original, robosc.Access):
                 return access(original, operands)
+            if isinstance(original, robosc.ErrorReason):
+                return rosgraph.ErrorReason(enumeration=self._declarations.enumeration(original.enumeration))
             if isinstance(original, robosc.ArrayQuantifier):
                 made = quantifiers.get(original.element) or rosgraph.ArrayQuantifier(
                     name=names.fresh(original.element.name)

@@ -159,7 +159,7 @@ class RequirementAutomaton:
     def _guard(self, transition: robosc.RequirementTransition, expressions: SctExpressions) -> ex.Expression:
         if transition.guard is None:
             return ex.BooleanLiteral(value=True)
-        return expressions(transition.guard, self._within)
+        return expressions(transition.guard, self._within, transition)
 
 
 def _no_bound(count: robosc.CountRequirement) -> Diagnostic:

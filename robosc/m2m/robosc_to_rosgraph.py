@@ -10,11 +10,19 @@ from robosc.m2m.kept_types import KeptTypes
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.ros_types import RosTypes
-from robosc.semantics.communication import CONTROLLABLE, basis, data_type, event_of, events, ros_type
+from robosc.semantics.communication import (
+    CONTROLLABLE,
+    basis,
+    data_type,
+    event_of,
+    events,
+    happens_anyway,
+    ros_type,
+)
 from robosc.semantics.cone_of_influence import guard_of
 from robosc.semantics.durations import set_on_robot
 from robosc.semantics.expansion import constant_value
-from robosc.semantics.inputs import Data
+from robosc.semantics.inputs import Data, FailureReason
 from robosc.semantics.instances import bound_arguments
 from robosc.semantics.messages import EACH, holds_objects, is_structured, origins, reads_elements
 from robosc.semantics.naming import Names
@@ -231,16 +239,18 @@ class _Transformation:
             event=self.trace.event(port, event.kind),
             source=port.communication.source,
         )
-        if event.section is None:
-            return reception
-        value = self.value_of(port, event)
-        self.carriers[reception] = self.interface(port.communication), event.section
+        value = None
+        if event.section is not None:
+            value = self.value_of(port, event)
+            self.carriers[reception] = self.interface(port.communication), event.section
         for carried, declared in self.inputs.get((port, event), ()):
             read: ex.Expression
             if isinstance(carried, Data):
                 read = robosc.Access(
                     value=True, segments=[robosc.PropertySegment(property=part) for part in carried.path]
                 )
+            elif isinstance(carried, FailureReason):
+                read = robosc.ErrorReason(enumeration=carried.enum)
             else:
                 read = carried.expression
             assigned = self.expressions(read, port.instance, value)
@@ -348,10 +358,14 @@ class _Transformation:
                 value = self.expressions(assignment.value, instance, data)
                 if owned in self.variables:
                     variable = self.variables[owned]
+                    if happens_anyway(event) and reads_elements(value):
+                        # It is left out where it can't be read.
+                        kept = rosgraph.NodeVariableReference(variable=variable)
+                        value = rosgraph.IfReadable(value=value, otherwise=kept)
                     reaction.assignments.append(
                         rosgraph.NodeAssignment(variable=variable, value=value, source=assignment.source)
                     )
-                elif reads_elements(value):
+                elif reads_elements(value) and not happens_anyway(event):
                     reaction.needs.append(value)
             reads = reaction.guard is not None and reads_elements(reaction.guard)
             if reaction.assignments or reaction.needs or reads:
@@ -366,6 +380,8 @@ class _Transformation:
         data = self.data(transition, instance)
         found = [guard for guard in map(guard_of, [*others, transition]) if guard is not None]
         guards = [self.expressions(guard, instance, data) for guard in found]
+        if happens_anyway(self.trace.event_of(transition, instance)):
+            guards = [_false_if_missing(guard) for guard in guards]
         own = [] if transition.guard is None else [guards.pop()]
         return conjunction([*(ex.Negation(operand=guard) for guard in guards), *own])
 
@@ -387,6 +403,13 @@ class _Transformation:
         event = event_of(transition.communicationType, transition.resultType)
         has_data = port is not None and event is not None and event.feature and not event.is_sent
         return self.value_of(port, event) if has_data else None  # type: ignore[arg-type]
+
+
+def _false_if_missing(condition: ex.Expression) -> ex.Expression:
+    """A condition that is false where an element of an array is missing that it reads."""
+    if not reads_elements(condition):
+        return condition
+    return rosgraph.IfReadable(value=condition, otherwise=ex.BooleanLiteral(value=False))
 
 
 def _steps(

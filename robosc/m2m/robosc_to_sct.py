@@ -23,7 +23,7 @@ from robosc.semantics.communication import (
 from robosc.semantics.cone_of_influence import cone_of_influence, guard_of
 from robosc.semantics.durations import UNITS, bounds, milliseconds, set_milliseconds, set_on_robot
 from robosc.semantics.expansion import constant_value
-from robosc.semantics.inputs import Data
+from robosc.semantics.inputs import Data, FailureReason
 from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance, Statement
 from robosc.semantics.naming import Names
 from robosc.semantics.printing import RoboscPrinter, conjunction, disjunction
@@ -164,6 +164,10 @@ class _Transformation:
                 parts = [part.name for part in carried.path]
                 assert carried.type is not None
                 made.type = self.declarations.type(carried.type)
+            elif isinstance(carried, FailureReason):
+                parts = ["reason"]
+                made.type = self.declarations.reason(carried)
+                made.text = RoboscPrinter()(robosc.ErrorReason())
             else:
                 computed += 1
                 parts = [f"c{computed}"]

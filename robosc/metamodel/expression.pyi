@@ -43,7 +43,9 @@ class StringType(Type):
 class EnumerationType(Type):
     """One of the literals of an enumeration."""
     enumeration: Enumeration
-    def __init__(self, *, enumeration: Enumeration | None = ..., source: Place | None = ...) -> None: ...
+    first: EnumerationLiteral | None
+    last: EnumerationLiteral | None
+    def __init__(self, *, enumeration: Enumeration | None = ..., first: EnumerationLiteral | None = ..., last: EnumerationLiteral | None = ..., source: Place | None = ...) -> None: ...
 
 class Enumeration(NamedElement):
     """A finite set of named values (thesis 5.2.3)."""

@@ -335,6 +335,11 @@ class Access(expression.Expression):
     enumeration: EnumDataType | None
     def __init__(self, *, value: bool | None = ..., component: Component | None = ..., item: AccessibleItem | None = ..., segments: Iterable[AccessSegment] = ..., enumeration: EnumDataType | None = ..., source: Place | None = ...) -> None: ...
 
+class ErrorReason(expression.Expression):
+    """Why the service or action of an `error` has failed (`error`)."""
+    enumeration: EnumDataType | None
+    def __init__(self, *, enumeration: EnumDataType | None = ..., source: Place | None = ...) -> None: ...
+
 class Call(expression.Expression):
     """The value of a function for some arguments."""
     function: Function

@@ -189,6 +189,17 @@ class ConversionCall(expression.Expression):
     argument: WireAccess
     def __init__(self, *, conversion: Conversion | None = ..., argument: WireAccess | None = ..., source: Place | None = ...) -> None: ...
 
+class ErrorReason(expression.Expression):
+    """Why the service or action of an `error` has failed: the literal that is called like the node's reason."""
+    enumeration: expression.Enumeration
+    def __init__(self, *, enumeration: expression.Enumeration | None = ..., source: Place | None = ...) -> None: ...
+
+class IfReadable(expression.Expression):
+    """A value that reads elements of arrays; another one where such an element is missing. It stands in reactions to events that happen in any case."""
+    value: expression.Expression
+    otherwise: expression.Expression
+    def __init__(self, *, value: expression.Expression | None = ..., otherwise: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
+
 class ArrayQuantifier(expression.NamedElement, expression.Expression):
     """A condition on the elements of an array, from left to right and no further than needed, or how many of them it holds of. Its name is that of an element."""
     quantifier: Quantifier

@@ -99,7 +99,7 @@ class Drive:
         self._pace = Pace(self._period)
         self._now = START * self._period
         settings = Settings(_defaults(self._graph, self._configuration) | self.parameters, self._configuration)
-        self._robot = Robot(self._graph, self._distribution, lambda: self._now)
+        self._robot = Robot(self._graph, self._distribution, lambda: self._now, self.incoming)
         self._event_loop = EventLoop(lambda: self._now)
         self._lines = _Lines()
         controller = kind(self._graph, settings, self._robot, self._event_loop)

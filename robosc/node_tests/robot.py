@@ -11,7 +11,8 @@ from robosc.ros_types import Section
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from robosc.metamodel import rosgraph
+    from robosc.metamodel import rosgraph, sct
+    from robosc.node_tests.samples import Incoming
     from robosc.ros_types import RosDistribution
     from robosc.runtime.core.port import CallHandlers, ComponentStatus, Endpoint, GoalHandlers, Message
 
@@ -37,7 +38,13 @@ class RunningGoal:
 class Robot:
     """A port (`robosc.runtime.core.port.ControllerPort`) whose servers are there and wait to be told what to answer."""
 
-    def __init__(self, graph: rosgraph.RosGraph, distribution: RosDistribution, clock: Callable[[], float]) -> None:
+    def __init__(
+        self,
+        graph: rosgraph.RosGraph,
+        distribution: RosDistribution,
+        clock: Callable[[], float],
+        incoming: Mapping[sct.Event, Incoming],
+    ) -> None:
         self.now = clock
         #: The calls that wait, each since when.
         self.calls: dict[rosgraph.ServiceClient, tuple[float, CallHandlers]] = {}
@@ -51,6 +58,9 @@ class Robot:
             self._note(service.interface, Section.REQUEST, service.request)
         for action in graph.actionClients:
             self._note(action.interface, Section.GOAL, action.request)
+            results = self._fields.setdefault((action.interface, Section.RESULT), {})
+            for end in (action.error, action.canceled):
+                results |= incoming[end.event].fields
 
     def _note(self, interface: rosgraph.Interface, section: Section, sending: rosgraph.Sending) -> None:
         fields = self._fields.setdefault((interface, section), {})
@@ -65,7 +75,7 @@ class Robot:
         """What the robot sends is handled at once."""
 
     def create(self, interface: rosgraph.Interface, section: Section) -> Message:
-        """Data with the fields that the model sets."""
+        """Data with the fields that the model sets, or reads where a goal ended without a result."""
         return message(self._fields[interface, section], {}) if self._fields[interface, section] else None
 
     def wire_types(self, owner: Message) -> Mapping[str, str]:

@@ -17,7 +17,9 @@ from robosc.node_tests.messages import Definition, Field, Leaf, Path, data_read,
 from robosc.ros_types.wire import INTEGER_RANGES
 from robosc.runtime.core.event_log import ReceivedData
 from robosc.runtime.core.node_data import NodeData
+from robosc.runtime.core.port import Failure
 from robosc.semantics import messages
+from robosc.semantics.communication import happens_anyway
 from robosc.semantics.messages import reads_elements
 from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name
@@ -183,6 +185,7 @@ def incoming(
 def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dict[sct.Event, Incoming]:
     """What each event that comes in shows, and the messages to choose from; the events of one topic share it."""
     data = NodeData(graph, Engine(graph.model))
+    data.reason = Failure.ABORTED
     values, kept = Values(graph), list(messages.kept_reads(graph))
     known: dict[sct.Event, Incoming] = {}
     for interface, part, receptions in messages.received(graph):
@@ -192,6 +195,8 @@ def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dic
             later = [(path, inner) for owner, path, inner in kept if owner is reception]
             described.append((event_name(reception.event), ReceivedData(read).parts, read, later))
         kind = incoming(distribution, interface, part, described)
+        if any(happens_anyway(reception.event) for reception in receptions):
+            kind.unreadable.clear()
         _find_samples(kind, values, data, receptions)
         known |= dict.fromkeys((reception.event for reception in receptions), kind)
     return known
@@ -233,8 +238,10 @@ def _events(
         for reception in receptions:
             for value in data.values_read(reception.event):
                 data.value(value, made)
-            told = [(given.input.name, data.value(given.value, made)) for given in reception.inputs]
-            inputs = ((name, value.name if isinstance(value, ex.EnumerationLiteral) else value) for name, value in told)
+            if not happens_anyway(reception.event):
+                for given in reception.inputs:
+                    data.value(given.value, made)
+            inputs = ((given.input.name, data.input(given, made)) for given in reception.inputs)
             events.append((event_name(reception.event), tuple(inputs)))
     except UnreadableError:
         return None

@@ -15,7 +15,7 @@ from robosc.node_tests.drive import Drive, DrivenController
 from robosc.node_tests.plan import Plan
 from robosc.node_tests.steps import WAIT, Place, Step, Stimulus
 from robosc.runtime.core.event_log import nested
-from robosc.runtime.core.port import Outcome
+from robosc.runtime.core.port import Failure, Outcome
 from robosc.runtime.core.times import RESOLUTION_MS
 from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name
@@ -219,23 +219,29 @@ class Tour(Drive):
             acts |= self._classes(topic.topic, topic.receptions, partial(self._publish, topic))
         for service in self._graph.serviceClients:
             acts |= self._classes(service.identifier, [service.response], partial(self._answer, service))
-            failure = Stimulus(f"{service.identifier} fails", ((event_name(service.error.event), ()),), fails=True)
+            reasons = tuple((given.input.name, Failure.TIMEOUT.value) for given in service.error.inputs)
+            failure = Stimulus(f"{service.identifier} fails", ((event_name(service.error.event), reasons),), fails=True)
             acts[failure] = partial(self._fail, service)
         for action in self._graph.actionClients:
             acts |= self._classes(action.identifier, [action.feedback], partial(self._feed_back, action))
-            acts |= self._classes(action.identifier, [action.response], partial(self._succeed, action))
-            failure = Stimulus(f"{action.identifier} fails", ((event_name(action.error.event), ()),), fails=True)
-            acts[failure] = partial(self._abort, action)
-            canceled = Stimulus(f"{action.identifier} is canceled", ((event_name(action.canceled.event), ()),))
-            acts[canceled] = partial(self._end_canceled, action)
+            succeed = partial(self._end, action, Outcome.SUCCEEDED)
+            acts |= self._classes(action.identifier, [action.response], succeed)
+            acts |= self._classes(f"{action.identifier} fails", [action.error], partial(self._abort, action), fails=True)
+            end = partial(self._end, action, Outcome.CANCELED)
+            acts |= self._classes(f"{action.identifier} is canceled", [action.canceled], end)
         return acts
 
     def _classes(
-        self, name: str, receptions: Sequence[rosgraph.Reception], send: Callable[[Incoming, Class], dict[str, Any]]
+        self,
+        name: str,
+        receptions: Sequence[rosgraph.Reception],
+        send: Callable[[Incoming, Class], dict[str, Any] | None],
+        *,
+        fails: bool = False,
     ) -> dict[Stimulus, Act]:
         kind = self.incoming[receptions[0].event]
         return {
-            Stimulus(f"{name} {number}", found.events): partial(send, kind, found)
+            Stimulus(f"{name} {number}", found.events, fails): partial(send, kind, found)
             for number, found in enumerate(kind.classes)
         }
 
@@ -267,23 +273,21 @@ class Tour(Drive):
         self._robot.goals[client].handlers.feedback(data)
         return fields
 
-    def _succeed(self, client: rosgraph.ActionClient, kind: Incoming, found: Class) -> dict[str, Any]:
+    def _end(
+        self, client: rosgraph.ActionClient, outcome: Outcome, kind: Incoming, found: Class
+    ) -> dict[str, Any] | None:
+        """End a goal with a result."""
         data, fields = self._message(kind, found)
-        self._robot.goals.pop(client).handlers.ended(Outcome.SUCCEEDED, data, "")
-        return fields
+        self._robot.goals.pop(client).handlers.ended(outcome, data, "")
+        return fields if fields or outcome is Outcome.SUCCEEDED else None
 
-    def _abort(self, client: rosgraph.ActionClient) -> dict[str, Any] | None:
-        """A result that can't be read where there is one, else none: the goal is aborted."""
-        handlers = self._robot.goals.pop(client).handlers
+    def _abort(self, client: rosgraph.ActionClient, kind: Incoming, found: Class) -> dict[str, Any] | None:
+        """End a goal with a result that can't be read, where there is one; else abort it."""
         unreadable = self._unreadable(client.response)
         if unreadable is None:
-            handlers.ended(Outcome.ABORTED, None, "")
-            return None
-        handlers.ended(Outcome.SUCCEEDED, unreadable[0], "")
+            return self._end(client, Outcome.ABORTED, kind, found)
+        self._robot.goals.pop(client).handlers.ended(Outcome.SUCCEEDED, unreadable[0], "")
         return unreadable[1]
-
-    def _end_canceled(self, client: rosgraph.ActionClient) -> None:
-        self._robot.goals.pop(client).handlers.ended(Outcome.CANCELED, None, "")
 
     def _message(self, kind: Incoming, found: Class) -> tuple[Any, dict[str, Any]]:
         """Data of a class that came in least often until now."""

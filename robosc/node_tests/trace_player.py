@@ -63,7 +63,14 @@ class Line:
     message: Any = None
 
     def __str__(self) -> str:
-        return f"{self.direction} {self.event}" + ("" if self.data is None else f" {json.dumps(self.data['value'])}")
+        because = f" because {self.reason}" if self.reason else ""
+        value = f" {json.dumps(self.data['value'])}" if self.data and "value" in self.data else ""
+        return f"{self.direction} {self.event}{because}{value}"
+
+    @property
+    def reason(self) -> str:
+        """Why a service or an action has failed; empty where the node does not read it."""
+        return str(self.data.get("reason", "")) if self.data else ""
 
 
 def parse(text: str, number: int) -> Line:
@@ -81,7 +88,7 @@ def parse(text: str, number: int) -> Line:
         raise TraceError(f"line {number} is no line of an event log: it has no time in seconds")
     if not isinstance(line.direction, str) or not isinstance(line.event, str):
         raise TraceError(f"line {number} is no line of an event log: it has no direction and event")
-    if line.data is not None and not (isinstance(line.data, dict) and "value" in line.data):
+    if line.data is not None and not (isinstance(line.data, dict) and {"value", "reason"} & set(line.data)):
         raise TraceError(f'line {number} is no line of an event log: "data" is to be an object with a value')
     if line.message is not None and not isinstance(line.message, dict):
         raise TraceError(f'line {number} is no line of an event log: "message" is to be an object')
@@ -205,7 +212,8 @@ class Incoming:
         absent: list[tuple[str, ...]] = []
         for event, reads in self._reads.items():
             line = next((line for line in lines if line.event == event), None)
-            found = {} if line is None or line.data is None else self._values(line.data["value"], reads)
+            has_value = line is not None and line.data is not None and "value" in line.data
+            found = self._values(line.data["value"], reads) if line is not None and has_value else {}
             unread = []
             for read in reads:
                 path = tuple(read["path"])
@@ -383,8 +391,9 @@ class Player:
         for action in connections["actions"]:
             self._add(action["feedback"], partial(port.feed_back, action["name"]))
             answer = self._add(action["response"], partial(port.end, action["name"], "succeeded"))
-            self._answers[action["error"]] = partial(self._abort, action["name"], answer)
-            self._answers[action["canceled"]] = partial(self._end_canceled, action["name"])
+            abort = self._add(action["failure"], partial(port.end, action["name"], "aborted"))
+            self._answers[action["error"]] = partial(self._abort, action["name"], answer, abort)
+            self._add(action["canceled"], partial(port.end, action["name"], "canceled"))
         self._clients = connections["services"] + connections["actions"]
         self._outlets = {
             event: publisher["topic"] for publisher in connections["publishers"] for event in publisher["events"]
@@ -482,19 +491,26 @@ class Player:
 
     def _fail(self, service: str, answer: Callable[[Line], None], line: Line) -> None:
         done = self._log.peek()
-        if line.data is not None:  # an answer that can't be read
+        if line.data is not None and line.reason in ("", "unreadable"):
             answer(line)
+        elif line.reason == "timeout":  # time passes until the node gives up
+            return
+        elif line.reason not in ("", "failed"):
+            raise self._unplayable(service, line)
         elif done is None or done.event != line.event:  # it may have come with the time that passed
             self._port.fail(service)
 
-    def _abort(self, action: str, answer: Callable[[Line], None], line: Line) -> None:
-        if line.data is not None:  # a result that can't be read
-            answer(line)
+    def _abort(self, action: str, succeed: Callable[[Line], None], abort: Callable[[Line], None], line: Line) -> None:
+        if line.data is not None and line.reason in ("", "unreadable"):
+            succeed(line)
+        elif line.reason in ("", "aborted"):
+            abort(line)
         else:
-            self._port.end(action, "aborted", {})
+            raise self._unplayable(action, line)
 
-    def _end_canceled(self, action: str, _: Line) -> None:
-        self._port.end(action, "canceled", {})
+    @staticmethod
+    def _unplayable(server: str, line: Line) -> TraceError:
+        return TraceError(f"line {line.number} can't be played: no server can let {server} fail because {line.reason}")
 
     def _batch(self, lines: list[Line], position: int, incoming: Incoming) -> list[Line]:
         """The lines that one message made: all events of its topic, in their order, but those that can't be read."""

@@ -120,7 +120,8 @@ def _connections(
             {
                 **_client(action, started),
                 "cancel": event_name(action.cancel),
-                "canceled": event_name(action.canceled.event),
+                "failure": described(incoming[action.error.event]),
+                "canceled": described(incoming[action.canceled.event]),
                 "feedback": described(incoming[action.feedback.event]),
                 "response": described(incoming[action.response.event]),
             }

@@ -32,7 +32,9 @@ class PortEvent(NamedTuple):
 _RESET = PortEvent(sct.EventKind.reset, "")
 _CANCEL = PortEvent(sct.EventKind.cancel, "cancel")
 _ERROR = PortEvent(sct.EventKind.error, "error")
-_CANCELED = PortEvent(sct.EventKind.canceled, "canceled")
+#: The ends of a goal that has not succeeded come with its result, or with one of ROS's defaults.
+_ABORTED = PortEvent(sct.EventKind.error, "error", Section.RESULT, "responseType")
+_CANCELED = PortEvent(sct.EventKind.canceled, "canceled", Section.RESULT, "responseType")
 
 #: The events of each kind of communication, in the order of its plant; of a message only one of the two happens.
 EVENTS: Mapping[type[robosc.CommunicationType], tuple[PortEvent, ...]] = {
@@ -52,7 +54,7 @@ EVENTS: Mapping[type[robosc.CommunicationType], tuple[PortEvent, ...]] = {
         _CANCEL,
         PortEvent(sct.EventKind.feedback, "feedback", Section.FEEDBACK, "feedbackType"),
         PortEvent(sct.EventKind.response, "response", Section.RESULT, "responseType"),
-        _ERROR,
+        _ABORTED,
         _CANCELED,
     ),
 }
@@ -93,6 +95,16 @@ def events(communication: robosc.CommunicationType | None) -> tuple[PortEvent, .
     return rows
 
 
+def is_error(event: PortEvent | None) -> bool:
+    """Whether an event is the error of a service or an action, which has a reason."""
+    return event is not None and event.kind == sct.EventKind.error
+
+
+def happens_anyway(event: PortEvent | sct.Event) -> bool:
+    """Whether an event happens whether its data can be read or not."""
+    return event.kind in (sct.EventKind.error, sct.EventKind.canceled)
+
+
 def event_names(communication: robosc.CommunicationType | None) -> list[str]:
     """The names of the events that a transition can react to."""
     return sorted((event.name for event in events(communication) if event.name), key=_NAMES.index)
@@ -123,8 +135,11 @@ def sent(communication: robosc.CommunicationType | None) -> PortEvent | None:
 
 
 def carried(communication: robosc.CommunicationType) -> list[tuple[PortEvent, robosc.DataType]]:
-    """The events that carry data, in the order of the text, each with the type that is declared for it."""
-    rows = sorted((row for row in events(communication) if row.section), key=_section_index)
+    """The events that carry data, in the order of the text, each with the type that is declared for it.
+
+    Of the ends of a goal, which all carry its result, the response.
+    """
+    rows = sorted((row for row in events(communication) if row.section and not happens_anyway(row)), key=_section_index)
     types = ((row, data_type(communication, row)) for row in rows)
     return [(row, declared) for row, declared in types if declared is not None]
 

@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
-from robosc.semantics.communication import data_type, event_of
-from robosc.semantics.inputs import inputs_in
+from robosc.semantics.communication import data_type, event_of, meant
+from robosc.semantics.inputs import Computed, inputs_in, may_be_missing, readable
 from robosc.semantics.typing import declared_type
 from robosc.semantics.walks import parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from robosc.semantics.communication import PortEvent
     from robosc.semantics.inputs import Told
     from robosc.semantics.instances import Instance, Instances, InstanceVariable
     from robosc.semantics.typing import Type
@@ -45,20 +46,24 @@ class Reason:
     `variable` is None where the supervisor itself evaluates what reads it.
     """
 
-    access: robosc.Access
+    access: robosc.Access | robosc.ErrorReason
     within: Instance | None
     variable: InstanceVariable | None
 
 
 @dataclass(frozen=True)
 class Reading:
-    """A part of a whole expression that reads the data of an event, and the input that it is; None: it can't be one."""
+    """A part of a whole expression that reads the data of an event, and the input that it is; None: it can't be one.
+
+    `is_readable`: it is no part, and the input is whether the whole can be computed.
+    """
 
     whole: ex.Expression
     part: ex.Expression
     told: Told | None
     reason: Reason
     value: Type
+    is_readable: bool = False
 
 
 @dataclass(frozen=True)
@@ -120,7 +125,7 @@ class Evaluated:
 
     expression: ex.Expression
     within: Instance | None
-    transition: robosc.Transition | None = None
+    transition: robosc.Transition | robosc.RequirementTransition | None = None
 
 
 def guard_of(transition: robosc.Transition) -> ex.Expression | None:
@@ -135,16 +140,24 @@ def conditions(instances: Instances) -> Iterator[Evaluated]:
             guard = guard_of(transition)
             if guard is not None:
                 yield Evaluated(instances.expanded(guard, instance), instance, transition)
-    for condition, within in _stated(instances):
+    for condition, within, following in _stated(instances):
         if condition is not None:
-            yield Evaluated(instances.expanded(condition, within), within)
+            yield Evaluated(instances.expanded(condition, within), within, following)
 
 
-def _stated(instances: Instances) -> Iterator[tuple[ex.Expression | None, Instance | None]]:
-    """What is said in requirements, properties and statements that provide data."""
+def _stated(
+    instances: Instances,
+) -> Iterator[tuple[ex.Expression | None, Instance | None, robosc.RequirementTransition | None]]:
+    """Conditions of requirements, properties and statements that provide data."""
     for automaton in instances.statements(robosc.AutomatonRequirement):
         transitions = (transition for state in automaton.element.states for transition in state.transitions)
-        yield from ((transition.guard, automaton.within) for transition in transitions)
+        yield from ((transition.guard, automaton.within, transition) for transition in transitions)
+    for condition, within in _remembered(instances):
+        yield condition, within, None
+
+
+def _remembered(instances: Instances) -> Iterator[tuple[ex.Expression | None, Instance | None]]:
+    """Conditions over what the robot remembers."""
     for claimed in instances.statements(robosc.Property):
         yield claimed.element.condition, claimed.within
         if isinstance(claimed.element, robosc.ReachabilityProperty):
@@ -177,24 +190,42 @@ def read_data(
     instances: Instances,
     expression: ex.Expression | None,
     within: Instance | None,
-    transition: robosc.Transition | None,
+    transition: robosc.Transition | robosc.RequirementTransition | None,
     variable: InstanceVariable | None = None,
 ) -> Iterator[Reading]:
     """What a written out expression reads of the data of its transition's event.
 
     `variable` is what it is assigned to.
     """
-    if expression is None or not isinstance(transition, robosc.ResultTransition):
-        return
-    port = instances.port(transition.communicationType, within)
-    event = event_of(transition.communicationType, transition.resultType)
-    if port is None or event is None or event.is_sent:
+    reference, event = _event(transition)
+    port = None if reference is None else instances.port(reference, within)
+    if expression is None or port is None or event is None or event.is_sent:
         return
     bounds = None if variable is None else _bounds(variable.type)
     value = declared_type(data_type(port.communication, event))
-    for part, carried in inputs_in(expression, port, event, bounds):
-        access = next(access for access in accesses(part) if access.value)
-        yield Reading(expression, part, carried, Reason(access, within, variable), value)
+    for part, carried in inputs_in(expression, port, event, bounds, is_condition=variable is None):
+        access = next(inside for inside in parts(part) if _reads_event(inside))
+        reason = Reason(access, within, variable)
+        yield Reading(expression, part, carried, reason, value)
+        if variable is not None and isinstance(carried, Computed) and may_be_missing(carried):
+            yield Reading(expression, part, readable(carried), reason, value, is_readable=True)
+
+
+def _event(
+    transition: robosc.Transition | robosc.RequirementTransition | None,
+) -> tuple[robosc.CommunicationReference | None, PortEvent | None]:
+    """The communication and the event of a transition; None where it has none."""
+    match transition:
+        case robosc.ResultTransition():
+            return transition.communicationType, event_of(transition.communicationType, transition.resultType)
+        case robosc.RequirementTransition() if transition.event is not None:
+            return transition.event.communicationType, meant(transition.event)
+    return None, None
+
+
+def _reads_event(part: ex.Expression) -> bool:
+    """Whether a part is `value` or `error`."""
+    return isinstance(part, robosc.ErrorReason) or (isinstance(part, robosc.Access) and part.value)
 
 
 def _bounds(declared: robosc.DataType) -> tuple[int, int] | None:

@@ -54,7 +54,10 @@ def domain(declared: sct.Plant | ex.Type) -> Interval:
         case ex.BooleanType():
             return BOOLEAN
         case ex.EnumerationType():
-            return Interval(0, len(declared.enumeration.literals) - 1)
+            literals = list(declared.enumeration.literals)
+            low = 0 if declared.first is None else literals.index(declared.first)
+            high = len(literals) - 1 if declared.last is None else literals.index(declared.last)
+            return Interval(low, high)
         case ex.IntegerType(minimum=int(low), maximum=int(high)):
             return Interval(low, high)
     raise TypeError(f"an sct model holds no {type(declared).__name__} without bounds")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
-from robosc.semantics.operators import Rule, Value, as_double, divide, operator_of
+from robosc.semantics.operators import Rule, UnreadableError, Value, as_double, divide, operator_of
 from robosc.semantics.walks import operands
 
 if TYPE_CHECKING:
@@ -100,6 +100,9 @@ class Program(Generic[_Result]):
             initial, decided = _QUANTIFIERS[str(expression.quantifier)]
             loop = [start, (_NEXT, (expression, end)), expression.body, (_TALLY, (decided, start, end)), end]
             return [expression.array, (_EACH, (expression, initial)), *loop]
+        if isinstance(expression, rosgraph.IfReadable):
+            both = (Program[Any](part, self._reader, self._fit) for part in operands(expression))
+            return [(_READ, partial(_if_readable, *both))]
         row = operator_of(expression)
         if row is None:
             return self._read(expression)
@@ -174,6 +177,13 @@ class _Label:
 _READ, _CONSTANT, _UNARY, _BINARY, _DECIDE, _UNLESS, _JUMP, _CALL, _REACH, _BOUND, _EACH, _NEXT, _TALLY = range(13)
 #: Behind the last element.
 _NOTHING = object()
+
+
+def _if_readable(value: Program[Any], otherwise: Program[Any], *source: Any) -> Any:
+    try:
+        return value(*source)
+    except UnreadableError:
+        return otherwise(*source)
 
 
 def _fitted(fit: Callable[[int], int], compute: Callable[..., Any], *values: Any) -> Any:

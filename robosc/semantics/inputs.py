@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
-from robosc.semantics.communication import PortEvent, data_type
+from robosc.semantics.communication import PortEvent, data_type, happens_anyway
+from robosc.semantics.operators import operator_of
 from robosc.semantics.printing import RoboscPrinter
 from robosc.semantics.typing import BOOLEAN, INTEGER, EnumType, Types, declared_type
-from robosc.semantics.walks import fold, operands
+from robosc.semantics.walks import copied, fold, operands, parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -25,12 +26,20 @@ _FIXED = (robosc.EnumValue, robosc.Constant, robosc.Parameter, robosc.FormalPara
 class _Reads(NamedTuple):
     """What an expression reads: `data` of an event, or what the supervisor has no finite values of (`beyond`).
 
-    `fixed`: it reads nothing that the robot's state changes.
+    `fixed`: it reads nothing that the robot's state changes. `elements`: it reads elements of an array of the data,
+    `reason`: why the service or action of an error has failed.
     """
 
     data: bool
     fixed: bool
     beyond: bool
+    elements: bool = False
+    reason: bool = False
+
+    @property
+    def computed(self) -> bool:
+        """Whether only the node can compute it, and needs nothing but the data."""
+        return self.data and self.fixed and self.beyond
 
 
 @dataclass(frozen=True)
@@ -63,15 +72,31 @@ class Computed:
     type: Type = field(compare=False)
 
 
-Told: TypeAlias = "Data | Computed"
+@dataclass(frozen=True)
+class FailureReason:
+    """Why the service or action of an error has failed, a value of `enum`."""
+
+    port: PortInstance
+    event: PortEvent
+    enum: robosc.EnumDataType
+
+
+Told: TypeAlias = "Data | Computed | FailureReason"
 
 
 def inputs_in(
-    expression: ex.Expression, port: PortInstance, event: PortEvent, bounds: tuple[int, int] | None = None
+    expression: ex.Expression,
+    port: PortInstance,
+    event: PortEvent,
+    bounds: tuple[int, int] | None = None,
+    *,
+    is_condition: bool = True,
 ) -> Iterator[tuple[ex.Expression, Told | None]]:
     """The parts of a written out expression that become inputs, from left to right; None: the part can't be one.
 
-    `bounds` are those of the variable that the expression is assigned to.
+    `bounds` are those of the variable that the expression is assigned to. An event that happens anyway has a condition
+    that reads elements of an array as one input, or several that are joined by `and`: it is false where one of the
+    elements is missing, and so is its negation. A value that reads some is one input as a whole.
     """
     types = Types(declared_type(data_type(port.communication, event)))
     reads: dict[ex.Expression, _Reads] = {}
@@ -79,9 +104,17 @@ def inputs_in(
     pending = [(expression, bounds)]
     while pending:
         part, limits = pending.pop()
-        # A condition and its negation are one input.
-        kind = types(part) if all(reads[part]) and not isinstance(part, ex.Negation) else None
-        if kind in {BOOLEAN, INTEGER} or isinstance(kind, EnumType):
+        # A condition and its negation are one input, and a reason is one by itself.
+        splits = isinstance(part, ex.Negation) or reads[part].reason
+        if happens_anyway(event) and reads[part].elements:
+            splits = is_condition and isinstance(part, ex.Conjunction)
+            if not splits and not reads[part].computed:
+                yield part, None
+                continue
+        kind = types(part) if reads[part].computed and not splits else None
+        if isinstance(part, robosc.ErrorReason):
+            yield part, FailureReason(port, event, part.enumeration)
+        elif kind in {BOOLEAN, INTEGER} or isinstance(kind, EnumType):
             yield part, Computed(port, event, RoboscPrinter()(part), limits if kind == INTEGER else None, part, kind)
         elif isinstance(part, robosc.Access) and part.value:
             yield part, None if reads[part].beyond else Data(port, event, property_path(part) or ())
@@ -92,16 +125,39 @@ def inputs_in(
             pending += reversed(list(zip(inside, kept, strict=True)))
 
 
+def readable(carried: Computed) -> Computed:
+    """Whether all elements of arrays are there that something is computed of: a value equals itself, if there is one."""
+    same = ex.Equation(left=copied(carried.expression), right=copied(carried.expression))
+    return Computed(carried.port, carried.event, RoboscPrinter()(same), None, same, BOOLEAN)
+
+
+def may_be_missing(carried: Computed) -> bool:
+    """Whether an event that happens anyway may lack an element of an array that something is computed of."""
+    return happens_anyway(carried.event) and any(map(_is_partial, parts(carried.expression)))
+
+
 def _reads(part: ex.Expression, inside: Sequence[_Reads], port: PortInstance, event: PortEvent) -> _Reads:
     """What an expression reads, from what its operands do; of an access these are the indices."""
     data, fixed = any(read.data for read in inside), all(read.fixed for read in inside)
-    beyond = any(read.beyond for read in inside)
+    beyond, reason = any(read.beyond for read in inside), any(read.reason for read in inside)
+    elements = any(read.elements for read in inside) or _is_partial(part)
+    if isinstance(part, robosc.ErrorReason):
+        return _Reads(True, True, False, reason=True)
     if not isinstance(part, robosc.Access):
-        return _Reads(data, fixed, beyond)
+        return _Reads(data, fixed, beyond, elements, reason)
     if not part.value:
-        return _Reads(data, fixed and isinstance(part.item, _FIXED), beyond or isinstance(part.item, robosc.Parameter))
+        fixed = fixed and isinstance(part.item, _FIXED)
+        return _Reads(data, fixed, beyond or isinstance(part.item, robosc.Parameter), elements, reason)
     path = property_path(part)
-    return _Reads(True, fixed, path is None or not _is_finite(Data(port, event, path).type))
+    return _Reads(True, fixed, path is None or not _is_finite(Data(port, event, path).type), elements, reason)
+
+
+def _is_partial(part: ex.Expression) -> bool:
+    """Whether a part may have no value: it reads elements of an array by their numbers, or needs some."""
+    if isinstance(part, robosc.Access):
+        return any(isinstance(segment, robosc.IndexSegment) for segment in part.segments)
+    row = operator_of(part) if isinstance(part, ex.FunctionCall) else None
+    return row is not None and row.is_partial
 
 
 def _is_finite(declared: robosc.DataType | None) -> bool:

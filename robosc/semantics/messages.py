@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
-from robosc.metamodel.reflection import tree
+from robosc.metamodel.reflection import contents, tree
 from robosc.ros_types import Section
 from robosc.semantics.evaluation import Value, saturate
 from robosc.semantics.operators import operator_of
@@ -48,8 +48,9 @@ Shown: TypeAlias = "dict[Path, Read | Shown]"
 
 
 def receptions(graph: rosgraph.RosGraph) -> list[rosgraph.Reception]:
-    """All data that comes in."""
-    return [reception for _, _, several in received(graph) for reception in several]
+    """All data that comes in, and the errors of services, which bring a reason."""
+    errors = [service.error for service in graph.serviceClients]
+    return [*(reception for _, _, several in received(graph) for reception in several), *errors]
 
 
 def received(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Interface, Section, Sequence[rosgraph.Reception]]]:
@@ -60,17 +61,29 @@ def received(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Interface, Sec
         yield service.interface, Section.RESPONSE, [service.response]
     for action in graph.actionClients:
         yield action.interface, Section.FEEDBACK, [action.feedback]
-        yield action.interface, Section.RESULT, [action.response]
+        for end in (action.response, action.error, action.canceled):
+            yield action.interface, Section.RESULT, [end]
 
 
 def reads_elements(expression: ex.Expression) -> bool:
     """Whether an element of an array is read, which need not be there, or what need not have a value otherwise.
 
-    What rules of enumerations read is theirs.
+    What rules of enumerations read is theirs, and what a value of `IfReadable` reads may be missing.
     """
     return any(
-        isinstance(part, rosgraph.IndexStep | rosgraph.SliceStep) or _is_partial(part) for _, part in tree(expression)
+        isinstance(part, rosgraph.IndexStep | rosgraph.SliceStep) or _is_partial(part)
+        for part in _unconditional(expression)
     )
+
+
+def _unconditional(expression: ex.Expression) -> Iterator[ex.Located]:
+    """All parts of an expression that have no other value where something is missing."""
+    pending: list[ex.Located] = [expression]
+    while pending:
+        part = pending.pop()
+        if not isinstance(part, rosgraph.IfReadable):
+            yield part
+            pending += [inside for _, inside in contents(part)]
 
 
 def reads_parameters(conversion: rosgraph.Conversion) -> bool:
@@ -93,7 +106,7 @@ def first_value(kind: ex.Type) -> Value:
     """The value of an input before any data has come: `false`, the first literal, zero or the integer next to it."""
     match kind:
         case ex.EnumerationType():
-            return kind.enumeration.literals[0]
+            return kind.first or kind.enumeration.literals[0]
         case ex.IntegerType():
             return saturate(0, kind.minimum, kind.maximum)
     return False
@@ -132,14 +145,19 @@ def path_of(access: rosgraph.WireAccess) -> Path:
     return tuple(path)
 
 
+def whole(value: ex.Expression) -> ex.Expression:
+    """What a value is where all that it reads is there."""
+    return value.value if isinstance(value, rosgraph.IfReadable) else value
+
+
 def origins(graph: rosgraph.RosGraph) -> dict[rosgraph.NodeVariable, dict[tuple[rosgraph.Reception, Path], None]]:
     """Of which data, and where in there, each array and object is that the node keeps, in one step or several."""
     known = {reception.event: reception for reception in receptions(graph)}
     stored = [
-        (reaction.event, given.variable, given.value)
+        (reaction.event, given.variable, whole(given.value))
         for reaction in graph.reactions
         for given in reaction.assignments
-        if is_structured(given.variable.type) and isinstance(given.value, rosgraph.WireAccess)
+        if is_structured(given.variable.type) and isinstance(whole(given.value), rosgraph.WireAccess)
     ]
     found: dict[rosgraph.NodeVariable, dict[tuple[rosgraph.Reception, Path], None]] = {}
     changed = True
@@ -168,13 +186,20 @@ def kept_reads(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Reception, P
                 yield reception, (*path, *inside), Read(part, kind, conversion)
 
 
+def reads_reason(values: Iterable[ex.Expression]) -> bool:
+    """Whether an expression reads why a service or an action has failed."""
+    return any(isinstance(part, rosgraph.ErrorReason) for value in values for _, part in tree(value))
+
+
 def reads(values: Iterable[ex.Expression]) -> Iterator[tuple[Path, Read]]:
     """What expressions read of a message; of a conversion's argument that it converts it.
 
     Of an object that the node keeps all fields are read that are known: later they may be read, or handed on.
     """
-    for value in values:
+    for value in map(whole, values):
         owner = value.eContainer()
+        if isinstance(owner, rosgraph.IfReadable):
+            owner = owner.eContainer()
         kept = owner.variable.type if isinstance(owner, rosgraph.NodeAssignment) else None
         if isinstance(value, rosgraph.WireAccess) and value.variable is None and kept and holds_objects(kept):
             for inside, kind in parts_of(kept):

@@ -131,6 +131,8 @@ class RoboscPrinter(Printer):
                 return Printed(f"({expression.quantifier} {written(expression.element.name)} in {array}: {body})")
             case robosc.InstanceQuantifier():
                 return Printed(f"({expression.quantifier} {_name(expression.template)}: {texts[0]})")
+            case robosc.ErrorReason():
+                return Printed("error")
             case robosc.Call():
                 return Printed(f"{_name(expression.function)}({', '.join(texts)})")
             case robosc.ArrayLiteral():
@@ -192,7 +194,8 @@ class RobotPrinter(SctPrinter):
     def atom(self, expression: ex.Expression) -> str:
         """What the node computes of data as the model writes it."""
         if isinstance(expression, sct.InputReference) and expression.input.text is not None:
-            return f"({expression.input.text})"
+            text = expression.input.text
+            return text if text.isidentifier() else f"({text})"
         return super().atom(expression)
 
     def owner(self, plant: sct.Plant) -> str:

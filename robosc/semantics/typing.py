@@ -265,6 +265,10 @@ class Types:
                 return access_types(expression, self._value)[-1]
             case rsc.Call():
                 return declared_type(expression.function.type) if expression.function else UNKNOWN
+            case rsc.ErrorReason():
+                return EnumType(expression.enumeration) if expression.enumeration else UNKNOWN
+            case rosgraph.IfReadable():
+                return operands[0]
             case rsc.InstanceQuantifier() | rsc.ArrayQuantifier():
                 return INTEGER if expression.quantifier == rsc.Quantifier.count else BOOLEAN
         return _reference_type(expression)
@@ -287,6 +291,8 @@ def _reference_type(expression: ex.Expression) -> Type:
             return INTEGER if expression.quantifier == rosgraph.Quantifier.count else BOOLEAN
         case rosgraph.ConversionCall():
             return EnumType(expression.conversion.enumeration)
+        case rosgraph.ErrorReason():
+            return EnumType(expression.enumeration)
     return _LITERAL.get(type(expression), UNKNOWN)
 
 

@@ -35,6 +35,8 @@ def operands(expression: ex.Expression | None) -> list[ex.Expression]:
             return [given.value for given in expression.properties]
         case rosgraph.ConversionCall():
             return [expression.argument]
+        case rosgraph.IfReadable():
+            return [expression.value, expression.otherwise]
     return _in_arrays(expression)
 
 

@@ -9,6 +9,7 @@ from robosc.engine import Blocked, ControlLoop, Engine, Hooks, Settings
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.engine import Role
+from robosc.semantics.domains import domain
 from robosc.semantics.definition import named_state
 from robosc.semantics.printing import SctPrinter
 from robosc.semantics.roles import event_name
@@ -142,7 +143,8 @@ def _any(kind: ex.Type, random: Random) -> Value:
         case ex.IntegerType(minimum=int(low), maximum=int(high)):
             return random.randint(low, high)
     assert isinstance(kind, ex.EnumerationType)
-    return str(random.choice(list(kind.enumeration.literals)).name)
+    low, high = domain(kind)
+    return str(kind.enumeration.literals[random.randint(low, high)].name)
 
 
 class LoopSimulation:

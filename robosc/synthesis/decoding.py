@@ -56,7 +56,7 @@ def value(element: Element, code: int) -> Value:
         return element.locations[code].name
     match element.type:
         case ex.EnumerationType(enumeration=enumeration):
-            return enumeration.literals[code].name
+            return enumeration.literals[code + smallest(element)].name
         case ex.IntegerType():
             return code + smallest(element)
     return bool(code)

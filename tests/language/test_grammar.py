@@ -66,6 +66,7 @@ SET_OTHERWISE = {"source", "file", "left"}
 MADE_BY_LINKING = {
     "InterfaceTypeReference": {"arguments", "definition", "interface", "type"},
     "Access": {"enumeration"},
+    "ErrorReason": {"enumeration"},
     "Parameter": {"description"},
 }
 

@@ -85,7 +85,7 @@ class InProcessNode(Port):
         self._now = START * connections["period"]
         self._graph = graph
         self._incoming = all_incoming(graph, distribution)
-        self._robot = _Robot(graph, distribution, lambda: self._now)
+        self._robot = _Robot(graph, distribution, lambda: self._now, self._incoming)
         self._robot.port = self
         self._event_loop = EventLoop(lambda: self._now)
         values = {parameter.name: parameter.default for parameter in controller_parameters(graph, configuration, "")}
@@ -120,7 +120,8 @@ class InProcessNode(Port):
 
     def end(self, action: str, outcome: str, fields: dict[str, Any]) -> None:
         client, goal = self._goal(action)
-        goal.handlers.ended(_OUTCOMES[outcome], self._made(client.response.event, fields), "")
+        ends = {"succeeded": client.response, "aborted": client.error, "canceled": client.canceled}
+        goal.handlers.ended(_OUTCOMES[outcome], self._made(ends[outcome].event, fields), "")
         self._work()
 
     def _goal(self, action: str) -> tuple[rosgraph.ActionClient, RunningGoal]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.analysis.verify.cif_reading import CifError
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.domains import domain
 from robosc.synthesis.encoding import domain_size, smallest
 
 if TYPE_CHECKING:
@@ -83,9 +84,23 @@ class Correspondence:
                 if getattr(location, word) != getattr(self[location], word):
                     raise CifError(f"'{location.name}' {of} is {'not ' * getattr(location, word)}{word} in it")
         members: list[sct.DiscreteVariable | sct.Input] = [*ours.inputs, *ours.variables]
+        for carried in ours.inputs:
+            self._narrow(carried, ours, self[carried], theirs)
         for member in members:
             if not self._same_values(member, self[member]):
                 raise CifError(f"the values of '{member.name}' {of} are others")
+
+    def _narrow(self, ours: sct.Input, plant: sct.Plant, theirs: sct.Input, automaton: sct.Plant) -> None:
+        """Give an input of CIF the literals that the input of the model can be, if its automaton excludes the others."""
+        if not isinstance(ours.type, ex.EnumerationType) or not isinstance(theirs.type, ex.EnumerationType):
+            return
+        low, high = domain(ours.type)
+        literals = list(ours.type.enumeration.literals)
+        others = {self[literal] for literal in [*literals[:low], *literals[high + 1 :]]}
+        events = [self[event] for event in plant.events if ours in event.inputs and event in self._counterparts]
+        edges = (edge for location in automaton.locations for edge in location.edges if edge.event in events)
+        if others and all(others <= _excluded(edge.guard, theirs) for edge in edges):
+            theirs.type.first, theirs.type.last = self[literals[low]], self[literals[high]]
 
     def _number(self, of: str, ours: sct.Plant, variable: sct.DiscreteVariable) -> None:
         kind = variable.type
@@ -109,6 +124,21 @@ class Correspondence:
         if isinstance(ours.type, ex.EnumerationType) and isinstance(theirs.type, ex.EnumerationType):
             return self[ours.type.enumeration] is theirs.type.enumeration
         return smallest(theirs) == max(0, smallest(ours))
+
+
+def _excluded(guard: ex.Expression | None, carried: sct.Input) -> set[ex.EnumerationLiteral]:
+    """The literals that an input is not where a guard holds, as far as conditions joined by `and` name them."""
+    found: set[ex.EnumerationLiteral] = set()
+    pending = [guard]
+    while pending:
+        match pending.pop():
+            case ex.Conjunction(left=left, right=right):
+                pending += [left, right]
+            case ex.Inequation(
+                left=sct.InputReference() as read, right=ex.EnumerationLiteralReference(literal=literal)
+            ) if read.input is carried:
+                found.add(literal)
+    return found
 
 
 def _same_name(ours: ex.NamedElement, theirs: ex.NamedElement) -> bool:

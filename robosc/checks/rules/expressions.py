@@ -21,6 +21,7 @@ from robosc.checks.mending import Choice, Replacement
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.communication import is_error, meant
 from robosc.semantics.durations import set_on_robot
 from robosc.semantics.typing import (
     BOOLEAN,
@@ -85,7 +86,9 @@ def _requirements(base: rsc.Base) -> Iterator[Finding]:
             yield from _boolean(claimed.premise, "the condition behind `from`", _REQUIREMENT)
     for automaton in statements(rsc.AutomatonRequirement, base):
         for transition in (transition for state in automaton.states for transition in state.transitions):
-            yield from _boolean(transition.guard, "the condition behind `if`", _REQUIREMENT)
+            has_reason = transition.event is not None and is_error(meant(transition.event))
+            place = replace(_REQUIREMENT, has_reason=has_reason)
+            yield from _boolean(transition.guard, "the condition behind `if`", place)
 
 
 def _named(named: rsc.NamedExpression) -> Iterator[Finding]:
@@ -149,7 +152,8 @@ def _transition(transition: rsc.Transition) -> Iterator[Finding]:
     place = guarded = _SILENT
     if isinstance(transition, rsc.ResultTransition):
         without = f"the event `{transition.resultType}` carries no data to a component"
-        place = guarded = Place(value_type_in(transition), without)
+        has_reason = transition.resultType == rsc.ResultType.error
+        place = guarded = Place(value_type_in(transition), without, has_reason=has_reason)
     if isinstance(transition, rsc.TimedTransition):
         place = _TIMED
         yield from _duration(transition.duration)

@@ -132,9 +132,11 @@ def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
             )
     for reading in readings(result):
         access = reading.reason.access
+        if reading.told is not None or not isinstance(access, rsc.Access):
+            continue
         types = access_types(access, reading.value)
         is_array = any(isinstance(kind, ArrayType) for kind in types)
-        if reading.told is None and (is_array or types[-1] in {DOUBLE, STRING}):
+        if is_array or types[-1] in {DOUBLE, STRING}:
             kind = "array data" if is_array else f"a {types[-1]}"
             yield Fault(
                 access,

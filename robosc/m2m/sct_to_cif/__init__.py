@@ -15,11 +15,13 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
 from robosc.metamodel.reflection import tree
+from robosc.semantics.domains import domain
 from robosc.semantics.edges import edges_of
+from robosc.semantics.printing import conjunction
 from robosc.semantics.walks import copied
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
 
 class Lowered(NamedTuple):
@@ -120,6 +122,8 @@ class _Transformation:
     def _cell(self, cell: Any) -> Any:
         """An input or variable, its range shifted so that it begins at 0 where it would be negative."""
         self._made[cell] = made = type(cell)(name=cell.name, type=copied(cell.type, self._made))
+        if isinstance(made.type, ex.EnumerationType):
+            made.type.first = made.type.last = None
         if isinstance(made.type, ex.IntegerType):
             low, high = (bound + shift(cell) for bound in bounds(cell))
             made.type.minimum, made.type.maximum = low, high
@@ -149,7 +153,8 @@ class _Transformation:
         return [self._edge(edge) for edge in edges if edge.event not in self._impossible]
 
     def _edge(self, edge: sct.Edge) -> sct.Edge:
-        made = sct.Edge(event=self._made[edge.event], guard=self._condition(edge.guard), target=self._made[edge.target])
+        guard = conjunction(filter(None, [*self._possible(edge), self._condition(edge.guard)]))
+        made = sct.Edge(event=self._made[edge.event], guard=guard, target=self._made[edge.target])
         for update in edge.updates:
             value = self._lowered(None, self._lowering.assigned, update.variable, update.value)
             made.updates.append(sct.Update(variable=self._made[update.variable], value=value))
@@ -157,6 +162,23 @@ class _Transformation:
             variable, number = self._numbered[edge.target]
             made.updates.append(sct.Update(variable=variable, value=ex.IntegerLiteral(value=number)))
         return made
+
+    def _possible(self, edge: sct.Edge) -> Iterator[ex.Expression]:
+        """Conditions on the inputs of an event: that each is one of the literals that it can be.
+
+        CIF's inputs can be each literal of an enumeration, so that the plant of the event excludes the others.
+        """
+        owner = edge.eContainer()
+        if edge.event.eContainer() not in (owner, owner.eContainer()):
+            return
+        for carried in edge.event.inputs:
+            if isinstance(carried.type, ex.EnumerationType):
+                low, high = domain(carried.type)
+                for place, literal in enumerate(carried.type.enumeration.literals):
+                    if not low <= place <= high:
+                        read = sct.InputReference(input=self._made[carried])
+                        other = ex.EnumerationLiteralReference(literal=self._made[literal])
+                        yield ex.Inequation(left=read, right=other)
 
     def _requirement(self, requirement: sct.Requirement) -> sct.Requirement:
         return sct.Requirement(

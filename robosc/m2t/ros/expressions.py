@@ -50,7 +50,8 @@ _QUANTIFIERS = {"all": "for_all", "any": "for_any", "count": "number_of"}
 class CppPrinter(Printer):
     """Prints what the node evaluates: doubles as `double`, whole numbers as the node's saturating `Integer`.
 
-    `data` is the variable that holds the data which came in, `node` the one with the node's variables. Elements of
+    `data` is the variable that holds the data which came in, `node` the one with the node's variables, `reason` the
+    one with the reason of an error. Elements of
     arrays are read through an `ArrayReader`, the variable `reader`, in the order of the text and as far as `and`, `or`
     and `=>` need them.
     """
@@ -72,6 +73,8 @@ class CppPrinter(Printer):
 
     def inside(self, expression: ex.Expression) -> Sequence[ex.Expression]:
         """A conversion's argument is a place in the data: printed before are its indices."""
+        if isinstance(expression, rosgraph.IfReadable):
+            return [expression.otherwise]  # the value has a reader of its own
         return operands(expression.argument if isinstance(expression, rosgraph.ConversionCall) else expression)
 
     def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
@@ -86,6 +89,9 @@ class CppPrinter(Printer):
                 read = self.wire(expression.argument, texts)
                 kept = f", {self._node}" if reads_parameters(expression.conversion) else ""
                 return Printed(f"{self._names.conversion(expression.conversion)}({read}{kept})")
+            case rosgraph.IfReadable():
+                value = CppPrinter(self._names, self._data, self._node, reader="element")(expression.value)
+                return Printed(f"read_or({texts[0]}, [&](ArrayReader& element) {{ return {value}; }})")
             case rosgraph.ArrayQuantifier():
                 array, body = texts
                 element = f"[[maybe_unused]] const auto& {_element(expression)}"
@@ -149,6 +155,8 @@ class CppPrinter(Printer):
             case sct.VariableReference():
                 value = self._names.state(expression.variable)
                 return f"Integer({value})" if isinstance(expression.variable.type, ex.IntegerType) else value
+            case rosgraph.ErrorReason():
+                return "reason_of(reason)"
             case rosgraph.NodeVariableReference():
                 return f"{self._node}.{self._names.variable(expression.variable)}"
         return super().atom(expression)

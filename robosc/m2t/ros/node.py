@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from robosc.configuration.parameters import model_parameters
@@ -12,6 +12,7 @@ from robosc.m2t.ros.expressions import CppPrinter
 from robosc.m2t.ros.names import CppNames
 from robosc.metamodel import engine, rosgraph, sct
 from robosc.metamodel import expression as ex
+from robosc.metamodel.reflection import tree
 from robosc.semantics.definition import reported
 from robosc.semantics.messages import (
     first_value,
@@ -22,6 +23,7 @@ from robosc.semantics.messages import (
     paths_set,
     reads_elements,
     reads_parameters,
+    reads_reason,
 )
 from robosc.semantics.naming import Names
 from robosc.semantics.operators import PRECEDENCE
@@ -37,16 +39,17 @@ _HAND_ON = "hand_on"
 
 @dataclass(frozen=True)
 class Assignment:
-    """`target = value`, of arrays and objects by the function `store`."""
+    """`target = value`, of arrays and objects by a function."""
 
     target: str
     value: str
-    stores: bool = False
+    function: str = ""
 
     @property
     def statement(self) -> str:
         """The assignment, with a semicolon."""
-        return f"store({self.target}, {self.value});" if self.stores else f"{self.target} = {self.value};"
+        stored = f"{self.function}({self.target}, {self.value});"
+        return stored if self.function else f"{self.target} = {self.value};"
 
 
 @dataclass(frozen=True)
@@ -64,7 +67,8 @@ class EventHandler:
 
     `copy` of the node's variables: `old`, which values read while the variables change; `next`, which changes while
     values read the variables; or none. One that `reads_elements` of arrays changes a copy only, and does not happen
-    where one is not there; inputs that do are among the reactions, where a transition reads them.
+    where one is not there; inputs that do are among the reactions, where a transition reads them. One that
+    `reads_reason` does so of an error.
     """
 
     event: str
@@ -74,6 +78,7 @@ class EventHandler:
     copy: str
     reactions: list[Reaction]
     data: reports.EventData | None
+    reads_reason: bool = False
 
 
 @dataclass(frozen=True)
@@ -196,6 +201,14 @@ class Conversion:
 
 
 @dataclass(frozen=True)
+class Reasons:
+    """The enumeration of reasons: its type, and the literal for each value of the headers."""
+
+    type: str
+    literals: list[tuple[str, str]]
+
+
+@dataclass(frozen=True)
 class Variable:
     """A variable of the node: its type and first value, or the part of ROS data that it has the type of."""
 
@@ -250,6 +263,7 @@ class Node:
             self._carriers[client.response] = "response", client.interface
         for action in graph.actionClients:
             self._carriers[action.feedback] = "feedback", action.interface
+            self._carriers |= dict.fromkeys([action.error, action.canceled], ("response", action.interface))
         self.components = [
             (self._names.components[component], list(map(self._variable, variables)))
             for component, variables in self._names.kept.items()
@@ -310,6 +324,15 @@ class Node:
         messages += [client.request for client in self.clients]
         fields = [field for message in messages for given in message.alternatives for field in given.fields]
         return any(method == _HAND_ON for method, _, _ in fields)
+
+    @property
+    def reason(self) -> Reasons | None:
+        """The literals for reasons of errors; None where the node reads none."""
+        read = next((part for _, part in tree(self._graph) if isinstance(part, rosgraph.ErrorReason)), None)
+        if read is None:
+            return None
+        literals = [(literal.name, self._names.literal(literal)) for literal in read.enumeration.literals]
+        return Reasons(self._type(ex.EnumerationType(enumeration=read.enumeration)), literals)
 
     @property
     def interfaces(self) -> list[rosgraph.Interface]:
@@ -387,7 +410,11 @@ class Node:
         for reaction in self._reactions.get(reception.event, ()):
             values += [assignment.value for assignment in reaction.assignments]
         inputs = [self._input(assignment) for assignment in reception.inputs]
-        return self._handler(reception.event, inputs, reports.received(values, self._names))
+        handler = self._handler(reception.event, inputs, reports.received(values, self._names))
+        # An answer that can't be read is an error, too: the reason tells whose data the log has.
+        is_error = reception.event.kind == sct.EventKind.error
+        reads = is_error and (reads_reason(values) or handler.data is not None)
+        return replace(handler, reads_reason=reads)
 
     def _input(self, assignment: rosgraph.InputAssignment) -> Assignment:
         kind = assignment.input.type
@@ -461,13 +488,16 @@ class Node:
         return f"({place}) && {guard}" if len(locations) > 1 else f"{place} && {guard}"
 
     def _assignment(self, assignment: rosgraph.NodeAssignment, copy: str) -> Assignment:
-        kind = assignment.variable.type
-        printer = CppPrinter(self._names, node="old") if copy == "old" else self._printer
-        return Assignment(
-            f"{'next' if copy == 'next' else 'data_'}.{self._names.variable(assignment.variable)}",
-            printer.integer(assignment.value, kind) if isinstance(kind, ex.IntegerType) else printer(assignment.value),
-            is_structured(kind),
-        )
+        kind, value = assignment.variable.type, assignment.value
+        node = "old" if copy == "old" else "data_"
+        target = f"{'next' if copy == 'next' else 'data_'}.{self._names.variable(assignment.variable)}"
+        printer = CppPrinter(self._names, node=node)
+        if is_structured(kind) and isinstance(value, rosgraph.IfReadable):
+            printer = CppPrinter(self._names, node=node, reader="element")
+            read = f"[&](ArrayReader& element) {{ return {printer(value.value)}; }}"
+            return Assignment(target, read, "store_if_readable")
+        text = printer.integer(value, kind) if isinstance(kind, ex.IntegerType) else printer(value)
+        return Assignment(target, text, "store" if is_structured(kind) else "")
 
     # What goes out
 
@@ -488,9 +518,9 @@ class Node:
             client.interface,
             request,
             self._reception(client.response),
-            self._handler(client.error.event),
+            self._reception(client.error),
             self._reception(action.feedback) if action else None,
-            self._handler(action.canceled.event) if action else None,
+            self._reception(action.canceled) if action else None,
             self._names.c.enumerator(action.cancel) if action else None,
             self._events[action.cancel].remarks if action else [],
             self._names.c.enumerator(client.reset),

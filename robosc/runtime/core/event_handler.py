@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.configuration.parameters import model_parameters
 from robosc.engine import ControlLoop, Hooks
-from robosc.metamodel import engine
+from robosc.metamodel import engine, rosgraph, sct
+from robosc.ros_types import Section
 from robosc.runtime.core.blocking import Blocking
 from robosc.runtime.core.component_status import Own, StatusReporter
 from robosc.runtime.core.event_log import EventLog, ReceivedData
 from robosc.runtime.core.node_data import NodeData
+from robosc.runtime.core.port import Failure
 from robosc.runtime.core.reports import StateReporter, Throttle
 from robosc.runtime.core.times import Times
 from robosc.semantics.durations import set_milliseconds
@@ -24,10 +26,9 @@ if TYPE_CHECKING:
 
     from robosc.configuration.parameters import Value
     from robosc.engine import Settings as LoopSettings
-    from robosc.metamodel import rosgraph, sct
     from robosc.runtime.core.event_loop import EventLoop
     from robosc.runtime.core.json_text import Json
-    from robosc.runtime.core.port import Client, Failure, Message, Port
+    from robosc.runtime.core.port import Client, Message, Port
     from robosc.runtime.core.settings import Settings
     from robosc.semantics.component_parts import Parts
 
@@ -76,7 +77,8 @@ class EventHandler:
         return {self._events[event.name] for event in executed.events if event.role in roles}
 
     def _read(self, reception: rosgraph.Reception) -> ReceivedData:
-        return ReceivedData([given.value for given in reception.inputs] + self._data.values_read(reception.event))
+        values = [given.value for given in reception.inputs] + self._data.values_read(reception.event)
+        return ReceivedData(values, has_reason=reception.event.kind == sct.EventKind.error)
 
     # The node's life
 
@@ -161,19 +163,15 @@ class EventHandler:
             fault = self._perform(response, client.response.inputs, message)
             if fault is not None:
                 self._note_failure(client, str(fault))
-                error = client.error.event
-                if self._control.enabled(event_name(error)):
-                    # The log shows what can be read of the message.
-                    self._changes(error)
-                    self._run(error, (response, message))
+                self._end(client.error, Failure.UNREADABLE, message, response)
             else:
                 self._note_success(client)
 
-    def fail(self, client: Client, reason: Failure, why: str, result: Message = None) -> None:  # noqa: ARG002
+    def fail(self, client: Client, reason: Failure, why: str, result: Message = None) -> None:
         """A call or goal has failed. `result` is what came with the end of a goal, None where nothing came."""
         self._note_failure(client, why)
         with self._batch():
-            self._end(client.error.event)
+            self._end(client.error, reason, result)
 
     def end_canceled(self, client: rosgraph.ActionClient, reason: Failure, why: str, result: Message = None) -> None:
         """A goal has ended because of a cancel: an error, for a reason, where the model has not canceled it."""
@@ -182,14 +180,20 @@ class EventHandler:
             return
         self._note_success(client)
         with self._batch():
-            self._end(client.canceled.event)
+            self._end(client.canceled, reason, result)
 
-    def _end(self, event: sct.Event) -> None:
-        """Lets an end happen. It happens in any case, or the component would wait forever."""
-        fault = self._perform(event)
-        if fault is not None:
-            self._warn(event, f"{event_name(event)}: {fault}")
-            self._run(event, (event, None))
+    def _end(
+        self, reception: rosgraph.Reception, reason: Failure, result: Message, source: sct.Event | None = None
+    ) -> None:
+        """Lets an end happen whose data can always be read; without a result it is one with ROS's defaults.
+
+        `source` is the response whose data could not be read.
+        """
+        if result is None and self._logged[reception.event].parts:
+            result = self._port.create(reception.eContainer().interface, Section.RESULT)
+        self._data.reason = reason
+        self._perform(reception.event, reception.inputs, result, source)
+        self._data.reason = None
 
     def _note_success(self, client: Client) -> None:
         """A call or goal has come to a response that can be read."""
@@ -199,9 +203,16 @@ class EventHandler:
         self._port.warn(f"{client.identifier}: {why}")
 
     def _perform(
-        self, event: sct.Event, inputs: Sequence[rosgraph.InputAssignment] = (), message: Message = None
+        self,
+        event: sct.Event,
+        inputs: Sequence[rosgraph.InputAssignment] = (),
+        message: Message = None,
+        source: sct.Event | None = None,
     ) -> UnreadableError | None:
-        """Lets an event of the robot happen, if it can now; returns what keeps its data from being read."""
+        """Lets an event of the robot happen, if it can now; returns what keeps its data from being read.
+
+        `source` is the event that the message came with; None: it is the event itself.
+        """
         if not self._control.enabled(event_name(event)):
             return None
         try:
@@ -209,7 +220,7 @@ class EventHandler:
         except UnreadableError as fault:
             return fault
         self._data.variables.update(received.variables)
-        self._run(event, (event, message), received.inputs)
+        self._run(event, (source or event, message), received.inputs)
         return None
 
     def _run(
@@ -266,7 +277,7 @@ class EventHandler:
             return None
         source, message = self._received
         data = self._logged[source].read(self._data, message) if source in self._logged else None
-        return data if source is event else data or {"value": {}}
+        return data if source is event else {**(data or {"value": {}}), **self._logged[event].reason(self._data)}
 
     # What `/diagnostics` tells
 

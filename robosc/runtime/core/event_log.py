@@ -12,7 +12,7 @@ from typing import IO, TYPE_CHECKING, Any
 from robosc.files.writing import open_log
 from robosc.metamodel import expression as ex
 from robosc.runtime.core.json_text import json_text
-from robosc.semantics.messages import Read
+from robosc.semantics.messages import Read, reads_reason
 from robosc.semantics.messages import shown as all_shown
 from robosc.semantics.operators import UnreadableError
 
@@ -143,11 +143,17 @@ class EventLog:
 
 
 class ReceivedData:
-    """What the node reads of the data of one event, in the shape of the message; basic data is the value itself."""
+    """Data of one event that the node reads, in the shape of the message, and the reason of an error.
 
-    def __init__(self, values: Iterable[ex.Expression]) -> None:
+    Basic data is the value itself. `has_reason`: it is an error.
+    """
+
+    def __init__(self, values: Iterable[ex.Expression], *, has_reason: bool = False) -> None:
+        values = list(values)
         #: What is read, by the names and indices on the way to it.
         self.parts = all_shown(values)
+        # An answer that can't be read is an error, too: the reason tells whose data this is.
+        self._reads_reason = has_reason and (reads_reason(values) or bool(self.parts))
         found = self.parts
         self._found = {(): found["data",]} if list(found) == [("data",)] else found
 
@@ -163,8 +169,12 @@ class ReceivedData:
                     array = data.at(message, path or ("data",))
                     values[path] = [_inside(element, part, data) for element in array]
         if not values:
-            return None
-        return {"value": values[()] if () in values else nested(values)}
+            return self.reason(data) or None
+        return {"value": values[()] if () in values else nested(values), **self.reason(data)}
+
+    def reason(self, data: NodeData) -> Mapping[str, Json]:
+        """The reason of an error, where the node reads it."""
+        return {"reason": str(data.reason)} if self._reads_reason and data.reason else {}
 
 
 def _inside(element: Any, parts: Shown, data: NodeData) -> Json:

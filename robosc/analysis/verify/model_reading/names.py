@@ -191,6 +191,8 @@ class Names:
                 return cast("ex.Expression", body)
             case robosc.InstanceQuantifier():
                 return (yield from self._quantified(expression, place))
+            case robosc.ErrorReason():
+                return self.leaf(Data(("error",), None))
             case robosc.ArrayQuantifier():
                 array = yield expression.array, place
                 body = yield expression.body, place

@@ -27,6 +27,7 @@ from robosc.analysis.verify.model_reading.machine import (
 )
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.domains import domain
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -180,7 +181,8 @@ class _Reading:
 
 def _domain(declared: ex.Type) -> Domain:
     if isinstance(declared, ex.EnumerationType):
-        return tuple(literal.name for literal in declared.enumeration.literals)
+        low, high = domain(declared)
+        return tuple(literal.name for literal in declared.enumeration.literals)[low : high + 1]
     if isinstance(declared, ex.IntegerType):
         assert declared.minimum is not None
         assert declared.maximum is not None

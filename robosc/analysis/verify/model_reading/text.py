@@ -8,6 +8,7 @@ from math import floor
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.verify.model_reading.machine import (
+    BOOLEANS,
     At,
     Claim,
     Condition,
@@ -73,6 +74,13 @@ _NAMED = {
     robosc.ResultType.cancel: "c_cancel",
     robosc.ResultType.canceled: "u_canceled",
 }
+#: The values of the predefined enum with which each kind of communication fails.
+_REASONS = {
+    "service": ("unavailable", "timeout", "unreadable", "failed"),
+    "action": ("rejected", "lost", "aborted", "canceled", "unavailable", "timeout", "unreadable"),
+}
+#: Events that happen whether their data can be read or not.
+_ENDS = ("u_error", "u_canceled")
 _UNITS = {robosc.TimeUnit.ms: 1, robosc.TimeUnit.s: 1000, robosc.TimeUnit.min: 60_000}
 
 
@@ -292,7 +300,10 @@ class _Reading:
         place = Environment(within, within.arguments if within else {})
         written = self.names.written_out(expression, place)
         if name is not None:
+            present = None if assigned is None else self.present(written, name)
             written = walk(lambda part: self.told(part[0], name, part[1]), (written, assigned))
+            if present is not None and assigned is not None:
+                written = ex.Conditional(condition=present, then=written, otherwise=self.names.leaf(assigned))
 
         def meaning(reference: ex.Expression) -> Meaning:
             found = self.names.meaning(reference)
@@ -306,6 +317,18 @@ class _Reading:
             return found
 
         return compiled(written, meaning)
+
+    def present(self, value: ex.Expression, name: EventName) -> ex.Expression | None:
+        """The input that tells whether a value can be read that an error or a canceled goal brings; None: it can."""
+        event = self.plants.events.get(name)
+        words = self.names.words(value)
+        for carried in event.element.inputs if event is not None and name.name in _ENDS else ():
+            if carried.text is not None and words_of(carried.text) == (*words, "=", *words):
+                self.machine.events[name].inputs[carried.name] = BOOLEANS
+                return self.names.leaf(Told(carried.name))
+        if name.name in _ENDS and "[" in words:
+            raise UnlikeError(f"no input of the plants tells whether `{''.join(words)}` can be read", value)
+        return None
 
     def told(self, part: ex.Expression, name: EventName, assigned: Slot | None) -> Generator[Any, Any, ex.Expression]:
         """The expression with inputs of the event in place of the largest parts that the plants have inputs for."""
@@ -322,7 +345,8 @@ class _Reading:
             if not alike:
                 raise UnlikeError("the plants have another range for what is computed of data", part)
             told = next(iter(alike))
-            self.machine.events[name].inputs[told] = alike[told]
+            domain = _REASONS[name.plant.kind] if words == ("error",) else alike[told]
+            self.machine.events[name].inputs[told] = domain
             return self.names.leaf(Told(told))
         found = self.names.meaning(part) if isinstance(part, robosc.Access) else None
         if isinstance(found, Data) and found.path is not None:
@@ -469,7 +493,7 @@ class _Reading:
             ways = {
                 state.name: [
                     (
-                        None if transition.guard is None else self.condition(transition.guard, within),
+                        None if transition.guard is None else self.condition(transition.guard, within, name),
                         transition.target.name if transition.target else state.name,
                         transition,
                     )

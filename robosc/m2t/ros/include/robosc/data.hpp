@@ -252,6 +252,14 @@ Value read_or(Value unread, Read read) {
   return reader.complete() ? value : unread;
 }
 
+/// Keeps what is read, where all of it is there.
+template <typename Kept, typename Read>
+void store_if_readable(Kept& kept, Read read) {
+  ArrayReader reader;
+  const auto value = read(reader);
+  if (reader.complete()) store(kept, value);
+}
+
 }  // namespace ROBOSC_VERSION
 }  // namespace robosc
 

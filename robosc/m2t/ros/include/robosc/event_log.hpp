@@ -17,6 +17,7 @@
 #include <thread>
 #include <utility>
 
+#include "robosc/failure.hpp"
 #include "robosc/json.hpp"
 #include "robosc/version.hpp"
 
@@ -128,6 +129,16 @@ class EventLog {
   template <typename Value>
   void note(const Value& value) {
     data_ = ",\"data\":{\"value\":" + to_json(value) + '}';
+  }
+
+  /// The reason of the next event, an error; behind its data.
+  void note_reason(Failure reason) {
+    if (data_.empty()) {
+      data_ = ",\"data\":{";
+    } else {
+      data_.back() = ',';
+    }
+    data_ += "\"reason\":" + to_json(failure_name(reason)) + '}';
   }
 
   void write(double time, const char* direction, const char* event) {

@@ -1,0 +1,78 @@
+"""Bare values of the predefined enum `Failure`: a name is one where the text expects a reason."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc as rsc
+from robosc.semantics.failures import FAILURE, REASONS, is_failure
+from robosc.semantics.typing import EnumType, declared_type, type_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from robosc.language.scopes import File
+
+#: All values of the enum.
+VALUES = frozenset(name for names in REASONS.values() for name in names)
+
+
+def names_failures(file: File) -> bool:
+    """Whether a file names the enum or reads the reason of an error, so that it needs the predefined library."""
+    return any(
+        isinstance(element, rsc.ErrorReason) or any(name.text == FAILURE for name in names.values())
+        for element, names in file.references.items()
+    )
+
+
+def expects_failure(element: ex.Located, is_bare: Callable[[ex.Expression], bool]) -> bool:
+    """Whether the text expects a value of `Failure` where an expression stands.
+
+    All other names of the text are linked. `is_bare` says whether an expression is a bare name: of two of them at `=`
+    or `!=` only the right one is expected to have the type of the other.
+    """
+    around = element.eContainer()
+    while isinstance(around, ex.Conditional) and element is not around.condition:
+        element, around = around, around.eContainer()
+    match around:
+        case ex.Equation() | ex.Inequation():
+            if element is around.right:
+                return _is_reason(around.left)
+            return not is_bare(around.right) and _is_reason(around.right)
+        case rsc.Assignment():
+            return around.item is not element and _is_reason(around.item)
+        case rsc.Variable() | rsc.Constant() | rsc.Parameter() | rsc.FormalParameter() | rsc.Function():
+            return _is_declared(around.type)
+        case rsc.Call() if around.function is not None:
+            return _is_argument(element, around.arguments, around.function.parameters)
+        case rsc.Argument():
+            return _is_given(around)
+    return False
+
+
+def _is_given(argument: rsc.Argument) -> bool:
+    user = argument.eContainer()
+    if argument.parameter is not None:
+        return _is_declared(argument.parameter.type)
+    made_of = user.type if isinstance(user, rsc.ComplexDataTypeReference) else user.definition
+    parameters = made_of.parameters if isinstance(made_of, rsc.Component | rsc.EnumDataType) else ()
+    return _is_argument(argument, user.arguments, parameters)
+
+
+def _is_argument(
+    argument: ex.Located, arguments: Sequence[ex.Located], parameters: Sequence[rsc.FormalParameter]
+) -> bool:
+    at = list(arguments).index(argument)
+    return at < len(parameters) and _is_declared(parameters[at].type)
+
+
+def _is_declared(declared: rsc.DataType | None) -> bool:
+    found = declared_type(declared)
+    return isinstance(found, EnumType) and is_failure(found.definition)
+
+
+def _is_reason(expression: ex.Expression | None) -> bool:
+    found = None if expression is None else type_of(expression)
+    return isinstance(found, EnumType) and is_failure(found.definition)
+

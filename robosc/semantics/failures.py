@@ -1,0 +1,46 @@
+"""The reasons for which services and actions fail: the predefined enum `Failure`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.metamodel import robosc
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+#: The name of the predefined enum.
+FAILURE = "Failure"
+#: The values of the enum with which each kind of communication can fail; in the enum, too, they follow each other.
+REASONS: Mapping[type[robosc.CommunicationType], tuple[str, ...]] = {
+    robosc.Service: ("unavailable", "timeout", "unreadable", "failed"),
+    robosc.Action: ("rejected", "lost", "aborted", "canceled", "unavailable", "timeout", "unreadable"),
+}
+#: The reasons after which a service or an action may still be running.
+STILL_RUNNING: Mapping[type[robosc.CommunicationType], tuple[str, ...]] = {
+    robosc.Service: ("timeout", "failed"),
+    robosc.Action: ("lost",),
+}
+#: The reason where a text names none.
+USUAL: Mapping[type[robosc.CommunicationType], str] = {robosc.Service: "failed", robosc.Action: "aborted"}
+
+
+def reasons(communication: robosc.CommunicationType | None) -> tuple[str, ...]:
+    """The reasons for which a service or an action can fail; empty for a message and for None."""
+    return REASONS.get(type(communication), ())  # type: ignore[arg-type]
+
+
+def is_failure(enum: object) -> bool:
+    """Whether an element is the predefined enum, not one of the user's own with its name."""
+    if not isinstance(enum, robosc.EnumDataType) or enum.name != FAILURE:
+        return False
+    return is_predefined(enum.eContainer())
+
+
+def is_predefined(base: object) -> bool:
+    """Whether a library is the one that every model knows."""
+    return isinstance(base, robosc.Library) and base.name == PREDEFINED and base.file == f"{PREDEFINED.lower()}.rscd"
+
+
+#: The name of the library that every model knows.
+PREDEFINED = "Predefined"
