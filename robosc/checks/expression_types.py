@@ -52,7 +52,8 @@ class Restriction(Enum):
 class Place:
     """Where an expression stands: the type of `value` there, or why there is none, and which names it may read.
 
-    `has_reason` says whether it may read `error`. `what` and `instead` are for what must be constant: what it is, and what a hint says behind what it may be.
+    `has_reason` says whether it may read `error`. `what` and `instead` are for what must be constant: what it is, and
+    what a hint says behind what it may be.
     """
 
     value: Type | None
@@ -132,11 +133,7 @@ class ExpressionCheck:
                 self.report(expression, "`error` can't be read here: it is the reason of one `error`", _STORE_REASON)
                 return UNKNOWN
             case rsc.ArrayQuantifier():
-                array = expression.array
-                if types[0] != UNKNOWN and not isinstance(types[0], ArrayType):
-                    message = f"what stands behind `in` must be an array, found {types[0]}"
-                    self.report(array, message, "write the name of an array there")
-                self._operand(expression.body, types[1], BOOLEAN, f"the condition of `{expression.quantifier}`")
+                self._quantifier(expression, types)
             case rsc.ArrayLiteral():
                 self.report(
                     expression,
@@ -157,6 +154,12 @@ class ExpressionCheck:
             case rsc.InstanceQuantifier():
                 self._operand(expression.body, types[0], BOOLEAN, f"the condition of `{expression.quantifier}`")
         return infer(expression) if row is None else self._operator(expression, row, types)
+
+    def _quantifier(self, quantifier: rsc.ArrayQuantifier, types: list[Type]) -> None:
+        if types[0] != UNKNOWN and not isinstance(types[0], ArrayType):
+            message = f"what stands behind `in` must be an array, found {types[0]}"
+            self.report(quantifier.array, message, "write the name of an array there")
+        self._operand(quantifier.body, types[1], BOOLEAN, f"the condition of `{quantifier.quantifier}`")
 
     def _operand(self, operand: ex.Expression | None, found: Type, wanted: Type, what: str) -> None:
         if operand is not None and UNKNOWN not in {found, wanted} and found != wanted:

@@ -126,7 +126,7 @@ def _cone(base: rsc.Base) -> ConeOfInfluence:
     return cone_of_influence(instances(base))
 
 
-def _reference(base: rsc.Base, reason: Reason, result: ConeOfInfluence) -> rsc.Access:
+def _reference(base: rsc.Base, reason: Reason, result: ConeOfInfluence) -> rsc.Access | rsc.ErrorReason:
     while reason.within is not None and reason.within.unit is not base and reason.variable is not None:
         reason = result.variables[reason.variable]
     return reason.access

@@ -87,14 +87,8 @@ class Builder:
                 for value in child:
                     if value.rule_name != "sep":
                         self._set(element, feature, value)
-        if isinstance(element, rsc.InterfaceTypeReference):
-            # A reference, too, though to nothing in any text.
-            start, end = node.position + self._offset, node.position_end + self._offset
-            name = f"{element.package}/{element.rosType}"
-            self.references[element] = {"type": Name(name, start, end)}
-        elif isinstance(element, rsc.ErrorReason):
-            start, end = node.position + self._offset, node.position_end + self._offset
-            self.references[element] = {"enumeration": Name(FAILURE, start, end)}
+        if isinstance(element, rsc.InterfaceTypeReference | rsc.ErrorReason):
+            self.references[element] = self._implied(element, node)
         elif isinstance(element, rsc.IntegerDataType) and element.lower is not None:
             self.bounded.append(element)
         elif isinstance(element, rsc.Parameter):
@@ -104,6 +98,13 @@ class Builder:
         elif isinstance(element, ex.UnaryMinus):
             self._unsigned.pop(element.operand, None)
         return element
+
+    def _implied(self, element: rsc.InterfaceTypeReference | rsc.ErrorReason, node: Node) -> dict[str, Name]:
+        """A reference to an element that no text, or only the predefined library, declares."""
+        start, end = node.position + self._offset, node.position_end + self._offset
+        if isinstance(element, rsc.ErrorReason):
+            return {"enumeration": Name(FAILURE, start, end)}
+        return {"type": Name(f"{element.package}/{element.rosType}", start, end)}
 
     def _set(self, element: Any, feature: str, node: Node) -> None:
         definition = getattr(type(element), feature)

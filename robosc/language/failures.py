@@ -75,4 +75,3 @@ def _is_declared(declared: rsc.DataType | None) -> bool:
 def _is_reason(expression: ex.Expression | None) -> bool:
     found = None if expression is None else type_of(expression)
     return isinstance(found, EnumType) and is_failure(found.definition)
-

@@ -141,19 +141,23 @@ class Linker:
                     linked = "interface" in self._file.references.get(definition, ())
                     if isinstance(definition, rsc.CommunicationType) and not linked:
                         link_interface(definition)
-        reasons = {}
-        for element, names in list(self._file.references.items()):
-            checkpoint()
-            if self._may_be_reason(element):
-                reasons[element] = names
-            elif element in self._file.references:  # `.running` is no property
-                self._use(element, names)
-        for element, names in reasons.items():
-            self._reason(element, names)
+        self._uses()
         for declared in self._file.bounded:
             low, high = constant_value(declared.lower), constant_value(declared.upper)
             if type(low) is int and type(high) is int:
                 declared.minimum, declared.maximum = low, high
+
+    def _uses(self) -> None:
+        """Resolves the names that use declarations, bare names of reasons last: others tell what is expected there."""
+        reasons: dict[rsc.Access, Mapping[str, Name]] = {}
+        for element, names in list(self._file.references.items()):
+            checkpoint()
+            if isinstance(element, rsc.Access) and self._may_be_reason(element):
+                reasons[element] = names
+            elif element in self._file.references:  # `.running` is no property
+                self._use(element, names)
+        for access, bare in reasons.items():
+            self._reason(access, bare)
 
     def _may_be_reason(self, element: ex.Located) -> bool:
         """Whether a bare name is a value of `Failure` if the text expects one there, which other names tell."""

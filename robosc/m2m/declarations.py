@@ -63,9 +63,7 @@ class Declarations:
         """The reasons for which the service or action of an error can fail, which follow each other in the enum."""
         literals = {literal.name: literal for literal in self.enumeration(told.enum).literals}
         possible = [literal for name, literal in literals.items() if name in reasons(told.port.communication)]
-        return ex.EnumerationType(
-            enumeration=self.enumerations[told.enum], first=possible[0], last=possible[-1]
-        )
+        return ex.EnumerationType(enumeration=self.enumerations[told.enum], first=possible[0], last=possible[-1])
 
     def enumeration(self, enum: robosc.EnumDataType) -> ex.Enumeration:
         """The enumeration of an enum."""

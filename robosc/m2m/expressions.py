@@ -113,9 +113,10 @@ class SctExpressions(_Expressions):
         """
         written = self._trace.instances.expanded(expression, within)
         readings = list(read_data(self._trace.instances, written, within, transition, assigned))
-        inputs = {reading.part: self._input(reading) for reading in readings if reading.told and not reading.is_readable}
-        made = self._translated(written, within, inputs)
-        present = conjunction(sct.InputReference(input=self._input(reading)) for reading in readings if reading.is_readable)
+        told = [reading for reading in readings if reading.told is not None and not reading.is_readable]
+        made = self._translated(written, within, {reading.part: self._input(reading) for reading in told})
+        demanded = [reading for reading in readings if reading.is_readable]
+        present = conjunction(sct.InputReference(input=self._input(reading)) for reading in demanded)
         if present is None or assigned is None:
             return made
         # An assignment that can't be read is left out.
@@ -203,6 +204,7 @@ class NodeExpressions(_Expressions):
             if isinstance(original, robosc.Access):
                 return access(original, operands)
             if isinstance(original, robosc.ErrorReason):
+                assert original.enumeration is not None
                 return rosgraph.ErrorReason(enumeration=self._declarations.enumeration(original.enumeration))
             if isinstance(original, robosc.ArrayQuantifier):
                 made = quantifiers.get(original.element) or rosgraph.ArrayQuantifier(

@@ -226,7 +226,9 @@ class Tour(Drive):
             acts |= self._classes(action.identifier, [action.feedback], partial(self._feed_back, action))
             succeed = partial(self._end, action, Outcome.SUCCEEDED)
             acts |= self._classes(action.identifier, [action.response], succeed)
-            acts |= self._classes(f"{action.identifier} fails", [action.error], partial(self._abort, action), fails=True)
+            acts |= self._classes(
+                f"{action.identifier} fails", [action.error], partial(self._abort, action), fails=True
+            )
             end = partial(self._end, action, Outcome.CANCELED)
             acts |= self._classes(f"{action.identifier} is canceled", [action.canceled], end)
         return acts

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeGuard
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
@@ -204,7 +204,7 @@ def read_data(
     bounds = None if variable is None else _bounds(variable.type)
     value = declared_type(data_type(port.communication, event))
     for part, carried in inputs_in(expression, port, event, bounds, is_condition=variable is None):
-        access = next(inside for inside in parts(part) if _reads_event(inside))
+        access = next(filter(_reads_event, parts(part)))
         reason = Reason(access, within, variable)
         yield Reading(expression, part, carried, reason, value)
         if variable is not None and isinstance(carried, Computed) and may_be_missing(carried):
@@ -223,7 +223,7 @@ def _event(
     return None, None
 
 
-def _reads_event(part: ex.Expression) -> bool:
+def _reads_event(part: ex.Expression) -> TypeGuard[robosc.Access | robosc.ErrorReason]:
     """Whether a part is `value` or `error`."""
     return isinstance(part, robosc.ErrorReason) or (isinstance(part, robosc.Access) and part.value)
 

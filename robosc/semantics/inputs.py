@@ -113,6 +113,7 @@ def inputs_in(
                 continue
         kind = types(part) if reads[part].computed and not splits else None
         if isinstance(part, robosc.ErrorReason):
+            assert part.enumeration is not None
             yield part, FailureReason(port, event, part.enumeration)
         elif kind in {BOOLEAN, INTEGER} or isinstance(kind, EnumType):
             yield part, Computed(port, event, RoboscPrinter()(part), limits if kind == INTEGER else None, part, kind)
@@ -126,7 +127,7 @@ def inputs_in(
 
 
 def readable(carried: Computed) -> Computed:
-    """Whether all elements of arrays are there that something is computed of: a value equals itself, if there is one."""
+    """The input that tells whether all elements are there of which something is computed: a value equals itself."""
     same = ex.Equation(left=copied(carried.expression), right=copied(carried.expression))
     return Computed(carried.port, carried.event, RoboscPrinter()(same), None, same, BOOLEAN)
 

@@ -154,10 +154,10 @@ def origins(graph: rosgraph.RosGraph) -> dict[rosgraph.NodeVariable, dict[tuple[
     """Of which data, and where in there, each array and object is that the node keeps, in one step or several."""
     known = {reception.event: reception for reception in receptions(graph)}
     stored = [
-        (reaction.event, given.variable, whole(given.value))
+        (reaction.event, given.variable, value)
         for reaction in graph.reactions
         for given in reaction.assignments
-        if is_structured(given.variable.type) and isinstance(whole(given.value), rosgraph.WireAccess)
+        if is_structured(given.variable.type) and isinstance(value := whole(given.value), rosgraph.WireAccess)
     ]
     found: dict[rosgraph.NodeVariable, dict[tuple[rosgraph.Reception, Path], None]] = {}
     changed = True

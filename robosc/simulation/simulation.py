@@ -9,8 +9,8 @@ from robosc.engine import Blocked, ControlLoop, Engine, Hooks, Settings
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.engine import Role
-from robosc.semantics.domains import domain
 from robosc.semantics.definition import named_state
+from robosc.semantics.domains import domain
 from robosc.semantics.printing import SctPrinter
 from robosc.semantics.roles import event_name
 from robosc.simulation.data import EventData

@@ -111,9 +111,9 @@ TEXTS = {
 }
 #: Words that mean something where the name stands: the text is another one then, and other findings tell.
 MEANING = {
-    "incoming message": {"and", "or", "if"},
-    "variable": {"if", "value"},
-    "enum value": {"true", "false", "value", "if"},
+    "incoming message": {"and", "or", "if", "error"},
+    "variable": {"if", "value", "error"},
+    "enum value": {"true", "false", "value", "if", "error"},
 }
 
 

@@ -54,7 +54,7 @@ def test_a_keyword_is_a_name_where_only_a_name_can_stand(tmp_path: Path, word: s
     }
 
 
-@pytest.mark.parametrize("word", sorted(ROBOSC_KEYWORDS - {"true", "false", "value", "if"}))
+@pytest.mark.parametrize("word", sorted(ROBOSC_KEYWORDS - {"true", "false", "value", "error", "if"}))
 def test_a_keyword_is_no_name_in_an_expression(tmp_path: Path, word: str) -> None:
     text = f"robot R {{ component {word} {{ incoming message m with type: none }} requirement m needs {word}.m }}"
     (rule, at), *_ = underlined(reading(tmp_path, text))

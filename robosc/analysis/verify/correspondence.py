@@ -91,7 +91,7 @@ class Correspondence:
                 raise CifError(f"the values of '{member.name}' {of} are others")
 
     def _narrow(self, ours: sct.Input, plant: sct.Plant, theirs: sct.Input, automaton: sct.Plant) -> None:
-        """Give an input of CIF the literals that the input of the model can be, if its automaton excludes the others."""
+        """Give an input of CIF the literals that it can be in the model, if its automaton excludes the others."""
         if not isinstance(ours.type, ex.EnumerationType) or not isinstance(theirs.type, ex.EnumerationType):
             return
         low, high = domain(ours.type)

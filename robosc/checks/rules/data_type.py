@@ -9,6 +9,7 @@ from robosc.checks.mending import Choice, Removal, Replacement
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import carried, sent_type
+from robosc.semantics.failures import FAILURE, is_failure
 from robosc.semantics.naming import written
 from robosc.semantics.typing import NONE, ArrayType, EnumType, declared_type
 
@@ -28,6 +29,13 @@ def data_type(base: rsc.Base) -> Iterator[Finding]:
     yield from _endless(base)
     for communication in communications(base):
         for _, declared in carried(communication):
+            if _has_failure(declared, set()):
+                yield Finding(
+                    declared,
+                    f"`{communication.name}` carries `{FAILURE}`, expected data of ROS: the controller finds out itself"
+                    " why a service or an action has failed",
+                    "read `error` at `on error from …` instead",
+                )
             if isinstance(declared, rsc.Array):
                 yield Finding(
                     declared,
@@ -37,7 +45,7 @@ def data_type(base: rsc.Base) -> Iterator[Finding]:
                 )
         sent = sent_type(communication)
         path = _enum_in(sent, set())
-        if sent is not None and path is not None:
+        if sent is not None and path is not None and not _has_failure(sent, set()):
             through = f" in its property `{'.'.join(path)}`" if path else ""
             yield Finding(
                 sent,
@@ -45,6 +53,17 @@ def data_type(base: rsc.Base) -> Iterator[Finding]:
                 " back from an enum value to the data that it stands for",
                 _sent_as(sent) if not path else "declare an object without the enum for what is sent",
             )
+
+
+def _has_failure(declared: rsc.DataType | None, seen: set[rsc.ObjectDataType]) -> bool:
+    """Whether data of a type has a part of the predefined enum; objects that were `seen` have none."""
+    while isinstance(declared, rsc.Array):
+        declared = declared.type
+    named = declared.type if isinstance(declared, rsc.ComplexDataTypeReference) else None
+    if isinstance(named, rsc.ObjectDataType) and named not in seen:
+        seen.add(named)
+        return any(_has_failure(part.type, seen) for part in named.properties)
+    return is_failure(named)
 
 
 def _sent_as(sent: rsc.DataType) -> Hint:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from robosc.checks.definitions import circles, of_kind, statements
+from robosc.checks.definitions import circles, communication_of, of_kind, statements
 from robosc.checks.expression_types import CONSTANT, ExpressionCheck, Place
 from robosc.checks.libraries import Meaning, instances, meanings
 from robosc.checks.mending import Choice, Insertion, Removal, Replacement, part_of
@@ -18,8 +18,9 @@ from robosc.metamodel.reflection import contents, tree
 from robosc.semantics.cone_of_influence import accesses, conditions
 from robosc.semantics.durations import bounds, set_on_robot
 from robosc.semantics.expansion import LARGEST, Expansion, constant_value, is_unreadable
+from robosc.semantics.failures import is_failure, reasons
 from robosc.semantics.instances import bound_arguments
-from robosc.semantics.naming import written
+from robosc.semantics.naming import enumeration, written
 from robosc.semantics.operators import operator_of
 from robosc.semantics.typing import INTEGER, UNKNOWN, declared_type, type_of
 
@@ -79,6 +80,8 @@ def arguments(base: rsc.Base) -> Iterator[Finding]:
         match element:
             case ex.FunctionCall():
                 yield from _built_in(element)
+            case ex.Equation() | ex.Inequation():
+                yield from _reason(element)
             case rsc.Call() if element.function is not None:
                 parameters = element.function.parameters
                 if len(element.arguments) != len(parameters):
@@ -95,6 +98,35 @@ def arguments(base: rsc.Base) -> Iterator[Finding]:
         yield from _unreadable(meaning)
         if meaning.made is not None:
             yield from _made(meaning)
+
+
+def _reason(comparison: ex.Equation | ex.Inequation) -> Iterator[Finding]:
+    """A comparison of `error` with a reason for which the service or action can't fail."""
+    for read, other in ((comparison.left, comparison.right), (comparison.right, comparison.left)):
+        item = other.item if isinstance(other, rsc.Access) else None
+        if not isinstance(read, rsc.ErrorReason) or not isinstance(item, rsc.EnumValue):
+            continue
+        communication = _failing(read)
+        possible = reasons(communication)
+        if is_failure(item.eContainer().eContainer()) and possible and item.name not in possible:
+            kind = type(communication).__name__.lower()
+            ways = tuple(Replacement(f"write `{name}`", name, other) for name in possible)
+            yield Finding(
+                other,
+                f"no {kind} fails because `{item.name}`, expected a reason that {kind}s have",
+                Choice(f"write one of {enumeration(f'`{name}`' for name in possible)}", ways),
+            )
+
+
+def _failing(element: ex.Located) -> rsc.CommunicationType | None:
+    """The service or action whose error a transition is on in which an element stands."""
+    around: ex.Located | None = element
+    while around is not None and not isinstance(around, rsc.ResultTransition | rsc.RequirementTransition):
+        around = around.eContainer()
+    reference = around.event if isinstance(around, rsc.RequirementTransition) else around
+    if not isinstance(reference, rsc.ResultTransition | rsc.NamedEvent) or reference.resultType != rsc.ResultType.error:
+        return None
+    return communication_of(reference.communicationType)
 
 
 def _called(call: rsc.Call) -> Iterator[Finding]:

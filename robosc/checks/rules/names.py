@@ -8,10 +8,12 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from robosc.checks.definitions import behaviours, components, of_kind, statements, states
+from robosc.checks.definitions import behaviours, components, of_kind, statements, states, variables
 from robosc.checks.mending import Choice, Removal, Renaming
 from robosc.checks.rule import Finding, on_line, rule
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.failures import FAILURE, is_failure
+from robosc.semantics.typing import EnumType, declared_type
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -72,8 +74,21 @@ for _identifier, _kind, _scopes in _UNIQUE:
 
 @rule("unique-variable")
 def unique_variable(base: rsc.Base) -> Iterator[Finding]:
-    """No variable of a component has the name of another one, or of a state: `Component.name` reaches both."""
+    """No variable of a component has the name of another one, or of a state: `Component.name` reaches both.
+
+    Nor has a variable of the predefined enum the name of one of its values.
+    """
     yield from _parameters(base)
+    for declared in variables(base):
+        kind = declared_type(declared.type)
+        reasons = kind.definition if isinstance(kind, EnumType) and is_failure(kind.definition) else None
+        if reasons is not None and declared.name in {known.value.name for known in reasons.rules}:
+            yield Finding(
+                declared,
+                f"variable `{declared.name}` is named like a value of its type `{FAILURE}`, expected another name:"
+                f" in `error = {declared.name}` the name is the value",
+                "choose another name, such as `why`",
+            )
     for component, local in components(base):
         where = f"component `{component.name}`"
         first: dict[str, Any] = {}

@@ -6,7 +6,7 @@ take the first moment for the second.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeGuard
+from typing import TYPE_CHECKING, NamedTuple, TypeGuard
 
 from robosc.checks.definitions import assigned_variable, communication_of
 from robosc.checks.libraries import instances
@@ -33,13 +33,13 @@ def cancel_is_not_the_end(base: rsc.Base) -> Iterator[Finding]:
     if not isinstance(base, rsc.Robot):
         return
     known = instances(base)
-    places = _Places(base)
+    places = Places(base)
     yield from _states_without_end(known, places)
     yield from _forbidden_ends(known, places)
     yield from _variables_read(known, places)
 
 
-class _Places:
+class Places:
     """Where findings about instances stand: in the robot's own text, or at the import of a library's component."""
 
     def __init__(self, base: rsc.Base) -> None:
@@ -60,7 +60,7 @@ class _Places:
         return place
 
 
-def _states_without_end(known: Instances, places: _Places) -> Iterator[Finding]:
+def _states_without_end(known: Instances, places: Places) -> Iterator[Finding]:
     """The transitions on a cancel to a state in which nothing waits for the end of the action."""
     for instance in known:
         common = [transition for transition, where in instance.transitions if where is None]
@@ -85,7 +85,7 @@ def _states_without_end(known: Instances, places: _Places) -> Iterator[Finding]:
                 )
 
 
-def _forbidden_ends(known: Instances, places: _Places) -> Iterator[Finding]:
+def _forbidden_ends(known: Instances, places: Places) -> Iterator[Finding]:
     """The transitions on a cancel to a state in which the requirement automaton forbids an end that it names."""
     for statement in known.statements(rsc.AutomatonRequirement):
         every = [transition for state in statement.element.states for transition in state.transitions]
@@ -112,7 +112,7 @@ def _forbidden_ends(known: Instances, places: _Places) -> Iterator[Finding]:
                 )
 
 
-def _variables_read(known: Instances, places: _Places) -> Iterator[Finding]:
+def _variables_read(known: Instances, places: Places) -> Iterator[Finding]:
     """The transitions on a cancel that assign a variable which a requirement on another command reads."""
     read = _readers(known)
     for instance in known if read else ():
@@ -138,25 +138,41 @@ def _variables_read(known: Instances, places: _Places) -> Iterator[Finding]:
                     )
 
 
-def _readers(known: Instances) -> dict[InstanceVariable, list[tuple[rsc.Requirement, set[PortInstance | None]]]]:
-    """The requirements that read each variable, each with what it restricts."""
-    conditions: list[tuple[rsc.Requirement, set[PortInstance | None], ex.Expression | None, Instance | None]] = []
+class CommandCondition(NamedTuple):
+    """A condition of a requirement on commands: they are allowed only where it has the wanted value."""
+
+    requirement: rsc.Requirement
+    restricted: set[PortInstance | None]
+    condition: ex.Expression
+    within: Instance | None
+    wanted: bool
+
+
+def command_conditions(known: Instances) -> Iterator[CommandCondition]:
+    """The conditions of requirements on starting commands, requirement automata among them."""
     for required in known.statements(rsc.CommunicationRequirement):
-        restricted = _targets(required, known)
-        conditions.append((required.element, restricted, required.element.condition, required.within))
+        if required.element.condition is not None:
+            wanted = not isinstance(required.element, rsc.DisablesRequirement)
+            restricted = _targets(required, known)
+            yield CommandCondition(required.element, restricted, required.element.condition, required.within, wanted)
     for automaton in known.statements(rsc.AutomatonRequirement):
         events = _events_of(automaton.element)
         requests = [reference for reference in events if _kind(reference) == rsc.ResultType.request]
         restricted = {known.port(reference.communicationType, automaton.within) for reference in requests}
         for state in automaton.element.states:
-            guards = (transition.guard for transition in state.transitions)
-            conditions += ((automaton.element, restricted, guard, automaton.within) for guard in guards)
+            for guard in (transition.guard for transition in state.transitions):
+                if guard is not None:
+                    yield CommandCondition(automaton.element, restricted, guard, automaton.within, wanted=True)
+
+
+def _readers(known: Instances) -> dict[InstanceVariable, list[tuple[rsc.Requirement, set[PortInstance | None]]]]:
+    """The requirements that read each variable, each with what it restricts."""
     found: dict[InstanceVariable, list[tuple[rsc.Requirement, set[PortInstance | None]]]] = {}
-    for requirement, restricted, condition, within in conditions:
-        for access in accesses(None if condition is None else known.expanded(condition, within)):
-            variable = known.variable(access, within)
+    for stated in command_conditions(known):
+        for access in accesses(known.expanded(stated.condition, stated.within)):
+            variable = known.variable(access, stated.within)
             if variable is not None:
-                found.setdefault(variable, []).append((requirement, restricted))
+                found.setdefault(variable, []).append((stated.requirement, stated.restricted))
     return found
 
 
@@ -169,7 +185,7 @@ def answer_unheard(base: rsc.Base) -> Iterator[Finding]:
     heard = _answers_heard(known)
     restricted = _restricted(known)
     read = _states_read(known)
-    places = _Places(base)
+    places = Places(base)
     for instance in known:
         for transition, state in instance.transitions:
             target = transition.target
@@ -280,7 +296,7 @@ def failure_unheard(base: rsc.Base) -> Iterator[Finding]:
     cancelable = {
         port for requirement in known.statements(rsc.CommunicationRequirement) for port in _targets(requirement, known)
     }
-    places = _Places(base)
+    places = Places(base)
     for instance in known:
         common = [transition for transition, where in instance.transitions if where is None]
         for transition, state in instance.transitions:

@@ -57,11 +57,6 @@ class Countdown {
   bool running_ = false;
 };
 
-std::string name(Failure reason) {
-  const char* const names[] = {"unavailable", "rejected", "timeout", "lost", "aborted", "canceled", "failed", "unreadable"};
-  return names[static_cast<int>(reason)];
-}
-
 struct Client : GoalClient<Countdown, int, int> {
   using Told = std::vector<std::string>;
 
@@ -70,10 +65,10 @@ struct Client : GoalClient<Countdown, int, int> {
                    {[this](const int& feedback) { told.push_back("feedback " + std::to_string(feedback)); },
                     [this](const int& result) { told.push_back("response " + std::to_string(result)); },
                     [this](Failure reason, const std::string& why, const int& result) {
-                      told.push_back("error " + name(reason) + " " + why + " " + std::to_string(result));
+                      told.push_back(std::string("error ") + failure_name(reason) + " " + why + " " + std::to_string(result));
                     },
                     [this](Failure reason, const std::string& why, const int& result) {
-                      told.push_back("canceled " + name(reason) + " " + why + " " + std::to_string(result));
+                      told.push_back(std::string("canceled ") + failure_name(reason) + " " + why + " " + std::to_string(result));
                     }}) {}
   using GoalClient::abort;
   using GoalClient::accept;
@@ -224,10 +219,10 @@ struct Proxy : GoalProxy<Countdown, int, int, int> {
     made.feedback = [this](const int&) { told.push_back("feedback"); };
     made.response = [this](const int&) { told.push_back("response"); };
     made.error = [this](Failure reason, const std::string& why, const int& result) {
-      told.push_back("error " + name(reason) + " " + why + " " + std::to_string(result));
+      told.push_back(std::string("error ") + failure_name(reason) + " " + why + " " + std::to_string(result));
     };
     made.canceled = [this](Failure reason, const std::string& why, const int& result) {
-      told.push_back("canceled " + name(reason) + " " + why + " " + std::to_string(result));
+      told.push_back(std::string("canceled ") + failure_name(reason) + " " + why + " " + std::to_string(result));
     };
     made.warn = [this](const std::string& text) { warned.push_back(text); };
     return made;

@@ -321,7 +321,7 @@ class _Reading:
     def present(self, value: ex.Expression, name: EventName) -> ex.Expression | None:
         """The input that tells whether a value can be read that an error or a canceled goal brings; None: it can."""
         event = self.plants.events.get(name)
-        words = self.names.words(value)
+        words = self.names.words(value) or ()
         for carried in event.element.inputs if event is not None and name.name in _ENDS else ():
             if carried.text is not None and words_of(carried.text) == (*words, "=", *words):
                 self.machine.events[name].inputs[carried.name] = BOOLEANS

@@ -17,7 +17,6 @@
 #include <thread>
 #include <utility>
 
-#include "robosc/failure.hpp"
 #include "robosc/json.hpp"
 #include "robosc/version.hpp"
 
@@ -132,13 +131,13 @@ class EventLog {
   }
 
   /// The reason of the next event, an error; behind its data.
-  void note_reason(Failure reason) {
+  void note_reason(const char* reason) {
     if (data_.empty()) {
       data_ = ",\"data\":{";
     } else {
       data_.back() = ',';
     }
-    data_ += "\"reason\":" + to_json(failure_name(reason)) + '}';
+    data_ += "\"reason\":" + to_json(reason) + '}';
   }
 
   void write(double time, const char* direction, const char* event) {

@@ -237,8 +237,8 @@ class Layer {
   }
 
   // The goal has ended because of a cancel: an error where the model has not canceled it.
-  void on_go_to_canceled(Failure reason, const std::string& why, const nav2_msgs::NavigateToPoseResult& result) {
-    if (!usher_enabled(&supervisor_, usher_action_go_to_u_canceled)) return on_go_to_error(reason, why, result);
+  void on_go_to_canceled(Failure reason, const std::string& why, const nav2_msgs::NavigateToPoseResult& message) {
+    if (!usher_enabled(&supervisor_, usher_action_go_to_u_canceled)) return on_go_to_error(reason, why, message);
     usher_perform(&supervisor_, usher_action_go_to_u_canceled);
     usher_settle(&supervisor_);
   }

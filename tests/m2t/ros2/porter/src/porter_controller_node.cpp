@@ -157,8 +157,8 @@ class Controller : public ControllerNode<rclcpp::Node> {
   // The goal has ended because of a cancel: an error where the model has not canceled it.
   void
       on_travel_canceled(Failure reason, const std::string& why, const nav2_msgs::action::NavigateToPose::Result&
-      result) {
-    if (!porter_enabled(&supervisor_, porter_action_travel_u_canceled)) return on_travel_error(reason, why, result);
+      message) {
+    if (!porter_enabled(&supervisor_, porter_action_travel_u_canceled)) return on_travel_error(reason, why, message);
     travel_fault_.clear();
     porter_begin(&supervisor_);
     porter_perform(&supervisor_, porter_action_travel_u_canceled);
