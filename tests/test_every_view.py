@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tests.fuzz.valid import Robot
 
 FOLDER = Path(__file__).parent / "every_view"
-NAMES = ["data", "names", "requirements", "templates", "transitions"]
+NAMES = ["data", "failures", "names", "requirements", "templates", "transitions"]
 EACH = pytest.mark.parametrize("name", NAMES)
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
-from robosc.semantics.failures import FAILURE, REASONS, is_failure
+from robosc.semantics.failures import FAILURE, is_failure
 from robosc.semantics.typing import EnumType, declared_type, type_of
 
 if TYPE_CHECKING:
@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
     from robosc.language.scopes import File
 
-#: All values of the enum.
-VALUES = frozenset(name for names in REASONS.values() for name in names)
 
 
 def names_failures(file: File) -> bool:

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from robosc.diagnostics import Related, Repair
 from robosc.interruption import checkpoint
 from robosc.language.explaining import BASIC_TYPES, CONSTRUCTS, did_you_mean
-from robosc.language.failures import VALUES, expects_failure
+from robosc.language.failures import expects_failure
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
 from robosc.language.scopes import Declared, File, Names, Scope, by_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import RUNNING_WORD
 from robosc.semantics.expansion import constant_value
-from robosc.semantics.failures import FAILURE
+from robosc.semantics.failures import FAILURE, FAILURES
 from robosc.semantics.naming import enumeration, written
 from robosc.semantics.operators import FUNCTIONS
 from robosc.semantics.typing import (
@@ -162,7 +162,7 @@ class Linker:
     def _may_be_reason(self, element: ex.Located) -> bool:
         """Whether a bare name is a value of `Failure` if the text expects one there, which other names tell."""
         is_bare = self._file.predefined is not None and self._is_bare(element)
-        return is_bare and self._file.references[element]["item"].text in VALUES
+        return is_bare and self._file.references[element]["item"].text in FAILURES
 
     def _is_bare(self, element: ex.Located) -> bool:
         if not isinstance(element, rsc.Access) or element.value or element.segments:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from robosc.metamodel import xmi
+from robosc.metamodel import robosc, xmi
+from robosc.metamodel.reflection import tree
+from robosc.semantics.failures import is_failure
 from robosc.semantics.instances import libraries
 from robosc.semantics.naming import Names
 from robosc.semantics.roles import is_from_cif
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from robosc.configuration import Configuration
     from robosc.diagnostics import Diagnostic
     from robosc.m2t.models import Models
@@ -23,8 +27,9 @@ def preconditions(_models: Models, _configuration: Configuration) -> list[Diagno
 def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
     """`<robot>.sct.xmi`, where it has a supervisor `.engine.xmi`, and of the models that there are the others.
 
-    These are `.rosgraph.xmi`, `.robosc.xmi`, `<library>.robosc.xmi`. A library that is called like the
-    robot gets an underscore. Raises ModelError for what XML can't hold.
+    These are `.rosgraph.xmi`, `.robosc.xmi`, `<library>.robosc.xmi`, also of the predefined library where the model
+    names something of it. A library that is called like the robot gets an underscore. Raises ModelError for what XML
+    can't hold.
     """
     name = models.sct.name
     roots: dict[str, Any] = {f"{name}.sct.xmi": models.sct}
@@ -35,5 +40,15 @@ def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
     if models.robosc is not None:
         names = Names([name])
         roots[f"{name}.robosc.xmi"] = models.robosc
-        roots |= {f"{names.fresh(library.name)}.robosc.xmi": library for library in libraries(models.robosc)}
+        known = libraries(models.robosc)
+        known += dict.fromkeys(library for base in (models.robosc, *known) for library in _predefined(base))
+        roots |= {f"{names.fresh(library.name)}.robosc.xmi": library for library in known}
     return xmi.to_texts(roots)
+
+
+def _predefined(base: robosc.Base) -> Iterator[robosc.Library]:
+    """The library that every model knows, once for each use of it in a text."""
+    for _, element in tree(base):
+        match element:
+            case robosc.ErrorReason(enumeration=enum) | robosc.ComplexDataTypeReference(type=enum) if is_failure(enum):
+                yield enum.eContainer()

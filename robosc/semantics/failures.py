@@ -16,6 +16,8 @@ REASONS: Mapping[type[robosc.CommunicationType], tuple[str, ...]] = {
     robosc.Service: ("unavailable", "timeout", "unreadable", "failed"),
     robosc.Action: ("rejected", "lost", "aborted", "canceled", "unavailable", "timeout", "unreadable"),
 }
+#: All values of the enum.
+FAILURES = frozenset(name for names in REASONS.values() for name in names)
 #: The reasons after which a service or an action may still be running.
 STILL_RUNNING: Mapping[type[robosc.CommunicationType], tuple[str, ...]] = {
     robosc.Service: ("timeout", "failed"),

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.reflection import tree
-from robosc.semantics.messages import EACH, path_of, source_of
-from robosc.semantics.typing import BOOLEAN, declared_type
+from robosc.semantics.failures import FAILURES
+from robosc.semantics.messages import EACH, path_of, reads_elements, source_of
+from robosc.semantics.typing import BOOLEAN, declared_type, infer
 from robosc.validity.model_checks import demand, fitting_operands, typed
 
 if TYPE_CHECKING:
@@ -45,6 +46,19 @@ def _inputs(reception: rosgraph.Reception, _model: Model) -> Iterator[Fault]:
     for assignment in reception.inputs:
         if assignment.input not in reception.event.inputs:
             yield assignment, f"'{reception.event.name}' does not carry the input '{assignment.input.name}'"
+
+
+def _reason(read: rosgraph.ErrorReason, _model: Model) -> Iterator[Fault]:
+    """A reason is read where a service or an action has failed, and each of the node's is one of the enumeration."""
+    user = read.eContainer()
+    while isinstance(user, ex.Expression | rosgraph.NodeAssignment | rosgraph.InputAssignment):
+        user = user.eContainer()
+    event = user.event if isinstance(user, rosgraph.Reaction | rosgraph.Reception) else None
+    if event is None or event.kind != sct.EventKind.error:
+        yield read, "a reason is read at the error of a service or an action only"
+    missing = {*FAILURES} - {literal.name for literal in read.enumeration.literals}
+    if missing:
+        yield read, f"{read.enumeration.name} has no literal '{min(missing)}'"
 
 
 class _Shape:
@@ -86,7 +100,11 @@ def _sent_shape(sending: rosgraph.Sending, _model: Model) -> Iterator[Fault]:
 def _received_shapes(graph: rosgraph.RosGraph, _model: Model) -> Iterator[Fault]:
     sources = [list(subscription.receptions) for subscription in graph.subscriptions]
     sources += [[client.response] for client in graph.serviceClients]
-    sources += [[reception] for client in graph.actionClients for reception in (client.feedback, client.response)]
+    sources += [
+        [reception]
+        for client in graph.actionClients
+        for reception in (client.feedback, client.response, client.error, client.canceled)
+    ]
     reactions: dict[Any, list[Any]] = defaultdict(list)
     for reaction in graph.reactions:
         reactions[reaction.event] += [*([reaction.guard] if reaction.guard else []), *reaction.needs]
@@ -147,6 +165,15 @@ _WHOLE = demand(
     "only what a conversion takes, and what is stored or sent as a whole, may be without a type",
 )
 
+_ALTERNATIVE = demand(
+    lambda choice: (
+        isinstance(choice.eContainer(), rosgraph.NodeAssignment | rosgraph.Reaction | ex.Expression)
+        and not reads_elements(choice.otherwise)
+        and infer(choice.value) == infer(choice.otherwise)
+    ),
+    "what takes the place of a value is of its type, and reads no element of an array",
+)
+
 CHECKS: Checks = {
     ex.Expression: [fitting_operands],
     object: [_own_event],
@@ -166,4 +193,6 @@ CHECKS: Checks = {
     rosgraph.ServiceClient: [_interface(rosgraph.InterfaceKind.service)],
     rosgraph.ActionClient: [_interface(rosgraph.InterfaceKind.action)],
     rosgraph.WireAccess: [_WHOLE, _BASIC_FIELD],
+    rosgraph.ErrorReason: [_reason],
+    rosgraph.IfReadable: [_ALTERNATIVE],
 }

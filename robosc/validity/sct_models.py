@@ -9,6 +9,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.communication import IDLE
 from robosc.semantics.durations import LONGEST, SHORTEST, UNITS
+from robosc.semantics.domains import domain
 from robosc.semantics.edges import edges_of
 from robosc.semantics.operators import FUNCTIONS
 from robosc.semantics.roles import is_from_cif
@@ -114,14 +115,28 @@ def _used(model: sct.SupervisoryControlModel, _model: Model) -> Iterator[Fault]:
 
 
 def _read(reference: sct.InputReference, _model: Model) -> Iterator[Fault]:
-    """An input is read in guards and updates of edges of an event that names it, and nowhere else."""
+    """An input is read in guards and updates of edges, and in requirements, of an event that names it."""
     user = reference.eContainer()
     while isinstance(user, ex.Expression | sct.Update):
         user = user.eContainer()
-    if not isinstance(user, sct.Edge):
-        yield reference, "an input is read in guards and updates of edges only"
+    if not isinstance(user, sct.Edge | sct.Requirement):
+        yield reference, "an input is read in guards and updates of edges, and in requirements, only"
     elif reference.input not in user.event.inputs:
         yield reference, f"'{user.event.name}' does not carry the input '{reference.input.name}'"
+
+
+def _part(kind: ex.EnumerationType, _model: Model) -> Iterator[Fault]:
+    """A part of an enumeration is one of an input: from a literal to itself or a later one."""
+    literals = list(kind.enumeration.literals)
+    ends = [literal for literal in (kind.first, kind.last) if literal is not None]
+    for literal in ends:
+        if literal not in literals:
+            yield kind, f"'{literal.name}' is no literal of {kind.enumeration.name}"
+            return
+    if ends and not isinstance(kind.eContainer(), sct.Input):
+        yield kind, "only an input has a part of an enumeration"
+    elif domain(kind).low > domain(kind).high:
+        yield kind, f"'{kind.first.name}' stands behind '{kind.last.name}'"
 
 
 def _guards(supervisor: sct.Supervisor, model: Model) -> Iterator[Fault]:
@@ -209,6 +224,7 @@ CHECKS: Checks = {
     sct.Input: [_PLAIN],
     sct.DiscreteVariable: [_PLAIN, typed("initial", lambda variable: declared_type(variable.type)), _initial_value],
     ex.IntegerType: [_bounds],
+    ex.EnumerationType: [_part],
     ex.DoubleLiteral: [_FOREIGN],
     ex.StringLiteral: [_FOREIGN],
     ex.DoubleConversion: [_FOREIGN],

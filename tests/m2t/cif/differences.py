@@ -9,6 +9,8 @@ from robosc.metamodel import sct
 from robosc.metamodel.reflection import contents, tree
 from robosc.semantics.edges import edges_from, edges_of
 from robosc.semantics.evaluation import Program, saturate
+from robosc.semantics.printing import conjunction
+from robosc.semantics.walks import copied
 
 #: Valuations that two expressions are compared under.
 _MOST = 400
@@ -103,7 +105,7 @@ class _Comparison:
             where = f"{_name(mine)} -{_name(edge.event)}->"
             if _name(edge.event) != _name(other.event) or _index(edge.target) != _index(other.target):
                 yield f"{where} is for {_name(other.event)} to {_name(other.target)}"
-            yield from self.expression(f"guard of {where}", edge.guard, other.guard)
+            yield from self.expression(f"guard of {where}", _guard(edge), other.guard)
             for update, counterpart in zip_longest(edge.updates, other.updates):
                 if update.variable.name != counterpart.variable.name:
                     yield f"{where} updates {counterpart.variable.name}"
@@ -217,3 +219,18 @@ def _shape(expression: Any) -> Any:
             return expression.value
     children = [child for _, child in contents(expression)]
     return (type(expression).__name__, *map(_shape, children))
+
+
+def _guard(edge: sct.Edge) -> ex.Expression | None:
+    """An edge's guard, behind conditions that exclude what an input of the plant's own event can't be."""
+    excluded: list[ex.Expression] = []
+    for carried in edge.event.inputs if edge.eContainer() in edge.event.eContainer().locations else ():
+        kind = carried.type
+        if isinstance(kind, ex.EnumerationType) and kind.first is not None and kind.last is not None:
+            literals = list(kind.enumeration.literals)
+            possible = literals[literals.index(kind.first) : literals.index(kind.last) + 1]
+            for literal in literals:
+                if literal not in possible:
+                    read = sct.InputReference(input=carried)
+                    excluded.append(ex.Inequation(left=read, right=ex.EnumerationLiteralReference(literal=literal)))
+    return conjunction([*excluded, *([copied(edge.guard)] if edge.guard is not None else [])])
