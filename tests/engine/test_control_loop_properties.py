@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from robosc.engine import ControlLoop, Hooks, Settings
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.domains import domain
 from robosc.semantics.roles import event_name, plant_of
 from tests.engine.robots import robots
 from tests.searching import examples
@@ -74,7 +75,8 @@ class Observed:
     def _value(kind: ex.Type, random: Random) -> bool | int | str:
         match kind:
             case ex.EnumerationType():
-                return random.choice([literal.name for literal in kind.enumeration.literals])
+                low, high = domain(kind)
+                return random.choice([literal.name for literal in kind.enumeration.literals][low : high + 1])
             case ex.IntegerType():
                 return random.choice((kind.minimum, kind.maximum, random.randint(kind.minimum, min(kind.maximum, 9))))
         return random.random() < 0.5

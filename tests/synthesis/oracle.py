@@ -227,7 +227,9 @@ def values_of(kind: ex.Type) -> list[Any]:
             return [False, True]
         case ex.IntegerType():
             return list(range(kind.minimum, kind.maximum + 1))
-    return list(kind.enumeration.literals)
+    literals = list(kind.enumeration.literals)
+    first = 0 if kind.first is None else literals.index(kind.first)
+    return literals[first:] if kind.last is None else literals[first : literals.index(kind.last) + 1]
 
 
 def _saturated(value: Any, kind: ex.Type) -> Any:

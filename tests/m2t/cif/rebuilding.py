@@ -74,7 +74,8 @@ def _name_kinds(plant: sct.Plant) -> None:
         kind = "data" if plant.kind is sct.PlantKind.data else stem if stem in _EVENTS else "trigger"
         event.kind = getattr(sct.EventKind, kind)
         carried = f"i_{event.name.rstrip('_').partition('_')[2]}"
-        event.inputs.extend(input_ for input_ in plant.inputs if input_.name.startswith(carried))
+        own = (input_ for input_ in plant.inputs if f"{input_.name}_".startswith(f"{carried}_"))
+        event.inputs.extend(own)
 
 
 def _shifts(model: sct.SupervisoryControlModel, text: str) -> dict[Any, int]:

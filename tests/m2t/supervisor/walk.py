@@ -5,6 +5,7 @@ from random import Random
 from robosc.engine import ControlLoop, Hooks, Settings
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.domains import domain
 
 
 class Walk:
@@ -103,7 +104,8 @@ class Walk:
                 value = self.random.random() < 0.5
                 return value, int(value)
             case ex.EnumerationType():
-                literal = self.random.choice(list(kind.enumeration.literals))
+                low, high = domain(kind)
+                literal = self.random.choice(list(kind.enumeration.literals)[low : high + 1])
                 return literal.name, kind.enumeration.literals.index(literal)
         number = self.random.randint(kind.minimum, kind.maximum)
         return number, number
