@@ -27,7 +27,7 @@ def test_absent_at_start(scout: Scout) -> None:
     scout.dismiss_server()
     since = scout.now()
     scout.send("/travel_order", data=True)
-    scout.until_event(since, ERROR, count=2)
+    assert scout.until_event(since, ERROR, count=2)["data"] == {"reason": "unavailable"}
     assert scout.says(since, "/travel: no server within 1000 ms") == 1
     assert scout.ticked_between(since, TRIGGER, ERROR)
     steps = [entry for entry in scout.log(since) if entry["event"].startswith("action_travel")]
@@ -52,6 +52,7 @@ def test_accepted_late(scout: Scout, server: Peer) -> None:
     server.wait("cancel", heard, value=number)
     error = scout.until_event(since, ERROR)
     assert error["time"] - scout.events(since, TRIGGER)[0]["time"] > TIMEOUT - 0.1
+    assert error["data"] == {"reason": "timeout"}
     assert scout.ticked_between(since, TRIGGER, ERROR)
     arrive_sometime(scout)
 
@@ -62,7 +63,7 @@ def test_dies_with_the_goal(scout: Scout, server: Peer) -> None:
     scout.until_state("Navigator", "travelling")
     since = scout.now()
     scout.kill_server()
-    scout.until_event(since, ERROR)
+    assert scout.until_event(since, ERROR)["data"] == {"reason": "lost"}
     scout.until_says(since, GONE)
     scout.until_event(since, MOVE)
     scout.serve(succeed=True)

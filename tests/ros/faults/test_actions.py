@@ -38,18 +38,24 @@ def test_goal_rejected(scout: Scout, server: Peer) -> None:
     since, number = travel(scout, server, accept=False)
     error = scout.until_event(since, ERROR)
     assert error["time"] - scout.events(since, TRIGGER)[0]["time"] < ACCEPTANCE_SECONDS
+    assert error["data"] == {"reason": "rejected"}
     scout.until_says(since, "/travel: rejected")
     succeed(scout, server, number + 1)
 
 
 @pytest.mark.parametrize(
-    ("how", "text"), [("aborted", "/travel: aborted"), ("cancelled", "/travel: canceled by someone else")]
+    ("how", "text", "reason"),
+    [
+        ("aborted", "/travel: aborted", "aborted"),
+        ("cancelled", "/travel: canceled by someone else", "canceled"),
+    ],
 )
-def test_goal_ends_otherwise(scout: Scout, server: Peer, how: str, text: str) -> None:
+def test_goal_ends_otherwise(scout: Scout, server: Peer, how: str, text: str, reason: str) -> None:
     since, number = travel(scout, server)
     scout.until_state("Navigator", "travelling")
     server.do("end", number=number, how=how)
-    scout.until_event(since, ERROR)
+    assert scout.until_event(since, ERROR)["data"] == {"reason": reason}
+    scout.until(lambda: scout.variable("Navigator", "why") == reason, "the reason is kept")
     scout.until_says(since, text)
     assert scout.events(since, RESPONSE) == scout.events(since, CANCEL) == []
     succeed(scout, server, number + 1)

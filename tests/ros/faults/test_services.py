@@ -19,7 +19,7 @@ def test_absent_at_start(scout: Scout) -> None:
     scout.dismiss_server()
     since = scout.now()
     scout.send("/light", data=True)
-    scout.until_event(since, ERROR, count=2)
+    assert scout.until_event(since, ERROR, count=2)["data"] == {"reason": "unavailable"}
     # Once for one reason, however often it is tried.
     assert scout.says(since, "/lamp: no server within 1000 ms") == 1
     assert scout.ticked_between(since, TRIGGER, ERROR)
@@ -62,9 +62,11 @@ def test_dies_while_it_answers(scout: Scout) -> None:
     scout.send("/light", data=True)
     server.wait("called")
     scout.kill_server()
-    scout.until_event(since, ERROR)
-    texts = "/lamp: the call failed", "/lamp: no answer within 1000 ms"
-    assert sum(scout.says(since, text) for text in texts) == 1
+    reason = scout.until_event(since, ERROR)["data"]["reason"]
+    texts = {"failed": "/lamp: the call failed", "timeout": "/lamp: no answer within 1000 ms"}
+    assert {known: scout.says(since, text) for known, text in texts.items()} == {
+        known: known == reason for known in texts
+    }
     scout.serve().do("answer_at_once", fields=LIT)
     scout.until_state("Lamp", "lit")
 
@@ -78,6 +80,7 @@ def test_answers_late(scout: Scout) -> None:
     error = scout.until_event(since, ERROR)
     assert error["time"] - scout.events(since, TRIGGER)[0]["time"] > TIMEOUT - 0.1
     assert scout.ticked_between(since, TRIGGER, ERROR)
+    assert error["data"] == {"reason": "timeout"}
     scout.until_says(since, "/lamp: no answer within 1000 ms")
     # The answer to the first call comes while the second one waits: it belongs to neither.
     server.wait("called", heard, value=first + 1)
@@ -100,7 +103,7 @@ def test_fails(scout: Scout) -> None:
     since, heard = scout.now(), len(server.said)
     scout.send("/light", data=True)
     server.do("answer", number=server.wait("called", heard)["called"], fields=None)
-    scout.until_event(since, ERROR)
+    assert scout.until_event(since, ERROR)["data"] == {"reason": "failed"}
     scout.until_says(since, "/lamp: the call failed")
     server.do("answer_at_once", fields=LIT)
     scout.until_state("Lamp", "lit")
