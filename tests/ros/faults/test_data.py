@@ -62,7 +62,8 @@ def test_answer_too_short(scout: Scout) -> None:
     assert scout.variable("Surveyor", "low") != 2.5
     assert scout.variable("Surveyor", "failures") > failures
     # What could be read of it is in the log; the reason is said once.
-    assert error["data"] == {"value": {"costs": {"0": 2.5}}}
+    assert error["data"] == {"value": {"costs": {"0": 2.5}}, "reason": "unreadable"}
+    assert scout.variable("Surveyor", "why") == "unreadable"
     assert scout.says(since, "/survey: there is no element 1 in an array of 1") == 1
     assert scout.events(since, "service_survey.u_response") == []
     server.do("answer_at_once", fields={"costs": [2.0, 3.0]})
@@ -84,11 +85,31 @@ def test_result_too_short(scout: Scout) -> None:
             error = scout.until_event(since, "action_tour.u_error")
             scout.until_reported()
             assert scout.variable("Surveyor", "first") != 7
-            assert error["data"] == {"value": {"missed_waypoints": {"0": 7}}}
+            assert error["data"] == {"value": {"missed_waypoints": {"0": 7}}, "reason": "unreadable"}
             assert scout.says(since, "/tour: there is no element 1 in an array of 1") == 1
     scout.until_state("Surveyor", "done")
     scout.until_reported()
     assert (scout.variable("Surveyor", "first"), scout.variable("Surveyor", "second")) == (4, 5)
+
+
+def test_result_of_an_aborted_goal(scout: Scout) -> None:
+    """An error brings the result: a condition on an element that is missing is false, and nothing is stored of it."""
+    server, since = scout.serve(), scout.now()
+    heard = len(server.said)
+    scout.send("/tour_order", data=True)
+    first, second = (scout.variable("Surveyor", name) for name in ("first", "second"))
+    cases = [([], (first, second)), ([7], (7, second)), ([7, 8], (7, 8)), ([9], (7, 8))]
+    for count, (missed, kept) in enumerate(cases, start=1):
+        number = server.wait("goal", heard)["goal"]
+        heard = len(server.said)
+        server.do("decide", number=number, accept=True)
+        server.do("end", number=number, how="aborted", fields={"missed_waypoints": missed})
+        error = scout.until_event(since, "action_tour.u_error", count=count)
+        # The log shows the elements that anything reads.
+        shown = {str(index): value for index, value in enumerate(missed)}
+        assert error["data"] == ({"value": {"missed_waypoints": shown}} if shown else {}) | {"reason": "aborted"}
+        scout.until_reported()
+        assert (scout.variable("Surveyor", "first"), scout.variable("Surveyor", "second")) == kept
 
 
 @pytest.mark.parametrize(
