@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections import Counter
+from enum import Enum, auto
 from typing import TYPE_CHECKING, Any, Protocol
 
 from robosc.language.tokens import Kind
@@ -77,6 +78,31 @@ def objection(
     it may reveal them. But for each syntax error that is mended there must be one less.
     """
     return _Comparison(before, after, edits).objection(mended)
+
+
+class Safety(Enum):
+    """Effect of the edits that mend one finding."""
+
+    SAFE = auto()
+    DOUBTFUL = auto()
+    HARMFUL = auto()
+
+
+def safety_of(finding: Diagnostic, edits: Sequence[Edit], before: Checked, check: Callable[[str], Checked]) -> Safety:
+    """The effect of edits of a file that are to mend a finding in it; `check` is that of `safe_edits`.
+
+    They are safe where `safe_edits` may take them. They do harm where the finding stays, a comment, a string or an
+    import would change, or a syntax error is new, but for one that the mended one may have hidden. All others are
+    doubtful, such as those after which a rule finds something else.
+    """
+    text = before.reading.file.text
+    after = check(text.after(edits))
+    comparison = _Comparison(before, after, {text.file: edits})
+    if comparison.objection([finding]) is None:
+        return Safety.SAFE
+    if tuple(edits) == tuple(finding.edits) and _leads_on(finding, before, check):
+        return Safety.SAFE
+    return Safety.HARMFUL if comparison.is_harmful(finding) else Safety.DOUBTFUL
 
 
 def safe_edits(before: Checked, check: Callable[[str], Checked]) -> list[Edit]:
@@ -163,13 +189,9 @@ class _Comparison:
 
     def objection(self, mended: Sequence[Diagnostic], *, revealed: int = 0) -> str | None:
         """Why it is worse, so many syntax errors that were hidden aside."""
-        for path in self._files:
-            if path not in self._files_after:
-                return f"{path} would be imported no more"
-            if not self._keeps_comments(path):
-                return "a comment would change"
-            if not self._keeps_strings(path, mended):
-                return "a string would change"
+        damage = self._damage(mended)
+        if damage is not None:
+            return damage
         is_syntax = any(finding.rule == "syntax" for finding in mended)
         worse = self._syntax_error(mended, revealed) if is_syntax else self._new_finding(mended)
         if worse is not None:
@@ -177,14 +199,45 @@ class _Comparison:
         name = None if is_syntax else next(self._changed_names(), None)
         return None if name is None else f"`{name.name}` would stand for something else"
 
+    def is_harmful(self, mended: Diagnostic) -> bool:
+        """Whether the edits that are to mend a finding break the text, or leave the finding."""
+        if self._damage([mended], removing=True) is not None:
+            return True
+        if mended.rule == "syntax":
+            return self._syntax_error([mended], revealed=1) is not None
+        if len(_syntax_errors(self._after)) > len(_syntax_errors(self._before)):
+            return True
+        text = self._files_after[mended.file].text
+        before, after = (
+            [found for found in checked.findings if (found.file, found.rule) == (mended.file, mended.rule)]
+            for checked in (self._before, self._after)
+        )
+        same = (mended.message, self._start(mended))
+        stays = any(same == (found.message, _start(found, text)) for found in after)
+        return stays and len(after) >= len(before)
+
+    def _damage(self, mended: Sequence[Diagnostic], *, removing: bool = False) -> str | None:
+        """An import, a comment or a string that would change; `removing`: edits may remove whole strings."""
+        for path in self._files:
+            if path not in self._files_after:
+                return f"{path} would be imported no more"
+            if not self._keeps_comments(path):
+                return "a comment would change"
+            if not self._keeps_strings(path, mended, removing):
+                return "a string would change"
+        return None
+
     def _keeps_comments(self, path: str) -> bool:
         moved, comments = self._moved[path], self._files[path].text.tokens.comments
         if any(moved.edits_in(*comment) for comment in comments):
             return False
         return [moved.range(*comment) for comment in comments] == self._files_after[path].text.tokens.comments
 
-    def _keeps_strings(self, path: str, mended: Sequence[Diagnostic]) -> bool:
-        """Whether strings are kept, but for those that an edit replaces whole and those with an error inside."""
+    def _keeps_strings(self, path: str, mended: Sequence[Diagnostic], removing: bool) -> bool:
+        """Whether strings are kept, but for those that an edit replaces whole and those with an error inside.
+
+        `removing`: nor those that an edit removes with what they stand in.
+        """
         moved, text = self._moved[path], self._files[path].text
         faulty = [_start(finding, text) for finding in mended if finding.file == path]
         kept = set()
@@ -192,6 +245,8 @@ class _Comparison:
             edited = moved.edits_in(start, end)
             if not edited:
                 kept.add(moved.range(start, end))
+            elif removing and len(edited) == 1 and edited[0][0] <= start and end <= edited[0][1]:
+                continue
             elif edited != [(start, end)] and not any(start < place < end for place in faulty):
                 return False
         strings = set(_strings(self._files_after[path].text))

@@ -11,7 +11,7 @@ import textx
 
 from robosc.diagnostics import Repair
 from robosc.files.resources import locate
-from robosc.language.explaining import did_you_mean
+from robosc.language.explaining import closest, keyword_hint
 from robosc.semantics.naming import enumeration
 
 if TYPE_CHECKING:
@@ -67,6 +67,25 @@ _MEANT = {"==": "=", "&&": "and", "||": "or", "!": "not", "<>": "!="}
 @cache
 def _grammar() -> Any:
     return textx.metamodel_from_file(str(locate("grammar/cif.tx")), autokwd=True)
+
+
+@cache
+def _identifier() -> re.Pattern[str]:
+    """The grammar's own expression for a name that is no keyword."""
+    pending, seen = [_grammar()._parser_blueprint.parser_model], set[int]()  # noqa: SLF001 - textX has no other access
+    while pending:
+        rule = pending.pop()
+        if rule.rule_name == "Identifier" and isinstance(rule, arpeggio.RegExMatch):
+            return re.compile(rule.to_match_regex)
+        pending += [part for part in getattr(rule, "nodes", ()) if id(part) not in seen]
+        seen.update(map(id, getattr(rule, "nodes", ())))
+    raise AssertionError("the grammar has no rule Identifier")
+
+
+def identifier(name: str) -> str:
+    """A name as a text has it: a keyword that stands alone needs a dollar sign before it."""
+    is_alone = "." not in name and not name.startswith("^")
+    return f"${name}" if is_alone and _identifier().fullmatch(name) is None else name
 
 
 def parse(text: Text) -> tuple[Any, list[Diagnostic]]:
@@ -223,9 +242,9 @@ def _hint(found: str, wanted: list[str]) -> Repair | str | None:
         return Repair(f"write `{_MEANT[found]}`", _MEANT[found])
     if found == "=" and ":=" in wanted:
         return Repair("write `:=` for an assignment", ":=")
-    repair = did_you_mean(found, [word for word in wanted if word.isalpha()], cutoff=0.6) if found else None
-    if repair is not None and found not in wanted:
-        return repair
+    close = closest(found, [word for word in wanted if word.isalpha()], cutoff=0.6) if found.isidentifier() else None
+    if close is not None and found not in wanted:
+        return keyword_hint(found, close)
     if ";" in wanted and found.isidentifier():
         return "is a `;` missing before it?"
     if found.isidentifier() and "Identifier" in wanted:

@@ -12,12 +12,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robosc.cif.faults import CHANNELS, CifFaultError, construct, located
+from robosc.cif.parsing import identifier
 from robosc.diagnostics import Repair
-from robosc.language.explaining import did_you_mean
+from robosc.language.explaining import closest
 from robosc.metamodel import sct
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from robosc.diagnostics import Diagnostic
     from robosc.metamodel import expression as ex
@@ -104,6 +105,17 @@ def plain(identifier: str) -> str:
     return identifier.replace("$", "")
 
 
+def _meant(name: str, position: int, known: Iterable[str]) -> Repair | None:
+    """The repair that writes the closest name in place of one part of a name; None where none is close."""
+    absolute = name[0] if name[0] in ".^" else ""
+    parts = name.lstrip(".^").split(".")
+    close = closest(parts[position], known, cutoff=0.7)
+    if close is None:
+        return None
+    whole = absolute + ".".join([*parts[:position], close, *parts[position + 1 :]])
+    return Repair(f"did you mean `{identifier(whole)}`?", identifier(whole))
+
+
 class Specification:
     """All names of a specification. `findings` are the faults in what declares them."""
 
@@ -167,25 +179,22 @@ class Specification:
             seen.update(known.names)
             known = None if name[0] in ".^" else known.around
         if found is None:
-            repair = did_you_mean(first, seen, cutoff=0.7)
+            repair = _meant(name, 0, seen)
             if repair is None and name[0] == "." and first in self.root.names:
                 repair = Repair(
                     f"in a definition `.` begins there; from the file's root it is `^{name[1:]}`", f"^{name[1:]}"
                 )
             raise CifFaultError(read, "unresolved-reference", f"there is no `{first}` here", repair)
         whole = first
-        for part in others:
+        for position, part in enumerate(others, 1):
             inside = self.resolved(found)
             if not isinstance(inside, Scope):
                 raise CifFaultError(
                     read, "unresolved-reference", f"`{whole}` is no group and no automaton: nothing is in it"
                 )
             if part not in inside.names:
-                repair = did_you_mean(part, inside.names, cutoff=0.7) if len(others) == 1 else None
-                if repair is not None and repair.text is not None:
-                    whole = f"{whole}.{repair.text}"
-                    repair = Repair(f"did you mean `{whole}`?", whole)
-                raise CifFaultError(read, "unresolved-reference", f"there is no `{part}` in `{inside.path}`", repair)
+                message, repair = f"there is no `{part}` in `{inside.path}`", _meant(name, position, inside.names)
+                raise CifFaultError(read, "unresolved-reference", message, repair)
             found, whole = inside.names[part], f"{whole}.{part}"
         return self.resolved(found)
 

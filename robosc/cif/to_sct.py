@@ -23,9 +23,11 @@ from robosc.cif.faults import (
     span,
     text_of,
 )
+from robosc.cif.parsing import identifier
 from robosc.cif.scopes import Declared, Scope, Specification, plain
 from robosc.cif.values import Values, computed_from_itself, constant_value, literal
-from robosc.language.explaining import did_you_mean
+from robosc.diagnostics import Repair
+from robosc.language.explaining import closest
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.cif_types import Type, contains, overlap, shown
@@ -579,4 +581,6 @@ def _words(read: Any) -> str:
 
 
 def _missing(name: str, known: list[str]) -> tuple[str, Any]:
-    return f"there is no location `{name}` here", did_you_mean(name, known, cutoff=0.6)
+    close = closest(name, known, cutoff=0.6)
+    repair = Repair(f"did you mean `{identifier(close)}`?", identifier(close)) if close else None
+    return f"there is no location `{name}` here", repair

@@ -4,29 +4,33 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
-from robosc.checks.fixing import safe_edits
+from robosc.checks.fixing import Safety, safe_edits, safety_of
 from robosc.diagnostics import Severity, in_order
 from robosc.diagnostics.rules import address
 from robosc.editor.places import span_range, to_edits, to_range
 from robosc.editor.renaming import rename_everywhere, renaming_of
+from robosc.interruption import checkpoint
 from robosc.language.libraries import declared_name
 from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from robosc.diagnostics import Diagnostic
+    from robosc.diagnostics import Diagnostic, Edit
     from robosc.editor.project import Analysis, Snapshot
     from robosc.language import Reference, Text
 
 #: The command that adds a folder, by its URI, to those in which libraries are looked for.
 ADD_LIBRARY_FOLDER = "robosc.addLibraryFolder"
+#: How many ways to mend findings are tried for one request: each reads the model anew.
+_MOST_WAYS = 20
 _MEND_ALL = "source.fixAll.robosc"
 CODE_ACTION_OPTIONS = types.CodeActionOptions([types.CodeActionKind.QuickFix, _MEND_ALL])
 _SEVERITIES = {
@@ -91,10 +95,11 @@ def code_actions(snapshot: Snapshot, analysis: Analysis, params: types.CodeActio
     own = [finding for finding in analysis.findings if finding.file == text.file]
     found: list[types.CodeAction] = []
     if only is None or types.CodeActionKind.QuickFix in only:
-        for finding in own:
-            place = span_range(text, finding.span)
-            if place.start <= params.range.end and params.range.start <= place.end:
-                found += _quick_fixes(snapshot, analysis, uri, finding)
+        places = ((finding, span_range(text, finding.span)) for finding in own)
+        there = [
+            finding for finding, place in places if place.start <= params.range.end and params.range.start <= place.end
+        ]
+        found += _quick_fixes(snapshot, analysis, params, there)
         found += _library_folders(snapshot, analysis, params.range)
     if only is not None and any(kind == _MEND_ALL or _MEND_ALL.startswith(f"{kind}.") for kind in only):
         certain = safe_edits(analysis, partial(_checked, snapshot, analysis))
@@ -104,21 +109,48 @@ def code_actions(snapshot: Snapshot, analysis: Analysis, params: types.CodeActio
     return found
 
 
-def _quick_fixes(snapshot: Snapshot, analysis: Analysis, uri: str, finding: Diagnostic) -> Iterator[types.CodeAction]:
-    """The ways to mend a finding. One that renames does so in the whole project, where its texts then mean the same."""
-    text = analysis.text
-    mended = [diagnostic(snapshot, finding, {text.file: text})]
-    ways = [(finding.hint or finding.message, finding.edits)] if finding.edits else []
-    for title, edits in (*ways, *((way.title, way.edits) for way in finding.alternatives)):
-        change = types.WorkspaceEdit({uri: to_edits(text, edits)})
-        renaming = renaming_of(analysis.file, edits)
-        if renaming is not None:
-            try:
-                change = rename_everywhere(snapshot, analysis, renaming, [finding])
-            except JsonRpcException:
-                continue
-        preferred = edits is finding.edits
-        yield types.CodeAction(title, types.CodeActionKind.QuickFix, mended, is_preferred=preferred, edit=change)
+def _quick_fixes(
+    snapshot: Snapshot, analysis: Analysis, params: types.CodeActionParams, findings: Sequence[Diagnostic]
+) -> Iterator[types.CodeAction]:
+    """The ways to mend findings that break nothing; of many findings those of the first.
+
+    The edit of a hint is preferred where `check --fix` may apply it, too.
+    """
+    ways = ((finding, title, edits) for finding in findings for title, edits in _ways(finding))
+    for finding, title, edits in islice(ways, _MOST_WAYS):
+        checkpoint()
+        safety = _safety(snapshot, analysis, finding, edits)
+        change = None if safety is Safety.HARMFUL else _change(snapshot, analysis, params, finding, edits)
+        if change is not None:
+            mended = [diagnostic(snapshot, finding, {analysis.text.file: analysis.text})]
+            preferred = edits is finding.edits and safety is Safety.SAFE
+            yield types.CodeAction(title, types.CodeActionKind.QuickFix, mended, is_preferred=preferred, edit=change)
+
+
+def _ways(finding: Diagnostic) -> list[tuple[str, Sequence[Edit]]]:
+    own: list[tuple[str, Sequence[Edit]]] = [(finding.hint or finding.message, finding.edits)] if finding.edits else []
+    return own + [(way.title, way.edits) for way in finding.alternatives]
+
+
+def _safety(snapshot: Snapshot, analysis: Analysis, finding: Diagnostic, edits: Sequence[Edit]) -> Safety:
+    return safety_of(finding, edits, analysis, partial(_checked, snapshot, analysis))
+
+
+def _change(
+    snapshot: Snapshot,
+    analysis: Analysis,
+    params: types.CodeActionParams,
+    finding: Diagnostic,
+    edits: Sequence[Edit],
+) -> types.WorkspaceEdit | None:
+    """Edits in the whole project where they rename; None where its texts would then mean something else."""
+    renaming = renaming_of(analysis.file, edits)
+    if renaming is None:
+        return types.WorkspaceEdit({params.text_document.uri: to_edits(analysis.text, edits)})
+    try:
+        return rename_everywhere(snapshot, analysis, renaming, [finding])
+    except JsonRpcException:
+        return None
 
 
 def _checked(snapshot: Snapshot, analysis: Analysis, content: str) -> Analysis:

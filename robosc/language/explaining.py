@@ -147,10 +147,15 @@ def expected(wanted: Iterable[str], level: Level | None) -> str:
     return enumeration(dict.fromkeys(named))
 
 
-def did_you_mean(word: str, known: Iterable[str], *, cutoff: float) -> Repair | None:
+def closest(word: str, known: Iterable[str], *, cutoff: float) -> str | None:
     """The name of those known that is most like a word; None where none is as like as `cutoff` (from 0 to 1)."""
-    close = get_close_matches(word, sorted(set(known)), n=1, cutoff=cutoff)
-    return Repair(f"did you mean `{written(close[0])}`?", written(close[0])) if close else None
+    return next(iter(get_close_matches(word, sorted(set(known)), n=1, cutoff=cutoff)), None)
+
+
+def did_you_mean(word: str, known: Iterable[str], *, cutoff: float) -> Repair | None:
+    """The repair that writes the closest name in place of a word of a RoboSC text; None where none is close."""
+    close = closest(word, known, cutoff=cutoff)
+    return Repair(f"did you mean `{written(close)}`?", written(close)) if close else None
 
 
 def _alike(rule: str) -> set[str]:
@@ -363,10 +368,10 @@ def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) 
         return "a name is made of the letters a to z and A to Z, of digits and of `_`"
     if token.text == "if" and tokens[block.first].is_keyword("on"):
         return "the condition of a transition stands before `do` and `goto`, as in `on … if … do … goto …`"
-    return _keyword_hint(token.text, close[0]) if close else None
+    return keyword_hint(token.text, close[0]) if close else None
 
 
-def _keyword_hint(word: str, close: str) -> Repair | str:
+def keyword_hint(word: str, close: str) -> Repair | str:
     """The hint for a word that is like a keyword; where the keyword is a part of it, what is left is no mistyping."""
     if word.startswith(close):
         return f"is a blank missing behind `{close}`?"

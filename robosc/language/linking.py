@@ -34,7 +34,7 @@ from robosc.semantics.typing import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from robosc.diagnostics import Diagnostic
     from robosc.language.building import Name
@@ -540,10 +540,64 @@ class Linker:
     def _qualified(self, access: rsc.Access, component: rsc.Component, name: Name) -> None:
         access.component = component
         members = self.scope.members(component)
-        if members is not None and name.text not in members and self._running(access, component, name):
-            return
+        if members is not None and name.text not in members:
+            behind = [self._file.references.get(segment, {}).get("property") for segment in access.segments]
+            if self._running(access, component, name) or self._call_misread(component, name, behind):
+                return
+            if (
+                behind
+                and behind[0] is not None
+                and behind[0].text == RUNNING_WORD
+                and self._misspelled(component, name)
+            ):
+                return
         if members is not None:
             access.item = self._member(members, name, component, Declared.MEMBER)
+
+    def _call_misread(self, component: rsc.Component, name: Name, behind: Sequence[Name | None]) -> bool:
+        """Whether a name is that of a communication, of which `behind` reads what is not there: a finding."""
+        communication = (self.scope.communications(component) or {}).get(name.text)
+        if communication is None or self._file.may_declare_within(
+            self.scope.origin(component), name.text, Declared.MEMBER
+        ):
+            return False
+        word = behind[0] if behind else None
+        if not isinstance(communication, rsc.Service | rsc.Action):
+            self._report(
+                name,
+                f"`{name.text}` is a message: nothing of it is a state",
+                "let a variable remember that it was sent",
+            )
+        elif word is None:
+            call = f"{written(name.text)}.{RUNNING_WORD}"
+            self._report(name, f"`{name.text}` can be read as `{call}` only", Repair(f"write `{call}`", call))
+        elif word.text == RUNNING_WORD:
+            other = behind[1] if len(behind) > 1 and behind[1] is not None else word
+            rest = (self._point_before(other).start, other.end, "")
+            message = f"nothing stands behind `{written(name.text)}.{RUNNING_WORD}`"
+            self._report(other, message, Repair(f"leave `.{other.text}` out", elsewhere=(rest,)))
+        else:
+            repair = did_you_mean(word.text, [RUNNING_WORD], cutoff=0.6)
+            message = f"of `{name.text}` only `{RUNNING_WORD}` can be read, not `{word.text}`"
+            self._report(word, message, repair or Repair(f"write `{RUNNING_WORD}`", RUNNING_WORD))
+        return True
+
+    def _misspelled(self, component: rsc.Component, name: Name) -> bool:
+        """Whether a name before `running` is nearly that of a service or action: a finding."""
+        calls = self._calls(component)
+        repair = did_you_mean(name.text, calls, cutoff=0.6)
+        if repair is None or self._file.may_declare_within(
+            self.scope.origin(component), name.text, Declared.COMMUNICATION
+        ):
+            return False
+        self._report(name, f"component `{component.name}` has no service or action `{name.text}`", repair)
+        return True
+
+    def _calls(self, component: rsc.Component) -> Names:
+        communications = self.scope.communications(component) or {}
+        return {
+            called: found for called, found in communications.items() if isinstance(found, rsc.Service | rsc.Action)
+        }
 
     def _own_running(self, access: rsc.Access, name: Name, word: Name) -> bool:
         """Whether `a.running` reads a service or action of the own component; what else `a` may be comes first."""
@@ -589,10 +643,17 @@ class Linker:
             return
         if self._file.may_declare(name.text, *own_text, imported=False):
             return
+        word = self._file.references[access]["item"] if qualifies else None
+        if own is not None and self._call_misread(own, name, [word] if word is not None else []):
+            return
+        is_call = word is not None and word.text == RUNNING_WORD
+        if own is not None and is_call and self._misspelled(own, name):
+            return
         if qualifies:
             hint = (_ANY_NUMBER if own is None else OWN_MEMBERS) if name.text in self.scope.components else None
             known = [*components, *members]
-            repair = self._made_of(name) or hint or self._import_of(name, known)
+            called = self._elsewhere(name, self._calls) if is_call else None
+            repair = self._made_of(name) or hint or called or self._import_of(name, known)
             self._missing(name, "there is no component or variable", known, repair)
         elif not self._file.may_declare(name.text, Declared.ENUM_VALUE, Declared.NAMED):
             named = self.scope.usable(rsc.NamedExpression)
@@ -610,12 +671,15 @@ class Linker:
             access.item = found[0][1]
         return bool(found)
 
-    def _elsewhere(self, name: Name) -> Repair | str | None:
-        """What to write for a bare name that some component has as a variable or a state."""
+    def _elsewhere(
+        self, name: Name, having_it: Callable[[rsc.Component], Names | None] | None = None
+    ) -> Repair | str | None:
+        """What to write for a bare name that some component has: as a variable or a state, or by `having_it`."""
+        members = having_it or self.scope.members
         having = [
             f"{written(component.name)}.{written(name.text)}"
             for component in (self.scope.components if self._is_library else self._parts).values()
-            if name.text in (self.scope.members(component) or {})
+            if name.text in (members(component) or {})
         ]
         if len(having) == 1:
             return Repair(f"write `{having[0]}`", having[0])

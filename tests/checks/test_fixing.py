@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robosc.checks import check
-from robosc.checks.fixing import objection, safe_edits
+from robosc.checks.fixing import Safety, objection, safe_edits, safety_of
 from robosc.diagnostics import Diagnostic, Edit
 from robosc.language import Documents, Reading, Text, read
 from robosc.language.tokens import Kind, Tokens
@@ -90,6 +90,21 @@ def test_no_way_to_mend_a_finding_changes_a_comment(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", BROKEN)
+def test_edits_that_do_no_harm_leave_no_more_syntax_errors(name: str) -> None:
+    content = BROKEN[name]
+    before = checked(content, PATHS[name])
+    for finding in before.findings:
+        for edits in ways(finding) if finding.file == str(PATHS[name]) else ():
+            safety = safety_of(finding, edits, before, partial(checked, path=PATHS[name]))
+            after = checked(before.reading.file.text.after(edits), PATHS[name])
+            counts, left = of_rules(before.findings), of_rules(after.findings)
+            worse = left["syntax"] > counts["syntax"] or (finding in after.findings and left >= counts)
+            assert safety is Safety.HARMFUL if worse else True, (finding.message, edits)
+            if safety is Safety.SAFE and finding.rule != "syntax":
+                assert left <= counts
+
+
+@pytest.mark.parametrize("name", BROKEN)
 def test_automatic_edits_make_nothing_worse(name: str) -> None:
     assert_no_worse(baited(BROKEN[name], 3), PATHS[name])
 
@@ -103,6 +118,31 @@ def assert_no_worse(content: str, path: Path) -> None:
     if not before["syntax"]:
         assert found <= before, after
         assert found != before or after == content
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "safety"),
+    [
+        ("oops", "shut", Safety.SAFE),
+        ("goto oops", "do x := 1", Safety.DOUBTFUL),
+        ("oops", "oops", Safety.HARMFUL),
+        ("oops", "shut }", Safety.HARMFUL),
+        ("oops /* keep */", "shut", Safety.HARMFUL),
+        ("oops", "shut /* new */", Safety.HARMFUL),
+    ],
+)
+def test_effect_of_an_edit(old: str, new: str, safety: Safety) -> None:
+    content = """robot R {
+  component C {
+    incoming message go with type: none
+    behaviour { initial marked state shut { on request to go goto oops /* keep */ } }
+  }
+}"""
+    before = checked(content)
+    (finding,) = before.findings
+    start = content.index(old)
+    edit = Edit(before.reading.file.text.span(start, start + len(old)), new)
+    assert safety_of(finding, [edit], before, checked) is safety
 
 
 FRAGMENTS = ("/* no, send: change } */", '/* "state idle" */', "// goto idle { }\n", "/* { */", "/* marked initial */")

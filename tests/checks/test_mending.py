@@ -72,6 +72,14 @@ TEXTS = {
   }
 }
 """,
+    "calls": """robot R {
+  component C { service s with request: none, response: none }
+  component D { incoming message m with type: none }
+  requirement m needs !C.s.running.x
+  requirement m needs !C.s.runing
+  requirement m needs !C.s
+}
+""",
     "escapes": 'robot R { component C { incoming message m with identifier: "a\\d", type: none } }',
     "quotes": "robot R { component C { incoming message m with identifier: \u201c/m\u201d, type: none } }",
     "numbers": "robot R { constant a: double = .5 constant b: double = 1e-3 constant c: double = 2. }",

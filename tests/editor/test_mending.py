@@ -1,11 +1,14 @@
 """A hint that says what to write is an edit, and after it the finding is gone."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 from lsprotocol import types
 from pygls.uris import to_fs_path
 
+from robosc.checks.fixing import Safety
+from robosc.editor import findings
 from robosc.editor.findings import code_actions
 from robosc.editor.project import Project, Snapshot
 from tests.editor.server import edited
@@ -89,6 +92,39 @@ def test_each_way_is_a_fix() -> None:
     assert ["initial state busy" in other for other in after] == [False, True]
     assert ["initial-state" in errors(other) for other in after] == [False, False]
     assert ask(text, WHOLE, "source.fixAll")[1] == []
+
+
+def test_an_edit_that_would_break_the_text_is_not_offered() -> None:
+    """There `requirement never` would be no less an error than `never` is."""
+    text = ROBOT.replace("state busy { ", "state busy { never C.idle ")
+    _, actions = ask(text, WHOLE)
+    assert "syntax" in errors(text)
+    assert [action.title for action in actions if "requirement never" in action.title] == []
+
+
+def test_an_edit_after_which_a_rule_finds_something_else_is_not_preferred() -> None:
+    text = ROBOT.replace("value > 0.0", "mode(value, value) > 0.0")
+    _, actions = ask(text, WHOLE)
+    (action,) = [action for action in actions if action.title == "did you mean `mod`?"]
+    assert action.is_preferred is False
+    after = errors(edited(text, action.edit.changes[URI]))
+    assert after
+    assert "unresolved-reference" not in after
+
+
+def test_a_large_selection_tries_few_ways(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried = 0
+    judge = findings._safety
+
+    def counted(*arguments: Any) -> Safety:
+        nonlocal tried
+        tried += 1
+        return judge(*arguments)
+
+    monkeypatch.setattr(findings, "_safety", counted)
+    text = ROBOT.replace("  provide go with", "  requirement go needs C.idel\n" * 40 + "  provide go with")
+    assert errors(text) == ["unresolved-reference"] * 40
+    assert len(ask(text, WHOLE)[1]) == tried == findings._MOST_WAYS
 
 
 TWICE = ROBOT.replace("state busy", "state /* state idle of old */ idle").replace("goto busy", "goto idle")

@@ -92,19 +92,35 @@ def test_a_text_keeps_its_meaning(tmp_path: Path) -> None:
     assert [type(item).__name__ for item in items] == ["Variable", "Variable"]
 
 
-@pytest.mark.parametrize(
-    ("condition", "message"),
-    [
-        ("Base.bump.running", "component `Base` has no variable or state `bump`"),
-        ("Base.drive.runs", "component `Base` has no variable or state `drive`"),
-        ("Base.drive", "component `Base` has no variable or state `drive`"),
-        ("Base.drive.running.more", "component `Base` has no variable or state `drive`"),
-    ],
-)
-def test_only_services_and_actions_are_running(tmp_path: Path, condition: str, message: str) -> None:
-    found = reading(tmp_path, ROBOT.replace("!Base.drive.running", condition))
-    assert message in [finding.message for finding in found.findings]
-
-
 def test_it_is_printed_as_it_is_written() -> None:
     assert "requirement raise needs !Base.drive.running" in requirements(ROBOT)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "finding", "right"),
+    [
+        ("outside Base.drive.runing", ("runing", "did you mean `running`?"), "Base.drive.running"),
+        ("outside Base.drive.active", ("active", "write `running`"), "Base.drive.running"),
+        ("outside Base.drive", ("drive", "write `drive.running`"), "Base.drive.running"),
+        ("outside Base.drve.running", ("drve", "did you mean `drive`?"), "Base.drive.running"),
+        ("outside Base.drive.running.x", ("x", "leave `.x` out"), "Base.drive.running"),
+        ("outside drive.running", ("drive", "write `Base.drive`"), "Base.drive.running"),
+        ("outside Base.bump.running", ("bump", "let a variable remember that it was sent"), None),
+        ("inside drive.runnin", ("runnin", "did you mean `running`?"), "drive.running"),
+        ("inside drive.active", ("active", "write `running`"), "drive.running"),
+        ("inside drve.running", ("drve", "did you mean `drive`?"), "drive.running"),
+        ("inside drive", ("drive", "write `drive.running`"), "drive.running"),
+        ("inside bump.running", ("bump", "let a variable remember that it was sent"), None),
+    ],
+)
+def test_what_is_nearly_running_says_so(
+    tmp_path: Path, wrong: str, finding: tuple[str, str], right: str | None
+) -> None:
+    place, wrong = wrong.split()
+    outside = ROBOT.replace("!Base.drive.running", "!{0}")
+    text = outside if place == "outside" else ROBOT.replace("!beep.running", "!{0}")
+    found = reading(tmp_path, text.replace("{0}", wrong))
+    assert underlined(found) == [("unresolved-reference", finding[0])]
+    assert found.findings[0].hint == finding[1]
+    mended = found.file.text.after(found.findings[0].edits)
+    assert mended == text.replace("{0}", right or wrong)
