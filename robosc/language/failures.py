@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from robosc.language.scopes import File
 
 
-
 def names_failures(file: File) -> bool:
     """Whether a file names the enum or reads the reason of an error, so that it needs the predefined library."""
     return any(

@@ -49,6 +49,11 @@ def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
 def _predefined(base: robosc.Base) -> Iterator[robosc.Library]:
     """The library that every model knows, once for each use of it in a text."""
     for _, element in tree(base):
+        enum = None
         match element:
-            case robosc.ErrorReason(enumeration=enum) | robosc.ComplexDataTypeReference(type=enum) if is_failure(enum):
-                yield enum.eContainer()
+            case robosc.ErrorReason():
+                enum = element.enumeration
+            case robosc.ComplexDataTypeReference():
+                enum = element.type
+        if enum is not None and is_failure(enum):
+            yield enum.eContainer()

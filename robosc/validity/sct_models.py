@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.communication import IDLE
-from robosc.semantics.durations import LONGEST, SHORTEST, UNITS
 from robosc.semantics.domains import domain
+from robosc.semantics.durations import LONGEST, SHORTEST, UNITS
 from robosc.semantics.edges import edges_of
 from robosc.semantics.operators import FUNCTIONS
 from robosc.semantics.roles import is_from_cif
@@ -136,7 +136,7 @@ def _part(kind: ex.EnumerationType, _model: Model) -> Iterator[Fault]:
     if ends and not isinstance(kind.eContainer(), sct.Input):
         yield kind, "only an input has a part of an enumeration"
     elif domain(kind).low > domain(kind).high:
-        yield kind, f"'{kind.first.name}' stands behind '{kind.last.name}'"
+        yield kind, f"'{ends[0].name}' stands behind '{ends[1].name}'"
 
 
 def _guards(supervisor: sct.Supervisor, model: Model) -> Iterator[Fault]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from itertools import product
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from robosc.checks.commands import Places, command_conditions
 from robosc.checks.definitions import assigned_variable
 from robosc.checks.libraries import instances
 from robosc.checks.rule import Finding, rule
-from robosc.checks.rules.waiting import Places, command_conditions
 from robosc.diagnostics import Severity
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
@@ -23,7 +23,7 @@ from robosc.semantics.walks import fold, operands
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from robosc.checks.rules.waiting import CommandCondition
+    from robosc.checks.commands import CommandCondition
     from robosc.semantics.evaluation import Value
     from robosc.semantics.instances import Instance, Instances, PortInstance
 

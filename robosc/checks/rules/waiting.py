@@ -6,14 +6,15 @@ take the first moment for the second.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, TypeGuard
+from typing import TYPE_CHECKING, TypeGuard
 
+from robosc.checks.commands import Places, command_conditions, events_of, kind_of, commands_of
 from robosc.checks.definitions import assigned_variable, communication_of
 from robosc.checks.libraries import instances
 from robosc.checks.rule import Finding, rule
 from robosc.diagnostics import Severity
 from robosc.metamodel import robosc as rsc
-from robosc.semantics.communication import data_type, event, meant
+from robosc.semantics.communication import data_type, event
 from robosc.semantics.cone_of_influence import accesses
 from robosc.semantics.instances import InstanceVariable
 from robosc.semantics.naming import written
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from robosc.metamodel import expression as ex
-    from robosc.semantics.instances import Instance, Instances, PortInstance, Statement
+    from robosc.semantics.instances import Instance, Instances, PortInstance
 
 _END = (rsc.ResultType.response, rsc.ResultType.error, rsc.ResultType.canceled)
 
@@ -37,27 +38,6 @@ def cancel_is_not_the_end(base: rsc.Base) -> Iterator[Finding]:
     yield from _states_without_end(known, places)
     yield from _forbidden_ends(known, places)
     yield from _variables_read(known, places)
-
-
-class Places:
-    """Where findings about instances stand: in the robot's own text, or at the import of a library's component."""
-
-    def __init__(self, base: rsc.Base) -> None:
-        self._base = base
-        self._reported: set[tuple[ex.Located, rsc.CommunicationType]] = set()
-
-    def new(
-        self, element: ex.Located, instance: Instance | None, communication: rsc.CommunicationType
-    ) -> ex.Located | None:
-        """The place of a finding about an element in the text of an instance; None where one stands there already.
-
-        At one place there is one finding for each communication.
-        """
-        place = element if instance is None or instance.unit is self._base else instance.component
-        if (place, communication) in self._reported:
-            return None
-        self._reported.add((place, communication))
-        return place
 
 
 def _states_without_end(known: Instances, places: Places) -> Iterator[Finding]:
@@ -89,13 +69,13 @@ def _forbidden_ends(known: Instances, places: Places) -> Iterator[Finding]:
     """The transitions on a cancel to a state in which the requirement automaton forbids an end that it names."""
     for statement in known.statements(rsc.AutomatonRequirement):
         every = [transition for state in statement.element.states for transition in state.transitions]
-        named = {(known.port(other.event.communicationType, statement.within), _kind(other.event)) for other in every}
+        named = {(known.port(other.event.communicationType, statement.within), kind_of(other.event)) for other in every}
         for transition in every:
             port = known.port(transition.event.communicationType, statement.within)
-            if transition.target is None or port is None or _kind(transition.event) != rsc.ResultType.cancel:
+            if transition.target is None or port is None or kind_of(transition.event) != rsc.ResultType.cancel:
                 continue
             there = {
-                _kind(other.event)
+                kind_of(other.event)
                 for other in transition.target.transitions
                 if known.port(other.event.communicationType, statement.within) == port
             }
@@ -136,33 +116,6 @@ def _variables_read(known: Instances, places: Places) -> Iterator[Finding]:
                         f"assign it `on canceled from {name}`, or read `{name}.running` in the requirement",
                         related=others[0],
                     )
-
-
-class CommandCondition(NamedTuple):
-    """A condition of a requirement on commands: they are allowed only where it has the wanted value."""
-
-    requirement: rsc.Requirement
-    restricted: set[PortInstance | None]
-    condition: ex.Expression
-    within: Instance | None
-    wanted: bool
-
-
-def command_conditions(known: Instances) -> Iterator[CommandCondition]:
-    """The conditions of requirements on starting commands, requirement automata among them."""
-    for required in known.statements(rsc.CommunicationRequirement):
-        if required.element.condition is not None:
-            wanted = not isinstance(required.element, rsc.DisablesRequirement)
-            restricted = _targets(required, known)
-            yield CommandCondition(required.element, restricted, required.element.condition, required.within, wanted)
-    for automaton in known.statements(rsc.AutomatonRequirement):
-        events = _events_of(automaton.element)
-        requests = [reference for reference in events if _kind(reference) == rsc.ResultType.request]
-        restricted = {known.port(reference.communicationType, automaton.within) for reference in requests}
-        for state in automaton.element.states:
-            for guard in (transition.guard for transition in state.transitions):
-                if guard is not None:
-                    yield CommandCondition(automaton.element, restricted, guard, automaton.within, wanted=True)
 
 
 def _readers(known: Instances) -> dict[InstanceVariable, list[tuple[rsc.Requirement, set[PortInstance | None]]]]:
@@ -218,37 +171,20 @@ def _answers_heard(known: Instances) -> set[PortInstance]:
                 found.add(known.port(transition.communicationType, instance))
     for kind in (rsc.OrderRequirement, rsc.CountRequirement, rsc.AutomatonRequirement):
         for requirement in known.statements(kind):
-            for reference in _events_of(requirement.element):
-                if _kind(reference) == rsc.ResultType.response:
+            for reference in events_of(requirement.element):
+                if kind_of(reference) == rsc.ResultType.response:
                     found.add(known.port(reference.communicationType, requirement.within))
     return {port for port in found if port is not None}
-
-
-def _events_of(requirement: rsc.Requirement) -> list[rsc.EventReference]:
-    match requirement:
-        case rsc.AutomatonRequirement():
-            return [transition.event for state in requirement.states for transition in state.transitions]
-        case rsc.OrderRequirement() | rsc.CountRequirement():
-            named = [*(requirement.target.events if requirement.target else ()), requirement.anchor]
-            return [reference for reference in named if reference is not None]
-    return []
-
-
-def _targets(requirement: Statement[rsc.CommunicationRequirement], known: Instances) -> set[PortInstance | None]:
-    """The commands that a requirement restricts."""
-    target = requirement.element.target
-    named = target.communicationTypes if target else ()
-    return {known.port(reference, requirement.within) for reference in named}
 
 
 def _restricted(known: Instances) -> set[PortInstance]:
     """What a requirement restricts the start of."""
     found: set[PortInstance | None] = set()
     for requirement in known.statements(rsc.CommunicationRequirement):
-        found |= _targets(requirement, known)
+        found |= commands_of(requirement, known)
     for kind in (rsc.OrderRequirement, rsc.CountRequirement, rsc.AutomatonRequirement):
         for statement in known.statements(kind):
-            for reference in _events_of(statement.element):
+            for reference in events_of(statement.element):
                 found.add(known.port(reference.communicationType, statement.within))
     return {port for port in found if port is not None}
 
@@ -294,7 +230,9 @@ def failure_unheard(base: rsc.Base) -> Iterator[Finding]:
         return
     known = instances(base)
     cancelable = {
-        port for requirement in known.statements(rsc.CommunicationRequirement) for port in _targets(requirement, known)
+        port
+        for requirement in known.statements(rsc.CommunicationRequirement)
+        for port in commands_of(requirement, known)
     }
     places = Places(base)
     for instance in known:
@@ -362,10 +300,3 @@ def _names(transition: rsc.Transition, reference: rsc.CommunicationReference) ->
 
 def _hears(transitions: Iterable[rsc.Transition], reference: rsc.CommunicationReference, kind: rsc.ResultType) -> bool:
     return any(_is_on(transition, kind) and _names(transition, reference) for transition in transitions)
-
-
-def _kind(reference: rsc.EventReference) -> rsc.ResultType | None:
-    if isinstance(reference, rsc.NamedEvent):
-        return reference.resultType
-    implied = meant(reference)
-    return None if implied is None or not implied.name else getattr(rsc.ResultType, implied.name)

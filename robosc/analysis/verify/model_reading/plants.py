@@ -27,7 +27,6 @@ from robosc.analysis.verify.model_reading.machine import (
 )
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.semantics.domains import domain
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -181,8 +180,10 @@ class _Reading:
 
 def _domain(declared: ex.Type) -> Domain:
     if isinstance(declared, ex.EnumerationType):
-        low, high = domain(declared)
-        return tuple(literal.name for literal in declared.enumeration.literals)[low : high + 1]
+        names = [literal.name for literal in declared.enumeration.literals]
+        start = 0 if declared.first is None else names.index(declared.first.name)
+        end = len(names) if declared.last is None else names.index(declared.last.name) + 1
+        return tuple(names[start:end])
     if isinstance(declared, ex.IntegerType):
         assert declared.minimum is not None
         assert declared.maximum is not None
