@@ -49,7 +49,7 @@ def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
 def _predefined(base: robosc.Base) -> Iterator[robosc.Library]:
     """The library that every model knows, once for each use of it in a text."""
     for _, element in tree(base):
-        enum = None
+        enum: robosc.ComplexDataType | None = None
         match element:
             case robosc.ErrorReason():
                 enum = element.enumeration

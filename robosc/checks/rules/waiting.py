@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeGuard
 
-from robosc.checks.commands import Places, command_conditions, events_of, kind_of, commands_of
+from robosc.checks.commands import Places, command_conditions, commands_of, events_of, kind_of
 from robosc.checks.definitions import assigned_variable, communication_of
 from robosc.checks.libraries import instances
 from robosc.checks.rule import Finding, rule
