@@ -14,7 +14,7 @@ from robosc.semantics.definition import reported
 from robosc.semantics.evaluation import evaluate
 from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name
-from robosc.simulation.data import whole
+from robosc.simulation.data import reason_of, whole
 from robosc.simulation.unreadable import UnknownError, read
 
 if TYPE_CHECKING:
@@ -60,8 +60,10 @@ class Kept:
         What is made of data that is not given is not known.
         """
         changed: Values = {}
+        reactions = self._reactions.get(event, ())
+        self._node.reason = reason_of(reactions[0].event, data) if reactions else None
         now, self._engine.state = self._engine.state, before
-        for reaction in self._reactions.get(event, ()):
+        for reaction in reactions:
             if not any(map(self._node.is_in, reaction.locations)):
                 continue
             taken = True if reaction.guard is None else self._value(reaction.guard, values, data)
@@ -97,6 +99,8 @@ class Kept:
                 return self._variable(reference.variable, values)
             case rosgraph.ConversionCall():
                 return self._literal(reference.conversion, read(data, reference.argument, *given), values)
+            case rosgraph.ErrorReason():
+                return self._node.value(reference)
             case ex.EnumerationLiteralReference():
                 return reference.literal
             case sct.LocationReference():
