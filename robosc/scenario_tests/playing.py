@@ -9,7 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.explain import NamingError, event_named
-from robosc.analysis.wording import called, listed, words
+from robosc.analysis.wording import called, listed, name, words
 from robosc.engine import Blocked
 from robosc.metamodel import rosgraph, sct
 from robosc.node_tests.drive import Drive, DrivenController
@@ -372,10 +372,10 @@ class Player(Drive):
 
     def _called(self, event: sct.Event) -> str:
         """The shortest name of the action of an event in scenarios."""
-        origin = plant_of(event).origin
-        short = origin.rpartition(".")[2]
-        owners = [plant for plant in self._graph.model.plants if plant.origin.rpartition(".")[2] == short]
-        return short if len(owners) == 1 else origin
+        whole = name(plant_of(event))
+        short = whole.rpartition(".")[2]
+        same_end = [plant for plant in self._graph.model.plants if name(plant).rpartition(".")[2] == short]
+        return short if len(same_end) == 1 else whole
 
     def _with_canceling(self, fault: Diagnostic) -> Diagnostic:
         """A finding with a hint at the goals that are being canceled and have not ended."""
@@ -464,10 +464,8 @@ def _by_index(value: Any, reads: Sequence[Sequence[str]]) -> Any:
         value = {str(index): element for index, element in enumerate(value)}
     if not isinstance(value, dict):
         return value
-    return {
-        name: _by_index(inner, [read[1:] for read in reads if read and read[0] == name])
-        for name, inner in value.items()
-    }
+    below = {name: [read[1:] for read in reads if read and read[0] == name] for name in value}
+    return {name: _by_index(inner, below[name]) for name, inner in value.items()}
 
 
 def _agrees(expected: Any, found: Any) -> bool:

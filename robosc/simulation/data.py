@@ -135,7 +135,7 @@ class EventData:
             domain = Domain(given.type)
             try:
                 if is_reason(given) and ("reason" in data or given.text not in computed):
-                    told = reason
+                    told: Value = reason or ""
                 else:
                     told = computed[given.text] if given.text in computed else self._value(event, given, value)
                 found[given.name] = domain.shown(domain.internal(told))

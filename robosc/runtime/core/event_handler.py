@@ -70,22 +70,21 @@ class EventHandler:
         self._incoming = self._of_role(engine.Role.incoming)
         #: The message that the event at hand came with, and the event that would have been made of it.
         self._received: tuple[sct.Event, Message] | None = None
-        self._logged = {
-            reception.event: ReceivedData(
-                self._values(reception), has_reason=reception.event.kind == sct.EventKind.error
-            )
-            for reception in receptions(graph)
-        }
+        self._logged = {reception.event: self._read(reception) for reception in receptions(graph)}
+        clients: list[Client] = [*graph.serviceClients, *graph.actionClients]
         #: What the log has of an answer that can't be read, and so is an error.
         self._unread = {
             client.response.event: ReceivedData([*self._values(client.response), *self._values(client.error)])
-            for client in (*graph.serviceClients, *graph.actionClients)
+            for client in clients
         }
 
     def _of_role(self, *roles: engine.Role) -> set[sct.Event]:
         """The events for which the control loop does one of these."""
         executed = self._control.engine.executed
         return {self._events[event.name] for event in executed.events if event.role in roles}
+
+    def _read(self, reception: rosgraph.Reception) -> ReceivedData:
+        return ReceivedData(self._values(reception), has_reason=reception.event.kind == sct.EventKind.error)
 
     def _values(self, reception: rosgraph.Reception) -> list[ex.Expression]:
         return [given.value for given in reception.inputs] + self._data.values_read(reception.event)
