@@ -62,6 +62,7 @@ class _Controller(DrivenController):
         self.look()
         return plan.place(self._control.saved, pauses=self.pauses)
 
+
 class _Planned(NamedTuple):
     """Steps from a place on, where something was shown before."""
 
