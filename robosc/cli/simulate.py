@@ -53,8 +53,9 @@ def command(
     """Try a supervised robot: step by step by hand, by a script, or at random.
 
     MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote. Without --script
-    and --random commands are read from the terminal; `h` lists them. A line of a script is an event with its data, or a
-    line of an event log. Only what the script names happens, unless --loop runs the control loop between the lines.
+    and --random commands are read from the terminal; `h` lists them. A line of a script is an event with its data, a
+    step of a scenario such as `error from lift because timeout`, or a line of an event log. Only what the script names
+    happens, unless --loop runs the control loop between the lines.
 
     \b
     Examples:
@@ -103,12 +104,10 @@ def _played(models: Models, script: str, settings: Settings | None, report: Repo
     simulation = Simulation(models.sct, models.rosgraph, models.ros_types)
     looped = None if settings is None else LoopSimulation(models.sct, models.rosgraph, settings, models.ros_types)
     if looped is None:
-        steps, findings = read_script(name, text, simulation.engine.events, LoopSimulation.OWN)
+        steps, findings = read_script(name, text, simulation.engine.events, LoopSimulation.OWN, models.sct)
     else:
-        steps, findings = read_script(name, text, looped.events, simulation.engine.events)
-    own = () if looped is None else looped.OWN
-    found = unfit_data(name, (step for step in steps if step.event not in own), simulation.data)
-    report.add([*findings, *found], {name: text})
+        steps, findings = read_script(name, text, looped.events, simulation.engine.events, models.sct)
+    report.add([*findings, *unfit_data(name, steps, simulation.data)], {name: text})
     report.stop_on_errors()
     if looped is not None:
         return (looped.step(step.event, step.data) for step in steps)

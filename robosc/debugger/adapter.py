@@ -13,11 +13,13 @@ from robosc.debugger.stops import FILTERS, Stop, Stops
 from robosc.debugger.views import Views, at, shown
 from robosc.diagnostics import as_text
 from robosc.files.json_reading import JsonError, json_value
+from robosc.semantics.failures import possible_reasons
 from robosc.semantics.roles import event_name
+from robosc.semantics.steps import FIRST_WORDS, StepError
 from robosc.simulation import DataError, Simulation, read_script
 from robosc.simulation.played import PlayError
 from robosc.simulation.replay import Replay
-from robosc.simulation.script import WAIT
+from robosc.simulation.script import WAIT, spoken
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     from robosc.debugger.launching import Loader
     from robosc.debugger.protocol import Connection
     from robosc.debugger.views import Variable
+    from robosc.metamodel import sct
     from robosc.simulation.replay import Moment
 
 #: The robot is all that runs.
@@ -34,6 +37,7 @@ _THREAD = 1
 _AT_ONCE = 100
 _HELP = """\
 EVENT [JSON]  let an event happen, with data: move, Lidar.scan {"value": "clear"}, message_move.c_trigger
+STEP          a step of a scenario: response from scan with clear, error from lift because timeout
 wait SECONDS  let time go by
 why EVENT     why an event can't happen here, and what would help
 NAME          a component's state, a variable's value, whether a state is the present one: Lidar, Lidar.free"""
@@ -497,8 +501,7 @@ class Adapter:
         value = run.views.value(text)
         if value is not None and not self._is_event(run, text):
             return {"result": value, "variablesReference": 0}, None
-        event = event_name(event_named(run.replay.engine.model, word))
-        moment = run.replay.inject(event, _data(rest.strip()))
+        moment = run.replay.inject(*_event(run.replay.engine.model, text))
         if moment.by is not None:
             raise RequestError(run.views.told(moment))
         return {"result": self._told(moment).rstrip(), "variablesReference": 0}, lambda: self._injected(run, [moment])
@@ -583,15 +586,32 @@ class Adapter:
     }
 
 
-def _data(text: str) -> Mapping[str, Any]:
-    """The data of an event as it is typed: an object with `value`, or the value alone. Raises RequestError."""
+def _event(model: sct.SupervisoryControlModel, text: str) -> tuple[str, Mapping[str, Any]]:
+    """An event as it is typed, by its name or in words, and its data. Raises NamingError, RequestError."""
+    word, _, rest = text.partition(" ")
+    try:
+        event = event_named(model, word)
+    except NamingError:
+        try:
+            step = spoken(model, text) if word in FIRST_WORDS else None
+        except StepError as error:
+            raise RequestError(str(error)) from None
+        if step is None:
+            raise
+        return step
+    return event_name(event), _data(rest.strip(), event)
+
+
+def _data(text: str, event: sct.Event) -> Mapping[str, Any]:
+    """The data of an event as it is typed: that of the event log, or the value alone. Raises RequestError."""
     if not text:
         return {}
     try:
         data = json_value(text)
     except JsonError as error:
         raise RequestError(f'the data can\'t be read: {error}; write {{"value": ...}}') from None
-    return data if isinstance(data, dict) and set(data) <= {"value", "where"} else {"value": data}
+    known = {"value", "where", *(["reason"] if possible_reasons(event) else [])}
+    return data if isinstance(data, dict) and set(data) <= known else {"value": data}
 
 
 def _said(error: Exception) -> str:

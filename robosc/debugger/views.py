@@ -15,8 +15,8 @@ from robosc.files import reading as files
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
 from robosc.semantics.roles import event_name
-from robosc.simulation.script import WAIT
-from robosc.simulation.simulation import whole_state
+from robosc.simulation.script import REFUSE, WAIT
+from robosc.simulation.simulation import refusal_in_words, whole_state
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -83,6 +83,8 @@ class Views:
             return self._frame("start", self._model)
         if last.event == WAIT:
             return self._frame("time has gone by", self._model)
+        if last.event == REFUSE:
+            return self._frame(self.told(last), self._model)
         event = self.events[last.event]
         return self._frame(self.told(last), next(iter(last.edges), event))
 
@@ -90,7 +92,11 @@ class Views:
         """A step in words."""
         if moment.event == WAIT:
             return f"{_seconds(moment.end.timers[0])} on the clock"
-        said = words(self.events[moment.event])
+        said = (
+            refusal_in_words(self._engine, moment.data["of"])
+            if moment.event == REFUSE
+            else words(self.events[moment.event])
+        )
         return (
             said
             if moment.by is None

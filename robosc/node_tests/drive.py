@@ -13,14 +13,16 @@ from robosc.runtime.core.event_log import EventLog
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.json_text import json_text
 from robosc.runtime.core.settings import Settings
+from robosc.semantics.operators import UnreadableError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from robosc.configuration import Configuration
     from robosc.metamodel import rosgraph, sct
     from robosc.node_tests.samples import Incoming
     from robosc.ros_types import RosDistribution
+    from robosc.runtime.core.clients import ActionClient, ServiceClient
 
     #: Lets something come in; the fields of what it is, None where it has none.
     Act = Callable[[], "dict[str, Any] | None"]
@@ -66,7 +68,24 @@ class _Lines(EventLog):
 
 
 class DrivenController(Controller):
-    """A controller that can be asked for its times."""
+    """A controller that can be asked for its times, and for what it can read."""
+
+    def caller(self, service: rosgraph.ServiceClient) -> ServiceClient:
+        """The client that calls a service."""
+        return self._callers[service]
+
+    def starter(self, action: rosgraph.ActionClient) -> ActionClient:
+        """The client that sends the goals of an action."""
+        return self._starters[action]
+
+    def reads(self, receptions: Sequence[rosgraph.Reception], data: Any) -> bool:
+        """Whether what the transitions of the present state need of a message can be read."""
+        try:
+            for reception in receptions:
+                self._data.received(reception.event, reception.inputs, data)
+        except UnreadableError:
+            return False
+        return True
 
     @property
     def pauses(self) -> bool:

@@ -19,12 +19,17 @@ if TYPE_CHECKING:
 
 @dataclass
 class RunningGoal:
-    """A goal that the robot works on. It goes on where it is to be canceled, until its end is played."""
+    """A goal that the robot works on. It goes on where it is to be canceled, until its end is played.
+
+    `is_asked`: a request to cancel it waits for an answer.
+    """
 
     handlers: GoalHandlers
+    is_asked: bool = False
 
     def cancel(self) -> None:
         """Take the request; the goal has not ended."""
+        self.is_asked = True
 
     def is_canceling(self) -> bool:
         """Return False: an end that is played is the end."""

@@ -25,7 +25,7 @@ from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from robosc.metamodel import sct
     from robosc.ros_types import RosDistribution, Section
@@ -193,6 +193,7 @@ def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dic
         for reception in receptions:
             read = [assigned.value for assigned in reception.inputs] + data.values_read(reception.event)
             later = [(path, inner) for owner, path, inner in kept if owner is reception]
+            later += _read_by_error(reception, data)
             described.append((event_name(reception.event), ReceivedData(read).parts, read, later))
         kind = incoming(distribution, interface, part, described)
         if any(happens_anyway(reception.event) for reception in receptions):
@@ -200,6 +201,14 @@ def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dic
         _find_samples(kind, values, data, receptions)
         known |= dict.fromkeys((reception.event for reception in receptions), kind)
     return known
+
+
+def _read_by_error(response: rosgraph.Reception, data: NodeData) -> Iterator[tuple[Path, messages.Read]]:
+    """What the error of an action reads of a result: one that can't be read as a response is an error."""
+    client = response.eContainer()
+    if isinstance(client, rosgraph.ActionClient) and client.response is response:
+        values = [assigned.value for assigned in client.error.inputs]
+        yield from messages.reads([*values, *data.values_read(client.error.event)])
 
 
 def _find_samples(kind: Incoming, values: Values, data: NodeData, receptions: Sequence[rosgraph.Reception]) -> None:

@@ -17,7 +17,6 @@ from robosc.node_tests.steps import WAIT, Place, Step, Stimulus
 from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.port import Failure, Outcome
 from robosc.runtime.core.times import RESOLUTION_MS
-from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
@@ -62,15 +61,6 @@ class _Controller(DrivenController):
         """Where it is, now that it has done what it can do at once."""
         self.look()
         return plan.place(self._control.saved, pauses=self.pauses)
-
-    def reads(self, receptions: Sequence[rosgraph.Reception], data: Any) -> bool:
-        """Whether what the transitions of the present state need of a message can be read."""
-        try:
-            for reception in receptions:
-                self._data.received(reception.event, reception.inputs, data)
-        except UnreadableError:
-            return False
-        return True
 
 
 class _Planned(NamedTuple):

@@ -68,6 +68,11 @@ class Line:
         return f"{self.direction} {self.event}{because}{value}"
 
     @property
+    def has_value(self) -> bool:
+        """Whether it has what the node read of a message, or set in one."""
+        return self.data is not None and "value" in self.data
+
+    @property
     def reason(self) -> str:
         """Why a service or an action has failed; empty where the node does not read it."""
         return str(self.data.get("reason", "")) if self.data else ""
@@ -187,6 +192,15 @@ def held(message: Any, path: tuple[str, ...]) -> Any:
     return message[0] if isinstance(message, bytes) and len(message) == 1 else message
 
 
+def merged(message: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
+    """Nested objects with the fields of both; where both have one, that of the second."""
+    made = dict(message)
+    for name, value in other.items():
+        both = isinstance(made.get(name), dict) and isinstance(value, dict)
+        made[name] = merged(made[name], value) if both else value
+    return made
+
+
 def cancelled(action: str) -> str:
     """The name under which requests to cancel a goal wait."""
     return f"{action} (cancel)"
@@ -212,8 +226,7 @@ class Incoming:
         absent: list[tuple[str, ...]] = []
         for event, reads in self._reads.items():
             line = next((line for line in lines if line.event == event), None)
-            has_value = line is not None and line.data is not None and "value" in line.data
-            found = self._values(line.data["value"], reads) if line is not None and has_value else {}
+            found = self._values(line.data["value"], reads) if line is not None and line.has_value else {}
             unread = []
             for read in reads:
                 path = tuple(read["path"])
@@ -335,7 +348,12 @@ class Log:
 
 
 class Port:
-    """The robot, as the node sees it. What the node sends waits in `sent`, by the name of its topic or server."""
+    """The robot, as the node sees it. What the node sends waits in `sent`, by the name of its topic or server.
+
+    `fails_calls`: a service can fail at once; else it never answers.
+    """
+
+    fails_calls = False
 
     def __init__(self, connections: dict[str, Any]) -> None:
         self.connections = connections
@@ -390,9 +408,9 @@ class Player:
             self._answers[service["error"]] = partial(self._fail, service["name"], answer)
         for action in connections["actions"]:
             self._add(action["feedback"], partial(port.feed_back, action["name"]))
-            answer = self._add(action["response"], partial(port.end, action["name"], "succeeded"))
-            abort = self._add(action["failure"], partial(port.end, action["name"], "aborted"))
-            self._answers[action["error"]] = partial(self._abort, action["name"], answer, abort)
+            self._add(action["response"], partial(port.end, action["name"], "succeeded"))
+            results = Incoming(action["response"]), Incoming(action["failure"])
+            self._answers[action["error"]] = partial(self._abort, action["name"], *results)
             self._add(action["canceled"], partial(port.end, action["name"], "canceled"))
         self._clients = connections["services"] + connections["actions"]
         self._outlets = {
@@ -491,26 +509,29 @@ class Player:
 
     def _fail(self, service: str, answer: Callable[[Line], None], line: Line) -> None:
         done = self._log.peek()
-        if line.data is not None and line.reason in ("", "unreadable"):
+        if line.has_value and line.reason in ("", "unreadable"):
             answer(line)
         elif line.reason == "timeout":  # time passes until the node gives up
             return
-        elif line.reason not in ("", "failed"):
+        elif line.reason not in ("", "failed") or (line.reason and not self._port.fails_calls):
             raise self._unplayable(service, line)
         elif done is None or done.event != line.event:  # it may have come with the time that passed
             self._port.fail(service)
 
-    def _abort(self, action: str, succeed: Callable[[Line], None], abort: Callable[[Line], None], line: Line) -> None:
-        if line.data is not None and line.reason in ("", "unreadable"):
-            succeed(line)
+    def _abort(self, action: str, response: Incoming, failure: Incoming, line: Line) -> None:
+        if line.has_value and line.reason in ("", "unreadable"):
+            # The line has what both read of the result.
+            result = merged(failure.message([line]), response.message([replace(line, event=response.events[0])]))
+            self._port.end(action, "succeeded", result)
         elif line.reason in ("", "aborted"):
-            abort(line)
+            self._port.end(action, "aborted", failure.message([line]))
         else:
             raise self._unplayable(action, line)
 
     @staticmethod
     def _unplayable(server: str, line: Line) -> TraceError:
-        return TraceError(f"line {line.number} can't be played: no server can let {server} fail because {line.reason}")
+        why = f"no test server lets {server} fail because {line.reason}"
+        return TraceError(f"line {line.number} can't be played: {why}")
 
     def _batch(self, lines: list[Line], position: int, incoming: Incoming) -> list[Line]:
         """The lines that one message made: all events of its topic, in their order, but those that can't be read."""

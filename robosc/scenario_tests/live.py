@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 
 #: Seconds that a node has to end in after it was interrupted.
 _PATIENCE = 20.0
-_DIFFERENCE = re.compile(r"line (\d+): (.*)")
+#: What the player reports of a line of the log.
+_DIFFERENCE = re.compile(r"line (\d+)( can't be played)?: (.*)")
 _MISSING = re.compile(r"(?:ModuleNotFound|Import)Error: (.*)")
 #: So much of what a program wrote is shown.
 _SHOWN = 1500
@@ -75,7 +76,8 @@ class LiveNode:
                     message = f"this could not be played over ROS: {said.strip()[-_SHOWN:]}"
                     return scenario.line.fault(message, _end(told))
         line = lines[int(found[1]) - 1] if int(found[1]) <= len(lines) else scenario.line
-        return line.fault(f"the node does something else: {found[2].strip()}")
+        verdict = "this can't be played over ROS" if found[2] else "the node does something else"
+        return line.fault(f"{verdict}: {found[3].strip()}")
 
     @contextmanager
     def _simulated_time(self) -> Iterator[None]:

@@ -4,25 +4,28 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.explain import NamingError, event_named
-from robosc.analysis.wording import called, words
+from robosc.analysis.wording import called, listed, name, words
 from robosc.engine import Blocked
 from robosc.metamodel import rosgraph, sct
 from robosc.node_tests.drive import Drive, DrivenController
 from robosc.node_tests.messages import Record, leaf_values
 from robosc.node_tests.trace_player import Incoming as Reader
 from robosc.node_tests.trace_player import Line as TraceLine
-from robosc.node_tests.trace_player import TraceError, same
+from robosc.node_tests.trace_player import TraceError, merged, same
 from robosc.node_tests.trace_test import described
 from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.json_text import json_text
-from robosc.runtime.core.port import Outcome
-from robosc.scenario_tests.reading import Allowed, Holds, Incoming, Sent, Wait
+from robosc.runtime.core.port import CancelAnswer, Failure, Outcome
+from robosc.scenario_tests.reading import Allowed, Holds, Incoming, Refusal, Sent, Wait
 from robosc.semantics.evaluation import evaluate
+from robosc.semantics.failures import possible_reasons
 from robosc.semantics.messages import holds_objects
-from robosc.semantics.roles import event_name
+from robosc.semantics.roles import event_name, plant_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -32,6 +35,7 @@ if TYPE_CHECKING:
     from robosc.metamodel import expression as ex
     from robosc.ros_types import RosDistribution
     from robosc.runtime.core.json_text import Json
+    from robosc.runtime.core.port import Client
     from robosc.scenario_tests.operations import Operations
     from robosc.scenario_tests.reading import Line, Scenario
 
@@ -67,6 +71,11 @@ class _Controller(DrivenController):
         return may_happen
 
 
+#: The reasons of errors that bring no answer and no result.
+_WITHOUT_DATA = {
+    sct.PlantKind.service: ("unavailable", "timeout", "failed"),
+    sct.PlantKind.action: ("unavailable", "rejected", "lost"),
+}
 #: The kinds of events that a step may name.
 _FROM_THE_ROBOT = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.canceled)
 
@@ -77,16 +86,30 @@ def unknown_events(model: sct.SupervisoryControlModel, scenarios: Iterable[Scena
     Also for each that lets something come from the robot which the robot does not send.
     """
     for line in (line for scenario in scenarios for line in scenario.steps):
-        if not isinstance(line, (Incoming, Allowed, Sent)):
+        if not isinstance(line, (Incoming, Refusal, Allowed, Sent)):
             continue
         try:
             event = event_named(model, line.event)
         except NamingError as error:
             yield line.fault(error.message, error.hint or None)
             continue
-        if isinstance(line, Incoming) and event.kind not in _FROM_THE_ROBOT:
-            hint = "a step names a message, an answer or an error; time goes by with `wait`"
-            yield line.fault(f"the {words(event)} does not come from the robot", hint)
+        if isinstance(line, Incoming):
+            yield from _impossible(line, event)
+
+
+def _impossible(line: Incoming, event: sct.Event) -> Iterator[Diagnostic]:
+    """Findings about an event that the robot does not send, or not for the reason of a line or with its data."""
+    possible = possible_reasons(event)
+    if event.kind not in _FROM_THE_ROBOT:
+        hint = "a step names a message, an answer or an error; time goes by with `wait`"
+        yield line.fault(f"the {words(event)} does not come from the robot", hint)
+    elif line.reason is not None and not possible:
+        yield line.fault("only the error of a service or an action has a reason", f"leave out `because {line.reason}`")
+    elif line.reason is not None and line.reason not in possible:
+        hint = f"possible is {listed([f'`{reason}`' for reason in sorted(possible)])}"
+        yield line.fault(f"the {words(event)} can't have the reason `{line.reason}`", hint)
+    elif possible and line.data is not None and line.reason in _WITHOUT_DATA[plant_of(event).kind]:
+        yield line.fault(f"an error with the reason `{line.reason}` brings no data", "leave out `with …`")
 
 
 class Player(Drive):
@@ -108,18 +131,20 @@ class Player(Drive):
         super().__init__(graph, configuration, distribution)
         self._conditions = conditions
         self._sources: list[Line] = []
-        self._acts: dict[sct.Event, tuple[sct.Event, Callable[[Any, bool], None]]] = {}
+        #: How each event comes in that is no error, with its data.
+        self._acts: dict[sct.Event, Callable[[Any], None]] = {}
+        self._clients: dict[sct.Event, rosgraph.ServiceClient | rosgraph.ActionClient] = {}
         for topic in graph.subscriptions:
             for reception in topic.receptions:
-                self._acts[reception.event] = (reception.event, self._published(topic))
+                self._acts[reception.event] = partial(self._publish, topic)
         for service in graph.serviceClients:
-            self._acts[service.response.event] = (service.response.event, self._answered(service))
-            self._acts[service.error.event] = (service.response.event, self._failed(service))
+            self._clients[service.error.event] = service
+            self._acts[service.response.event] = partial(self._answer, service)
         for action in graph.actionClients:
-            self._acts[action.feedback.event] = (action.feedback.event, self._fed_back(action))
-            self._acts[action.response.event] = (action.response.event, self._ended(action, Outcome.SUCCEEDED))
-            self._acts[action.error.event] = (action.response.event, self._ended(action, Outcome.ABORTED))
-            self._acts[action.canceled.event] = (action.response.event, self._ended(action, Outcome.CANCELED))
+            self._clients |= dict.fromkeys([action.error.event, action.canceled.event], action)
+            self._acts[action.feedback.event] = partial(self._feed_back, action)
+            self._acts[action.response.event] = partial(self._end, action, Outcome.SUCCEEDED)
+            self._acts[action.canceled.event] = partial(self._end, action, Outcome.CANCELED)
 
     @property
     def trace(self) -> list[str]:
@@ -152,9 +177,10 @@ class Player(Drive):
                 fault = self._played(line)
                 self._attribute(line)
                 if fault is not None:
-                    findings.append(fault)
-                    if isinstance(line, (Incoming, Wait)):
+                    if isinstance(line, (Incoming, Refusal, Wait)):
+                        findings.append(fault)
                         break
+                    findings.append(self._with_canceling(fault))
         finally:
             self._controller.close()
         return findings
@@ -165,13 +191,9 @@ class Player(Drive):
     def _played(self, line: Line) -> Diagnostic | None:
         try:
             match line:
-                case Wait(seconds=seconds):
+                case Wait() | Incoming() | Refusal():
                     self._since = len(self._lines.kept)
-                    for _ in range(math.ceil(round(seconds / self._period, 6))):
-                        self._pass_period()
-                case Incoming():
-                    self._since = len(self._lines.kept)
-                    self._come_in(line)
+                    self._step(line)
                 case Holds(text=text):
                     if not evaluate(self._conditions[line], self._controller.engine.read):
                         return line.fault(f"`{text}` does not hold", self._state())
@@ -187,46 +209,181 @@ class Player(Drive):
 
     # Steps
 
+    def _step(self, line: Wait | Incoming | Refusal) -> None:
+        if isinstance(line, Incoming):
+            self._come_in(line)
+        elif isinstance(line, Refusal):
+            self._refuse(event_named(self._graph.model, line.event))
+        else:
+            for _ in range(math.ceil(round(line.seconds / self._period, 6))):
+                self._pass_period()
+
     def _come_in(self, line: Incoming) -> None:
         event = event_named(self._graph.model, line.event)
-        source, act = self._acts[event]
         if not self._controller.engine.enabled(event_name(event)):
             raise NamingError(f"the {words(event)} can't come now: nothing that it ends is under way", "")
-        kind = self.incoming[source]
-        described_kind = Reader(described(kind))
-        data = {"value": line.data} if line.data is not None and not line.is_message else None
-        given = dict(line.data) if line.is_message else None
-        fields = described_kind.message([TraceLine(line.span.line, 0.0, "in", event_name(source), data, given)])
-        values = leaf_values(fields)
-        defaults = kind.defaults(values)
+        if event.kind == sct.EventKind.error:
+            self._fail(event, line)
+        elif line.data is None and event.kind == sct.EventKind.canceled:
+            self._let_in(lambda: self._acts[event](None))
+        else:
+            self._bring(event, line, self._acts[event])
 
-        def come_in() -> dict[str, Any] | None:
-            act(kind.message(values), line.data is not None)
-            return nested({**values, **defaults}) if defaults else fields
+    def _bring(self, source: sct.Event, line: Incoming, act: Callable[[Any], None]) -> None:
+        """Let data come in that is the data of the event `source`."""
+        data, fields = self._message(source, line)
+
+        def come_in() -> dict[str, Any]:
+            act(data)
+            return fields
 
         self._let_in(come_in)
 
-    def _published(self, topic: rosgraph.Subscription) -> Callable[[Any, bool], None]:
-        return lambda data, _: self._controller.receive(topic, data)
+    def _message(self, source: sct.Event, line: Incoming, *others: sct.Event) -> tuple[Any, dict[str, Any]]:
+        """A message with the data of a line, and its fields; those that it sets, or that differ from zero.
 
-    def _answered(self, service: rosgraph.ServiceClient) -> Callable[[Any, bool], None]:
-        return lambda data, _: self._robot.calls.pop(service)[1].answered(data)
+        `others` are further events that read it.
+        """
+        fields: dict[str, Any] = {}
+        for event in (*others, source):
+            kind = self.incoming[event]
+            reads = [read.path for _, shown in kind.events for read in shown]
+            data = None
+            if line.data is not None and not line.is_message and reads:
+                data = {"value": _by_index(line.data, reads)}
+            given = dict(line.data) if line.is_message else None
+            played = TraceLine(line.span.line, 0.0, "in", event_name(event), data, given)
+            fields = merged(fields, Reader(described(kind)).message([played]))
+        values = leaf_values(fields)
+        defaults = kind.defaults(values)
+        return kind.message(values), nested({**values, **defaults}) if defaults else fields
 
-    def _failed(self, service: rosgraph.ServiceClient) -> Callable[[Any, bool], None]:
-        def fail(data: Any, is_given: bool) -> None:
-            _, handlers = self._robot.calls.pop(service)
-            if is_given:
-                handlers.answered(data)
-            else:
-                handlers.failed("")
+    def _publish(self, topic: rosgraph.Subscription, data: Any) -> None:
+        self._controller.receive(topic, data)
 
-        return fail
+    def _answer(self, service: rosgraph.ServiceClient, data: Any) -> None:
+        self._robot.calls.pop(service)[1].answered(data)
 
-    def _fed_back(self, action: rosgraph.ActionClient) -> Callable[[Any, bool], None]:
-        return lambda data, _: self._robot.goals[action].handlers.feedback(data)
+    def _feed_back(self, action: rosgraph.ActionClient, data: Any) -> None:
+        self._robot.goals[action].handlers.feedback(data)
 
-    def _ended(self, action: rosgraph.ActionClient, outcome: Outcome) -> Callable[[Any, bool], None]:
-        return lambda data, _: self._robot.goals.pop(action).handlers.ended(outcome, data, "")
+    def _end(self, action: rosgraph.ActionClient, outcome: Outcome, data: Any) -> None:
+        self._robot.goals.pop(action).handlers.ended(outcome, data, "")
+
+    # Failures
+
+    def _fail(self, event: sct.Event, line: Incoming) -> None:
+        client = self._clients[event]
+        reason = Failure(line.reason or possible_reasons(event)[0])
+        is_answer = line.reason is None and line.data is not None and isinstance(client, rosgraph.ServiceClient)
+        if is_answer or reason is Failure.UNREADABLE:
+            self._answer_unreadably(client, line)
+        elif isinstance(client, rosgraph.ServiceClient):
+            self._fail_call(client, reason)
+        else:
+            self._fail_goal(client, reason, line)
+
+    def _answer_unreadably(self, client: Client, line: Incoming) -> None:
+        """Answer with data that the node can't read: that of a line, or a message without elements of arrays."""
+        event, others = client.response.event, [client.error.event] if isinstance(client, rosgraph.ActionClient) else []
+        blank = self.incoming[event].message({})
+        data, fields = (blank, {}) if line.data is None else self._message(event, line, *others)
+        is_read = self._controller.reads([client.response], data)
+        if is_read and line.data is not None and line.reason is not None:
+            raise NamingError(f"the node can read this data: it is that of the {words(event)}", "")
+
+        def come_in() -> dict[str, Any] | None:
+            if is_read and line.data is None:  # it may be unreadable for another cause
+                self._forget(client)
+                self._give_up(client, Failure.UNREADABLE)
+                return None
+            self._acts[event](data)
+            return fields
+
+        self._let_in(come_in)
+
+    def _fail_call(self, client: rosgraph.ServiceClient, reason: Failure) -> None:
+        """Let a call fail; one without a server or an answer fails when its time is over."""
+        since, handlers = self._robot.calls.pop(client)
+        if reason is Failure.FAILED:
+            self._let_in(lambda: handlers.failed(""))
+            return
+        caller = self._controller.caller(client)
+        over = since + self.parameters["service_timeout_ms"] / 1000
+        while not self._has_happened(client.error.event) and self._now + self._period < over:
+            self._pass_period()
+        if reason is Failure.UNAVAILABLE:
+            self._let_in(lambda: self._give_up(client, reason))
+        while not self._has_happened(client.error.event) and caller.waiting:
+            self._pass_period()
+
+    def _fail_goal(self, client: rosgraph.ActionClient, reason: Failure, line: Incoming) -> None:
+        if reason is Failure.CANCELED and self._controller.engine.enabled(event_name(client.canceled.event)):
+            hint = f"write `canceled from {self._called(client.canceled.event)}`"
+            raise NamingError("the controller cancels this goal itself", hint)
+        goal = self._robot.goals[client]
+
+        def end(result: Any) -> None:
+            self._forget(client)
+            match reason:
+                case Failure.ABORTED | Failure.CANCELED | Failure.LOST:
+                    goal.handlers.ended(Outcome(reason), result, "")
+                case Failure.REJECTED:
+                    goal.handlers.rejected()
+                case _:
+                    self._give_up(client, reason, result)
+
+        if line.data is None:
+            self._let_in(lambda: end(None))
+        else:
+            self._bring(client.error.event, line, end)
+
+    def _give_up(self, client: Client, reason: Failure, result: Any = None) -> None:
+        """Have the node's client of a service or action report a failure."""
+        why = f"failed because {reason}"
+        if isinstance(client, rosgraph.ServiceClient):
+            self._controller.caller(client).fail(reason, why)
+        else:
+            self._controller.starter(client).fail(reason, why, result)
+
+    def _forget(self, client: Client) -> None:
+        """Nothing more comes of the call or goal."""
+        if isinstance(client, rosgraph.ServiceClient):
+            del self._robot.calls[client]
+        else:
+            del self._robot.goals[client]
+
+    def _has_happened(self, event: sct.Event) -> bool:
+        return any(json.loads(line)["event"] == event_name(event) for line in self._lines.kept[self._since :])
+
+    def _refuse(self, event: sct.Event) -> None:
+        """Refuse to cancel the goal that would end with an event."""
+        client = self._clients[event]
+        assert isinstance(client, rosgraph.ActionClient)
+        goal = self._robot.goals.get(client)
+        called = self._called(event)
+        if goal is None or not self._controller.engine.enabled(event_name(event)):
+            raise NamingError(f"`{called}` is not being canceled", "")
+        if not goal.is_asked:
+            again = "the node asks again after a pause: write `wait` before this line"
+            raise NamingError(f"no request to cancel `{called}` waits for an answer", again)
+        goal.is_asked = False
+        self._let_in(lambda: goal.handlers.cancel_answered(CancelAnswer.REFUSED))
+
+    def _called(self, event: sct.Event) -> str:
+        """The shortest name of the action of an event in scenarios."""
+        whole = name(plant_of(event))
+        short = whole.rpartition(".")[2]
+        same_end = [plant for plant in self._graph.model.plants if name(plant).rpartition(".")[2] == short]
+        return short if len(same_end) == 1 else whole
+
+    def _with_canceling(self, fault: Diagnostic) -> Diagnostic:
+        """A finding with a hint at the goals that are being canceled and have not ended."""
+        engine = self._controller.engine
+        ends = [action.canceled.event for action in self._graph.actionClients]
+        names = [self._called(event) for event in ends if engine.enabled(event_name(event))]
+        hints = [f"`{name}` is being canceled and has not ended: write `canceled from {name}`" for name in names]
+        return replace(fault, hint="; ".join(filter(None, [fault.hint, *hints])) or None)
 
     # Expectations
 
@@ -299,6 +456,16 @@ _WHY = {
     Blocked.REQUIREMENT: "its requirements forbid it",
     Blocked.SYNTHESIS: "synthesis forbids it",
 }
+
+
+def _by_index(value: Any, reads: Sequence[Sequence[str]]) -> Any:
+    """Data with objects from index to element in place of lists whose elements are read one by one."""
+    if isinstance(value, list) and any(read and read[0].isdigit() for read in reads):
+        value = {str(index): element for index, element in enumerate(value)}
+    if not isinstance(value, dict):
+        return value
+    below = {name: [read[1:] for read in reads if read and read[0] == name] for name in value}
+    return {name: _by_index(inner, below[name]) for name, inner in value.items()}
 
 
 def _agrees(expected: Any, found: Any) -> bool:

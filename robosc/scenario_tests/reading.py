@@ -8,7 +8,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from robosc.diagnostics import Diagnostic, Severity, Span
-from robosc.files.json_reading import JsonError, json_value
+from robosc.semantics.steps import EVENT, StepError, data_in_words, event_in_words, step_in_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -19,11 +19,8 @@ _WAIT = re.compile(r"wait\s+(\d+(?:\.\d+)?)\s*(ms|s|min)")
 _SECONDS = {"ms": 0.001, "s": 1.0, "min": 60.0}
 #: A day: what is longer is a mistake.
 _LONGEST = 86_400
-_KIND = r"(?P<kind>request|response|error|feedback|canceled|cancel)"
-_EVENT = rf"(?:{_KIND}\s+(?:to|from)\s+)?(?P<name>\^?[A-Za-z_]\w*(?:\.\^?\w+)*)"
-_STEP = re.compile(_EVENT + r"(?:\s+with\s+(?P<message>message\s+)?(?P<data>.+))?")
 _EXPECTED = re.compile(
-    _EVENT + r"\s+(?:(?P<verdict>allowed)|(?P<forbidden>forbidden)(?:\s+by\s+(?P<by>.+))?"
+    EVENT + r"\s+(?:(?P<verdict>allowed)|(?P<forbidden>forbidden)(?:\s+by\s+(?P<by>.+))?"
     r"|(?P<sent>(?:not\s+)?sent)(?:\s+with\s+(?P<data>.+))?)"
 )
 #: What else a line may begin with.
@@ -46,12 +43,21 @@ class Line:
 class Incoming(Line):
     """Something comes from the robot; `event` is as `explain` takes it, such as `scan` or `dock.error`.
 
-    `data` is that of the event as the event log has it; `is_message`: all fields of what ROS brings.
+    `data` is that of the event as the event log has it; `is_message`: all fields of what ROS brings. `reason`: of an
+    error, None where the text names none.
     """
 
     event: str
     data: Any = None
     is_message: bool = False
+    reason: str | None = None
+
+
+@dataclass(frozen=True)
+class Refusal(Line):
+    """A server refuses to cancel a goal; `event` is the end that the goal would have, such as `dock.canceled`."""
+
+    event: str
 
 
 @dataclass(frozen=True)
@@ -157,8 +163,12 @@ class _Reader:
             )
 
     def _step(self, text: str, line: Line) -> Iterator[Line]:
-        given = _STEP.fullmatch(text)
-        if given is None:
+        try:
+            step = step_in_words(text)
+        except StepError as error:
+            self._unread(error, text, line)
+            return
+        if step is None:
             close = get_close_matches(text.split(maxsplit=1)[0], _WORDS, n=1)
             hint = (
                 f"did you mean `{close[0]}`?"
@@ -166,14 +176,10 @@ class _Reader:
                 else "write `response from scan with clear`, `wait 1 s` or `expect …`"
             )
             self.findings.append(line.fault("this is neither a step nor an expectation", hint))
-            return
-        data = self._data(given["data"], line)
-        if given["message"] and not isinstance(data, dict):
-            self.findings.append(
-                line.fault("a message is an object with fields", 'write `with message {"ranges": [1.0]}`')
-            )
-            return
-        yield Incoming(line.file, line.span, _event(given), data, bool(given["message"]))
+        elif step.is_refusal:
+            yield Refusal(line.file, line.span, step.event)
+        else:
+            yield Incoming(line.file, line.span, step.event, step.data, step.is_message, step.reason)
 
     def _expected(self, text: str, line: Line) -> Iterator[Line]:
         given = _EXPECTED.fullmatch(text)
@@ -189,29 +195,24 @@ class _Reader:
             yield self.conditions[-1]
         elif given["sent"]:
             expected = given["sent"] == "sent"
-            data = self._data(given["data"], line)
+            data = self._data(text, given, line)
             if not expected and data is not None:
                 self.findings.append(line.fault("what is not sent has no data", "leave out `with …`"))
-            yield Sent(line.file, line.span, _event(given), expected, data)
+            yield Sent(line.file, line.span, event_in_words(given), expected, data)
         else:
             by = given["by"].strip().strip('"') if given["by"] else None
-            yield Allowed(line.file, line.span, _event(given), bool(given["forbidden"]), by)
+            yield Allowed(line.file, line.span, event_in_words(given), bool(given["forbidden"]), by)
 
-    def _data(self, text: str | None, line: Line) -> Any:
-        """JSON, or the name of a literal as it stands."""
-        if text is None or re.fullmatch(r"(?!true$|false$|null$)[A-Za-z_]\w*", text):
-            return text
+    def _data(self, text: str, given: re.Match[str], line: Line) -> Any:
+        """The data at the end of an expectation; None where there is none, or none that can be read."""
         try:
-            return json_value(text)
-        except JsonError as error:
-            column = line.span.end_column - len(text) + error.position
-            span = Span(line.span.line, column, line.span.line, line.span.end_column)
-            self.findings.append(
-                Line(line.file, span).fault(str(error), error.hint or "data is JSON, or the name of a literal")
-            )
+            return data_in_words(text, given.start("data")) if given["data"] else None
+        except StepError as error:
+            self._unread(error, text, line)
             return None
 
-
-def _event(given: re.Match[str]) -> str:
-    name = given["name"].replace("^", "")
-    return f"{name}.{given['kind']}" if given["kind"] else name
+    def _unread(self, error: StepError, text: str, line: Line) -> None:
+        """A finding about the data at the end of a line."""
+        column = line.span.end_column - len(text) + error.position
+        span = Span(line.span.line, column, line.span.line, line.span.end_column)
+        self.findings.append(Line(line.file, span).fault(str(error), error.hint))

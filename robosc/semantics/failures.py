@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import robosc
+from robosc.metamodel import robosc, sct
+from robosc.semantics.roles import plant_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+#: The text of the input that has the reason.
+REASON = "error"
+#: The reason of an answer whose data can't be read.
+UNREADABLE = "unreadable"
 #: The name of the predefined enum.
 FAILURE = "Failure"
 #: The values of the enum with which each kind of communication can fail; in the enum, too, they follow each other.
@@ -25,11 +30,29 @@ STILL_RUNNING: Mapping[type[robosc.CommunicationType], tuple[str, ...]] = {
 }
 #: The reason where a text names none.
 USUAL: Mapping[type[robosc.CommunicationType], str] = {robosc.Service: "failed", robosc.Action: "aborted"}
+_KINDS: Mapping[sct.PlantKind, type[robosc.CommunicationType]] = {
+    sct.PlantKind.service: robosc.Service,
+    sct.PlantKind.action: robosc.Action,
+}
 
 
 def reasons(communication: robosc.CommunicationType | None) -> tuple[str, ...]:
     """The reasons for which a service or an action can fail; empty for a message and for None."""
     return REASONS.get(type(communication), ())  # type: ignore[arg-type]
+
+
+def possible_reasons(event: sct.Event) -> tuple[str, ...]:
+    """The reasons that an event can have, the usual one first; empty where it is no error of a service or action."""
+    communication = _KINDS.get(plant_of(event).kind)
+    if communication is None or event.kind != sct.EventKind.error:
+        return ()
+    usual = USUAL[communication]
+    return (usual, *(reason for reason in REASONS[communication] if reason != usual))
+
+
+def is_reason(given: sct.Input) -> bool:
+    """Whether an input has the reason of an error."""
+    return given.text == REASON
 
 
 def is_failure(enum: object) -> bool:

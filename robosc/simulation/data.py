@@ -16,10 +16,12 @@ from robosc.ros_types import wire as wire_types
 from robosc.ros_types.wire import Basic
 from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.node_data import NodeData
+from robosc.semantics.communication import happens_anyway
 from robosc.semantics.evaluation import as_double
+from robosc.semantics.failures import UNREADABLE, is_reason, possible_reasons
 from robosc.semantics.messages import is_structured, received, receptions
 from robosc.semantics.operators import UnreadableError
-from robosc.semantics.roles import event_name
+from robosc.semantics.roles import event_name, plant_of
 from robosc.semantics.walks import operands
 from robosc.simulation.unreadable import Unreadable, past_end
 
@@ -52,7 +54,11 @@ def data_beside(graph: rosgraph.RosGraph, event: sct.Event) -> dict[tuple[str, .
     None of it where the supervisor has conditions on the data computed: the data would decide them.
     """
     given = [
-        assignment for reception in receptions(graph) if reception.event == event for assignment in reception.inputs
+        assignment
+        for reception in receptions(graph)
+        if reception.event == event
+        for assignment in reception.inputs
+        if not is_reason(assignment.input)
     ]
     if any(assignment.input.text is not None for assignment in given):
         return {}
@@ -73,9 +79,27 @@ def data_beside(graph: rosgraph.RosGraph, event: sct.Event) -> dict[tuple[str, .
     return {path: kind for path, kind in found.items() if path not in told}
 
 
+def reason_of(event: sct.Event, data: Mapping[str, Any]) -> str | None:
+    """The reason of an event with some data; None where it is no error of a service or action. Raises DataError.
+
+    A service that has answered has an answer that can't be read.
+    """
+    possible = possible_reasons(event)
+    if "reason" not in data:
+        is_answered = "value" in data and plant_of(event).kind == sct.PlantKind.service
+        return UNREADABLE if possible and is_answered else next(iter(possible), None)
+    reason = data["reason"]
+    if not possible:
+        raise DataError("only the error of a service or an action has a reason")
+    if reason not in possible:
+        raise DataError(f"the reason is {json.dumps(reason)}, expected one of {', '.join(sorted(possible))}")
+    return str(reason)
+
+
 class EventData:
     """Reads the data of events: `{"value": ...}`, in the shape of the event log.
 
+    An error also has a `reason`; left out it is the usual one, `aborted` of actions and `failed` of services.
     Basic data is the value itself, an object has fields, an array is a list or an object from index to element; in the
     place of data that an enumeration is made of there may be the name of a literal. A field that is left out has its
     default in ROS 2; an enumeration the literal of its default rule. What the node computes of data may stand there by
@@ -97,10 +121,12 @@ class EventData:
     def inputs(self, event: str, data: Mapping[str, Any]) -> dict[str, Value]:
         """Values of the event's inputs by their names. Raises DataError, KeyError for an unknown event."""
         declared = self._events[event]
-        unknown = sorted(set(data) - {"value", "where"})
+        unknown = sorted(set(data) - {"value", "where", "reason"})
         if unknown:
             raise DataError(f'"{unknown[0]}" is no data of an event: write {{"value": ...}}')
-        computed = _computed(declared, data.get("where", {}))
+        reason, computed = reason_of(declared, data), _computed(declared, data.get("where", {}))
+        if self._node is not None:
+            self._node.reason = reason
         if data and not declared.inputs:
             return {}  # the node keeps it, or nobody does
         value = data.get("value", _ABSENT)
@@ -108,7 +134,10 @@ class EventData:
         for given in declared.inputs:
             domain = Domain(given.type)
             try:
-                told = computed[given.text] if given.text in computed else self._value(event, given, value)
+                if is_reason(given) and ("reason" in data or given.text not in computed):
+                    told: Value = reason or ""
+                else:
+                    told = computed[given.text] if given.text in computed else self._value(event, given, value)
                 found[given.name] = domain.shown(domain.internal(told))
             except ValueError as error:
                 raise DataError(f"{_label(given)}: {error}") from None
@@ -117,7 +146,7 @@ class EventData:
     def unreadable(self, event: str, data: Mapping[str, Any]) -> Unreadable | None:
         """Why the node can't read this data in the present state; None where it can, as far as the data is given."""
         reception = self._receptions.get(event)
-        if self._node is None or reception is None or "value" not in data:
+        if self._node is None or reception is None or "value" not in data or happens_anyway(reception.event):
             return None
         for reaction in self._node.reactions(reception.event):
             guard, value = reaction.guard, data["value"]
@@ -128,14 +157,30 @@ class EventData:
                 return Unreadable(str(fault), self._errors.get(event))
         return None
 
+    @staticmethod
+    def of_unreadable(data: Mapping[str, Any]) -> dict[str, Any]:
+        """Data of the error that happens in place of an answer whose data can't be read."""
+        return {"value": data["value"], "reason": UNREADABLE} if "value" in data else {"reason": UNREADABLE}
+
+    def check(self, event: str, data: Mapping[str, Any]) -> None:
+        """Raise DataError where the event can't come with this data; an event that is not known can."""
+        if event not in self._events:
+            return
+        self.inputs(event, data)
+        if event in self._errors:
+            self.inputs(self._errors[event], self.of_unreadable(data))
+
     def shaped(
         self, event: str, values: Mapping[str, Value], others: Mapping[tuple[str, ...], Any] | None = None
     ) -> dict[str, Any]:
         """Data with which the event's inputs have these values, by their names; `others` by the fields on the way."""
         inputs = self._events[event].inputs
-        where = {given.text: values[given.name] for given in inputs if given.text is not None}
+        reasons = [values[given.name] for given in inputs if is_reason(given)]
+        where = {given.text: values[given.name] for given in inputs if given.text is not None and not is_reason(given)}
         paths = {**(others or {}), **{self._path(given): values[given.name] for given in inputs if given.text is None}}
         shown: dict[str, Any] = {"where": where} if where else {}
+        if reasons:
+            shown["reason"] = reasons[0]
         if not paths:
             return shown
         if len(paths) == 1 and len(next(iter(paths))) < 2:
@@ -367,7 +412,7 @@ def _words(given: sct.Input) -> list[str]:
 
 
 def _label(given: sct.Input) -> str:
-    return ".".join(["value", *_words(given)])
+    return given.text or ".".join(["value", *_words(given)])
 
 
 def _default(kind: ex.Type, value: Any = 0) -> Value:

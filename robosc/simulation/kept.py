@@ -10,11 +10,13 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.runtime.core.event_log import shown
 from robosc.runtime.core.node_data import NodeData, bounded
+from robosc.semantics.communication import happens_anyway
 from robosc.semantics.definition import reported
 from robosc.semantics.evaluation import evaluate
+from robosc.semantics.messages import reads_elements
 from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name
-from robosc.simulation.data import whole
+from robosc.simulation.data import reason_of, whole
 from robosc.simulation.unreadable import UnknownError, read
 
 if TYPE_CHECKING:
@@ -38,6 +40,7 @@ class Kept:
         self._engine = engine
         self._names: dict[rosgraph.NodeVariable, str] = {}
         self._reactions: dict[str, list[rosgraph.Reaction]] = {}
+        self._happens_anyway = False
         #: The values in the beginning.
         self.initial: Values = {}
         if graph is None:
@@ -60,8 +63,12 @@ class Kept:
         What is made of data that is not given is not known.
         """
         changed: Values = {}
+        reactions = self._reactions.get(event, ())
+        if reactions:
+            self._node.reason = reason_of(reactions[0].event, data)
+            self._happens_anyway = happens_anyway(reactions[0].event) and "value" in data
         now, self._engine.state = self._engine.state, before
-        for reaction in self._reactions.get(event, ()):
+        for reaction in reactions:
             if not any(map(self._node.is_in, reaction.locations)):
                 continue
             taken = True if reaction.guard is None else self._value(reaction.guard, values, data)
@@ -97,13 +104,24 @@ class Kept:
                 return self._variable(reference.variable, values)
             case rosgraph.ConversionCall():
                 return self._literal(reference.conversion, read(data, reference.argument, *given), values)
+            case rosgraph.ErrorReason():
+                return self._node.value(reference)
             case ex.EnumerationLiteralReference():
                 return reference.literal
             case sct.LocationReference():
                 return self._node.is_in(reference.location)
             case sct.VariableReference():
                 return self._node.value(reference)
-        return read(data, reference, *given)
+        return self._reached(data, reference, *given)
+
+    def _reached(self, data: Any, reference: ex.Expression, *given: Any) -> Any:
+        """What a reference reads of data. A log leaves out what could not be read of an end that happens anyway."""
+        try:
+            return read(data, reference, *given)
+        except UnknownError:
+            if self._happens_anyway and reads_elements(reference):
+                raise UnreadableError("the array has no such element") from None
+            raise
 
     def _variable(self, variable: rosgraph.NodeVariable, values: Values) -> Any:
         if isinstance(variable, rosgraph.Parameter):

@@ -40,8 +40,8 @@ def script_steps(simulation: Simulation, path: str) -> list[Step]:
     text, faults = decode(path, files.read(path))
     events = [*simulation.engine.events, WAIT]
     others = [word for word in LoopSimulation.OWN if word != WAIT]
-    steps, findings = read_script(path, text.content, events, others)
-    findings += [*faults, *unfit_data(path, (step for step in steps if step.event != WAIT), simulation.data)]
+    steps, findings = read_script(path, text.content, events, others, simulation.engine.model)
+    findings += [*faults, *unfit_data(path, steps, simulation.data)]
     if findings:
         raise PlayError(f"{path}: {findings[0].message}", findings, {path: text.content})
     return steps

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.engine.timers import Timers
 from robosc.engine.transitions import Transitions
-from robosc.simulation.script import WAIT
+from robosc.simulation.script import REFUSE, WAIT
+from robosc.simulation.simulation import refusal
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -35,6 +36,8 @@ _START = _Position(0, None, (0, {}))
 class Moment:
     """A step of the run: an event that happened, or was kept from that `by` something; or time that went by.
 
+    Or a server that refused to cancel a goal.
+
     `line` is that of the script; `edges` are the transitions that components took.
     """
 
@@ -51,7 +54,7 @@ class Moment:
     @property
     def happened(self) -> bool:
         """Whether an event happened."""
-        return self.by is None and self.event != WAIT
+        return self.by is None and self.event not in (WAIT, REFUSE)
 
 
 class Replay:
@@ -177,6 +180,8 @@ class Replay:
 
     def _perform(self, event: str, data: Mapping[str, Any], line: int | None = None) -> Moment:
         before = self.engine.state
+        if event == REFUSE:
+            return Moment(event, dict(data), before, before, line, refusal(self.engine, data["of"]))
         inputs = self.simulation.data.inputs(event, data)
         by = self.engine.blocked_by(event) or self.simulation.data.unreadable(event, data)
         edges: tuple[sct.Edge, ...] = ()

@@ -1,22 +1,28 @@
-"""Scripts: a line for each event, by its name with its data in JSON, or as a line of an event log."""
+"""Scripts: a line for each event, by its name with its data in JSON, in words, or as a line of an event log."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from robosc.analysis.explain import NamingError, event_named
 from robosc.diagnostics import Diagnostic, Severity, Span
 from robosc.files.json_reading import JsonError, json_lines, json_value
+from robosc.semantics.roles import event_name, plant_of
+from robosc.semantics.steps import FIRST_WORDS, StepError, step_in_words
 from robosc.simulation.data import DataError
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
 
+    from robosc.metamodel import sct
     from robosc.simulation.data import EventData
 
 RULE = "script"
 WAIT = "wait"
+#: A server does not cancel a goal.
+REFUSE = "refuse cancel"
 #: 100 days: what is longer is a mistake.
 _LONGEST_WAIT = 8_640_000
 #: A clock that tells more seconds is broken.
@@ -27,7 +33,8 @@ _LATEST = 1e12
 class Step:
     """A line of a script: an event, or `tick`, `begin` or `end` for a control loop.
 
-    `time` is the seconds that a line of an event log tells.
+    `wait` has its `seconds` as data, `refuse cancel` the action that it is `of`, as its plant is called. `time` is the
+    seconds that a line of an event log tells.
     """
 
     line: int
@@ -37,21 +44,27 @@ class Step:
 
 
 def read_script(
-    file: str, text: str, events: Collection[str], others: Collection[str] = ()
+    file: str,
+    text: str,
+    events: Collection[str],
+    others: Collection[str] = (),
+    model: sct.SupervisoryControlModel | None = None,
 ) -> tuple[list[Step], list[Diagnostic]]:
     """The steps of a script, and what is wrong with its text; `events` are the names that it may use.
 
-    `others` are those that it may use only with `--loop`, or only without.
+    `others` are those that it may use only with `--loop`, or only without; `model` has the events that words name.
 
     A line is `EVENT [JSON]`, with `--loop` also `wait SECONDS`, or a JSON object with `event` and maybe `data` (other
-    keys of an event log are ignored). Empty lines and lines that begin with `#` are no steps.
+    keys of an event log are ignored). With a model it may also be a step of a scenario, such as
+    `error from lift because timeout`. Empty lines and lines that begin with `#` are no steps.
     """
     steps: list[Step] = []
     findings: list[Diagnostic] = []
+    names = _Names(events, others, model)
     for number, line in enumerate(json_lines(text), 1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
-        read = _Line(file, number, line, events, others)
+        read = _Line(file, number, line, names)
         found = read.step()
         if found is not None:
             steps.append(found)
@@ -63,21 +76,44 @@ def unfit_data(file: str, steps: Iterable[Step], data: EventData) -> Iterator[Di
     """Findings about data that does not fit its event, before any step is played."""
     for step in steps:
         try:
-            data.inputs(step.event, step.data)
+            data.check(step.event, step.data)
         except DataError as error:
             span = Span(step.line, 1, step.line, 1)
             yield Diagnostic(file, span, Severity.ERROR, RULE, f"{step.event}: {error}")
+
+
+def spoken(model: sct.SupervisoryControlModel, text: str) -> tuple[str, dict[str, Any]] | None:
+    """The event of a step in words, and its data; None where the text is none. Raises NamingError, StepError.
+
+    A server that refuses to cancel a goal is the step `refuse cancel` with the action that it is `of`.
+    """
+    step = step_in_words(text)
+    if step is None or step.is_bare:
+        return None
+    event = event_named(model, step.event)
+    if step.is_refusal:
+        return REFUSE, {"of": plant_of(event).name}
+    data = {} if step.data is None else {"value": step.data}
+    return event_name(event), data if step.reason is None else {**data, "reason": step.reason}
 
 
 def _seconds(time: Any) -> float | None:
     return float(time) if isinstance(time, int | float) and 0 <= time < _LATEST else None
 
 
+class _Names(NamedTuple):
+    """The names of events that a script may use, those that it may use otherwise, and the model that words name."""
+
+    events: Collection[str]
+    others: Collection[str]
+    model: sct.SupervisoryControlModel | None
+
+
 class _Line:
     """One line that is not empty."""
 
-    def __init__(self, file: str, number: int, line: str, events: Collection[str], others: Collection[str]) -> None:
-        self._file, self._number, self._line, self._events, self._others = file, number, line, events, others
+    def __init__(self, file: str, number: int, line: str, names: _Names) -> None:
+        self._file, self._number, self._line, self._names = file, number, line, names
         self._start = len(line) - len(line.lstrip())
         self.findings: list[Diagnostic] = []
 
@@ -100,11 +136,29 @@ class _Line:
             )
         name, _, rest = self._line[self._start :].partition(" ")
         name = name.rstrip()
+        if self._names.model is not None and name in FIRST_WORDS and name not in self._names.events:
+            return self._in_words(self._names.model, name)
         known = self._known(name, self._start)
         if known and name == WAIT:
             return self._wait(rest)
         data = self._json(len(self._line) - len(rest.lstrip())) if rest.strip() else {}
         return Step(self._number, name, data) if known and data is not None else None
+
+    def _in_words(self, model: sct.SupervisoryControlModel, word: str) -> Step | None:
+        try:
+            step = spoken(model, self._line.strip())
+        except NamingError as error:
+            self._fault(self._start, error.message, error.hint or None, len(word))
+            return None
+        except StepError as error:
+            self._fault(self._start + error.position, str(error), error.hint)
+            return None
+        if step is None:
+            hint = "write `response from scan with clear` or `error from lift because timeout`"
+            self._fault(self._start, "this is no step of a scenario", hint, len(word))
+            return None
+        event, data = step
+        return Step(self._number, event, data) if event == REFUSE or self._known(event, self._start) else None
 
     def _wait(self, seconds: str) -> Step | None:
         try:
@@ -117,15 +171,15 @@ class _Line:
         return None
 
     def _known(self, name: str, column: int) -> bool:
-        if name in self._events:
+        if name in self._names.events:
             return True
-        if name in self._others:
-            looped = "tick" in self._events
+        if name in self._names.others:
+            looped = "tick" in self._names.events
             message = f"`{name}` is no line of a script {'with' if looped else 'without'} the control loop"
             hint = "the control loop decides itself when it happens, at `tick`" if looped else "it needs `--loop`"
             self._fault(column, message, hint, len(name))
             return False
-        close = get_close_matches(name, sorted(self._events), n=1)
+        close = get_close_matches(name, sorted(self._names.events), n=1)
         hint = f"did you mean `{close[0]}`?" if close else "`robosc synthesize --json` lists the events"
         self._fault(column, f"there is no event `{name}`", hint, len(name))
         return False

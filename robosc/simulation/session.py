@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 from robosc.files import reading as files
 from robosc.files.writing import write_file
+from robosc.semantics.steps import FIRST_WORDS
 from robosc.simulation.data import DataError
-from robosc.simulation.script import read_script
+from robosc.simulation.script import REFUSE, read_script
 from robosc.simulation.simulation import whole_state
 from robosc.simulation.unreadable import Unreadable
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 HELP = """\
 NUMBER or EVENT, with data in JSON where it carries some: let it happen, as in  1 {"value": 3}
+or in the words of a scenario:  error from dock because timeout
   e          what can happen now      d          what can't, and why
   s          the state                u          undo
   r [N]      N random events          t          what has happened
@@ -70,11 +72,12 @@ class Session:
         number = _number(word)
         if number is not None and 1 <= number <= len(enabled):
             word = enabled[number - 1]
-        if word not in self._simulation.engine.events and not word.startswith(("{", "#")):
-            close = get_close_matches(word, self._simulation.engine.events, n=1)
+        engine = self._simulation.engine
+        if word not in (*engine.events, *FIRST_WORDS) and not word.startswith(("{", "#")):
+            close = get_close_matches(word, engine.events, n=1)
             hint = f", did you mean `{close[0]}`?" if close else ""
             return f"there is no command and no event `{word}`{hint} (h for help)"
-        steps, findings = read_script("", f"{word} {rest}", self._simulation.engine.events)
+        steps, findings = read_script("", f"{word} {rest}", engine.events, model=engine.model)
         return _complaints(findings) or "\n".join(self._perform(step.event, dict(step.data)) for step in steps)
 
     def enabled(self) -> str:
@@ -96,6 +99,8 @@ class Session:
             return f"{event}: {error}"
         if happened.by is not None:
             return self._reason(event, happened.by)
+        if event == REFUSE:
+            return event
         return "\n".join([self._named[event], *self._changes()])
 
     def _changes(self) -> list[str]:
@@ -109,7 +114,7 @@ class Session:
         return "\n".join(self._reason(event, by) for event, by in blocked if by is not None) or "everything can happen"
 
     def _reason(self, event: str, by: Blocked | Unreadable) -> str:
-        named = event if isinstance(by, Unreadable) else self._named[event]
+        named = event if isinstance(by, Unreadable) else self._named.get(event, event)
         return f"{named}: {self._simulation.reason(event, by)}"
 
     def _undo(self) -> str:
@@ -140,7 +145,9 @@ class Session:
     def _load(self, file: str) -> str:
         if not file:
             return "load what? give a file"
-        steps, findings = read_script(file, files.read(file, is_input=False).decode(), self._simulation.engine.events)
+        engine = self._simulation.engine
+        text = files.read(file, is_input=False).decode()
+        steps, findings = read_script(file, text, engine.events, model=engine.model)
         if findings:
             return _complaints(findings)
         return "\n".join(self._perform(step.event, dict(step.data)) for step in steps)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from robosc.analysis.wording import name
 from robosc.engine import Blocked, ControlLoop, Engine, Hooks, Settings
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
@@ -14,7 +15,7 @@ from robosc.semantics.domains import domain
 from robosc.semantics.printing import SctPrinter
 from robosc.semantics.roles import event_name
 from robosc.simulation.data import EventData
-from robosc.simulation.script import WAIT
+from robosc.simulation.script import REFUSE, WAIT
 from robosc.simulation.unreadable import Unreadable
 
 if TYPE_CHECKING:
@@ -58,7 +59,23 @@ class Happened:
     def answer(self) -> dict[str, Any]:
         """The object that `simulate --script` prints."""
         by = None if self.by is None else str(self.by)
-        return {"event": self.event, "accepted": self.accepted, "by": by, "state": dict(self.state)}
+        given = dict(self.data) if self.event == REFUSE else {}
+        return {"event": self.event, **given, "accepted": self.accepted, "by": by, "state": dict(self.state)}
+
+
+def refusal(engine: Engine, action: str) -> Blocked | None:
+    """What keeps a server from refusing to cancel the goal of an action: that it is not being canceled."""
+    ends = (event for event in _plant(engine, action).events if event.kind == sct.EventKind.canceled)
+    return engine.blocked_by(event_name(next(ends)))
+
+
+def refusal_in_words(engine: Engine, action: str) -> str:
+    """The step `refuse cancel` of an action, such as `refusal to cancel Base.go`."""
+    return f"refusal to cancel `{name(_plant(engine, action))}`"
+
+
+def _plant(engine: Engine, called: str) -> sct.Plant:
+    return next(plant for plant in engine.model.plants if plant.name == called)
 
 
 class Simulation:
@@ -85,8 +102,12 @@ class Simulation:
     def perform(self, event: str, data: Mapping[str, Any] | None = None) -> Happened:
         """Lets an event happen with data in the shape of the event log, if it can; else nothing changes.
 
-        Raises DataError, and KeyError where there is no such event.
+        A server that refuses to cancel a goal changes nothing, too. Raises DataError, and KeyError where there is no
+        such event.
         """
+        if event == REFUSE:
+            given = data or {}
+            return Happened(event, given, refusal(self.engine, given["of"]), whole_state(self.engine))
         inputs = self.data.inputs(event, data or {})
         before = self.engine.state
         by = self.engine.blocked_by(event) or self.data.unreadable(event, data or {})
@@ -123,6 +144,8 @@ class Simulation:
         """Why an event can't happen in the present state, in words; `by` is what keeps it from happening."""
         if isinstance(by, Unreadable):
             return f"{by.why}, so it counts as {by.error or 'not received'}"
+        if event == REFUSE:
+            return "its goal is not being canceled"
         if by is Blocked.PLANT:
             return "the robot is not ready for it"
         if by is Blocked.REQUIREMENT:
@@ -174,11 +197,13 @@ class LoopSimulation:
 
     def step(self, event: str, data: Mapping[str, Any]) -> dict[str, Any]:
         """What came of a step: the object that `simulate --loop --script` prints. Raises DataError."""
-        inputs = {} if event in self.OWN else self.data.inputs(event, data)
+        inputs = {} if event in (*self.OWN, REFUSE) else self.data.inputs(event, data)
         self._happened.clear()
         by: Blocked | Unreadable | None = None
         if event == WAIT:
             self._wait(round(data["seconds"] * 1000))
+        elif event == REFUSE:
+            by = refusal(self._loop.engine, data["of"])
         elif event in self.OWN:
             self._in_batch = event == BEGIN
             getattr(self._loop, event)()
@@ -189,10 +214,10 @@ class LoopSimulation:
             if not isinstance(by, Unreadable):
                 self._loop.perform(event, inputs)
             elif by.error is not None:
-                self._loop.perform(by.error)
+                self._loop.perform(by.error, self.data.inputs(by.error, self.data.of_unreadable(data)))
             if not self._in_batch:
                 self._loop.end()
-        given = dict(data) if event == WAIT else {}
+        given = dict(data) if event in (WAIT, REFUSE) else {}
         return {
             "event": event,
             **given,

@@ -14,6 +14,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.places import place
 from robosc.semantics.definition import reported
+from robosc.semantics.domains import domain
 from robosc.semantics.edges import edges_of, origin
 from robosc.semantics.roles import Roles, event_name, plant_of
 from robosc.simulation.data import data_beside
@@ -225,7 +226,8 @@ def _values(kind: ex.Type) -> dict[str, Any]:
         case ex.IntegerType():
             return {"minimum": kind.minimum, "maximum": kind.maximum}
     assert isinstance(kind, ex.EnumerationType)
-    return {"values": [literal.name for literal in kind.enumeration.literals]}
+    low, high = domain(kind)
+    return {"values": [literal.name for literal in kind.enumeration.literals[low : high + 1]]}
 
 
 def _communication(models: Models) -> list[dict[str, Any]]:

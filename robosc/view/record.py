@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 from robosc.metamodel import expression as ex
 from robosc.simulation.data import data_beside
 from robosc.simulation.replay import Replay
-from robosc.simulation.script import WAIT
+from robosc.simulation.script import REFUSE, WAIT
+from robosc.simulation.simulation import refusal_in_words
 from robosc.view.moments import ActionError, Moments
 
 if TYPE_CHECKING:
@@ -141,11 +142,15 @@ class Record(Moments):
         self._replay.freely()
         self._cut(moment + 1)
 
+    def _words(self, moment: Moment) -> str:
+        if moment.event == REFUSE:
+            return refusal_in_words(self.engine, moment.data["of"]).replace("`", "")
+        return "time goes by" if moment.event == WAIT else self.said(moment.event)
+
     def _keep(self, moment: Moment | None) -> None:
         told: dict[str, Any] = {}
         if moment is not None:
-            said = "time goes by" if moment.event == WAIT else self.said(moment.event)
-            told = {"event": moment.event, "data": dict(moment.data), "words": said}
+            told = {"event": moment.event, "data": dict(moment.data), "words": self._words(moment)}
             if moment.by is not None:
                 told |= {"by": str(moment.by), "reason": self.simulation.reason(moment.event, moment.by)}
         timers, kept = self._replay.timers, self._kept_last

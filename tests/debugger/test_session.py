@@ -283,6 +283,51 @@ def test_the_debug_console(session: Client, yard: Path) -> None:
     ]
 
 
+CRANE = ROOT / "tests" / "simulation" / "crane.rscd"
+
+
+def test_a_script_in_the_words_of_scenarios(session: Client, tmp_path: Path) -> None:
+    steps = [
+        "request to go",
+        "refuse cancel of go",
+        "response from stop with true",
+        "cancel to go",
+        "refuse cancel of go",
+        'canceled from go with {"code": 3}',
+    ]
+    (tmp_path / "crane.script").write_text("\n".join(steps))
+    session.launch(CRANE, script="crane.script")
+    told = [session.go("next")["description"] for _ in steps]
+    assert told == [
+        "request to `Base.go`",
+        "refusal to cancel `Base.go` can't happen: its goal is not being canceled",
+        "response from `Button.stop`",
+        "cancel of `Base.go`",
+        "refusal to cancel `Base.go`",
+        "canceled from `Base.go`",
+    ]
+    session.go("stepBack")
+    assert session.frames()[0]["name"] == "refusal to cancel `Base.go`"
+    assert session.scope("Components")["Base"]["value"] == "stopping"
+
+
+def test_the_debug_console_takes_steps_of_scenarios(session: Client) -> None:
+    session.launch(CRANE)
+    session.console("request to go")
+    refusals = {
+        "refuse cancel of go": "refusal to cancel `Base.go` can't happen: its goal is not being canceled",
+        "error from go because failed": 'the reason is "failed", expected one of aborted, canceled, lost',
+        "error from og": "there is no event `og.error`",
+        "error from": "there is no event `error`",
+        "error from go with {": "not JSON",
+    }
+    for text, message in refusals.items():
+        assert session.refused("evaluate", expression=text, context="repl").startswith(message)
+    assert "component_Base = unknown" in session.console('error from go because lost with {"rest": 0.5}')
+    session.go("stepBack")
+    assert "Base.why = rejected" in session.console('go.error {"reason": "rejected"}')
+
+
 def test_a_step_into_a_chosen_event(session: Client, yard: Path) -> None:
     session.launch(yard)
     targets = {target["label"]: target["id"] for target in session.do("stepInTargets", frameId=1)["targets"]}

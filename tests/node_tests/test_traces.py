@@ -50,6 +50,7 @@ MODELS = {
     "mission": ROOT / "tests" / "runtime" / "mission.rscd",
     "kept": ROOT / "tests" / "runtime" / "kept.rscd",
     "keeper": ROOT / "tests" / "ros" / "kept" / "keeper.rscd",
+    "crane": ROOT / "tests" / "simulation" / "crane.rscd",
     "push_ball": ROOT / "examples" / "push_ball" / "push_ball.rscd",
     "sprayer": ROOT / "examples" / "sprayer" / "sprayer.rscd",
     "warehouse_robot": ROOT / "examples" / "warehouse_robot" / "warehouse_robot.rscd",
@@ -209,6 +210,54 @@ def test_what_can_not_be_played_is_said(case: Case) -> None:
     del line["message"]
     line["data"]["value"] = "foggy"
     with pytest.raises(TraceError, match=f"line {number} can't be played: no message is known .* as foggy"):
+        case.play()
+
+
+#: Why a goal fails, what the log has of its result, and what to send for it.
+GOALS = [
+    ("aborted", {"code": 8, "rest": 0, "path": {"1": 0.25, "2": 3}}, {"path": {"0": 0.0, "1": 0.25, "2": 3.0}}),
+    ("aborted", {"code": 8, "rest": 0}, None),
+    ("unreadable", {"code": 5, "rest": 0}, None),
+    ("unreadable", {"code": 5, "rest": 0.5}, {"code": 5, "rest": 0.5}),
+]
+
+
+@pytest.mark.parametrize(("reason", "value", "message"), GOALS)
+@pytest.mark.parametrize("case", ["crane"], indirect=True)
+def test_an_error_has_its_reason_and_its_result(
+    case: Case, reason: str, value: dict[str, Any], message: dict[str, Any] | None
+) -> None:
+    """Also without the message that a tool notes for it, as in a log of a robot."""
+    failed = case.trace[0] | {"direction": "in", "event": "action_go.u_error"}
+    failed["data"] = {"value": value, "reason": reason}
+    if message is not None:
+        failed["message"] = {"code": 8} | message
+    case.traces = [[case.trace[0], failed]]
+    case.play()
+
+
+@pytest.mark.parametrize("reason", ["canceled", "lost", "rejected", "timeout", "unavailable"])
+@pytest.mark.parametrize("case", ["crane"], indirect=True)
+def test_a_reason_that_no_server_brings_about(case: Case, reason: str) -> None:
+    failed = {"direction": "in", "event": "action_go.u_error", "data": {"value": {"code": 0}, "reason": reason}}
+    case.traces = [[case.trace[0], case.trace[0] | failed]]
+    with pytest.raises(TraceError, match=f"line 2 can't be played: no test server lets /go fail because {reason}"):
+        case.play()
+
+
+@pytest.mark.parametrize("reason", ["failed", "unavailable", "unreadable", "timeout"])
+@pytest.mark.parametrize("case", ["crane"], indirect=True)
+def test_a_call_fails_for_its_reason(case: Case, reason: str) -> None:
+    """Where a call can't fail at once, as in ROS 2; `unreadable` needs an answer."""
+    trace = next(lines for lines in case.traces if "service_lift.c_trigger" in [line["event"] for line in lines])
+    before = [line["event"] for line in trace].index("service_lift.c_trigger")
+    failed = trace[before] | {"direction": "in", "event": "service_lift.u_error", "data": {"reason": reason}}
+    case.traces = [[*trace[: before + 1], failed]]
+    if reason == "timeout":
+        case.play()
+        return
+    fault = f"line {before + 2} can't be played: no test server lets /lift fail because {reason}"
+    with pytest.raises(TraceError, match=fault):
         case.play()
 
 

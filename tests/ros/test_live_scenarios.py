@@ -95,6 +95,119 @@ def test_a_call_that_fails_and_times(runner: Runner, tmp_path: Path) -> None:
     assert (status, "1 scenario, 0 failed" in said) == (0, True), said
 
 
+CARRIER = """\
+robot Carrier {
+  interface following use FollowWaypoints from nav2_msgs
+
+  component Base {
+    service lift with identifier: "/lift", request: none, response: none
+    action go with
+      identifier: "/go",
+      request: none,
+      response: Followed,
+      feedback: none links following
+
+    behaviour {
+      variable why: Failure
+      variable missed: integer(0..9)
+
+      initial marked state idle {
+        on request to go goto going
+        on request to lift goto lifting
+      }
+
+      state going {
+        on cancel from go goto stopping
+        on response from go if value.missed_waypoints[0] = 0 goto arrived
+        on response from go goto idle
+        on error from go do why := error, missed := value.missed_waypoints[1] goto failed
+      }
+
+      state stopping {
+        on response from go goto arrived
+        on error from go goto failed
+        on canceled from go if value.missed_waypoints[0] = 3 goto idle
+        on canceled from go goto arrived
+      }
+
+      state lifting {
+        on response from lift goto idle
+        on error from lift do why := error goto failed
+      }
+
+      marked state arrived {}
+
+      marked state failed {}
+    }
+  }
+
+  component Button {
+    outgoing message stop with identifier: "/stop", type: none
+
+    behaviour {
+      initial marked state released { on response from stop goto pressed }
+      marked state pressed {}
+    }
+  }
+
+  datatype object Followed {
+    missed_waypoints: array(integer)
+  }
+
+  requirement go needs Button.released and Base.missed < 9
+  requirement lift needs Button.pressed and Base.why != rejected
+}
+"""
+FAILS = """\
+scenario "aborted with a result"
+  error from go because aborted with {"missed_waypoints": [0, 4]}
+  expect Base.failed and Base.why = aborted and Base.missed = 4
+
+scenario "aborted"
+  error from go
+  expect Base.failed and Base.why = aborted and Base.missed = 0
+
+scenario "a result that can't be read"
+  error from go because unreadable
+  expect Base.failed and Base.why = unreadable
+
+scenario "a refused cancel, then a call without an answer"
+  stop
+  refuse cancel of go
+  expect Base.stopping
+  wait 1500 ms
+  canceled from go with {"missed_waypoints": [3]}
+  expect lift sent
+  error from lift because timeout
+  expect Base.failed and Base.why = timeout
+
+scenario "a call that fails"
+  stop
+  canceled from go with {"missed_waypoints": [3]}
+  error from lift
+  expect Base.failed and Base.why = failed
+
+scenario "lost"
+  error from go because lost
+  expect Base.failed and Base.why = lost
+"""
+
+
+@OVER_ROS
+def test_reasons_of_errors(runner: Runner, tmp_path: Path) -> None:
+    """Where no test server can bring about a reason, that is told at the line. In ROS 2 no call fails at once."""
+    model = tmp_path / "carrier.rscd"
+    model.write_text(CARRIER, encoding="utf-8")
+    status, said = played(runner, runner.robosc, tmp_path, FAILS, model=model)
+    number = FAILS.splitlines().index("  error from go because lost") + 1
+    fault = "error: this can't be played over ROS: no test server lets"
+    assert status == 1, said
+    assert f"own.scenarios:{number}:3: {fault} /go fail because lost" in said
+    failed = FAILS.splitlines().index("  error from lift") + 1
+    assert (f"own.scenarios:{failed}:3: {fault} /lift fail because failed" in said) == (runner.ros.version == 2), said
+    assert f"6 scenarios, {runner.ros.version} failed" in said
+
+
 @OVER_ROS
 def test_a_node_that_does_something_else_is_told_at_the_line(runner: Runner, tmp_path: Path) -> None:
     """It has forgotten its stop button."""

@@ -54,6 +54,28 @@ class Bench:
         self.event_loop.run_pending()
 
 
+def test_a_call_that_is_failed_ends_once() -> None:
+    bench = Bench(ServiceClient)
+    bench.do(lambda: bench.client.fail(Failure.UNAVAILABLE, "no call"))
+    bench.do(lambda: bench.client.call("request"))
+    bench.do(lambda: bench.client.fail(Failure.UNAVAILABLE, "no server"))
+    bench.do(lambda: bench.client.fail(Failure.FAILED, "again"))
+    bench.port.calls[-1].answered("late")
+    bench.wait(10)
+    assert bench.told == [("error", Failure.UNAVAILABLE, "no server", None)]
+
+
+def test_a_goal_that_is_failed_ends_once() -> None:
+    bench = Bench(ActionClient)
+    bench.do(lambda: bench.client.fail(Failure.TIMEOUT, "no goal"))
+    bench.do(lambda: bench.client.start("goal"))
+    bench.do(lambda: bench.client.fail(Failure.TIMEOUT, "accepted too late", "result"))
+    bench.do(lambda: bench.client.fail(Failure.UNAVAILABLE, "again"))
+    assert not bench.client.busy
+    bench.wait(40)
+    assert bench.told == [("error", Failure.TIMEOUT, "accepted too late", "result")]
+
+
 def test_an_answer_in_time_is_the_response_and_a_second_one_nothing() -> None:
     bench = Bench(ServiceClient)
     bench.do(lambda: bench.client.call("request"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 from contextlib import suppress
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -12,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robosc.engine import Blocked
-from robosc.simulation import DataError, Simulation
+from robosc.simulation import DataError, Simulation, read_script
 from robosc.simulation.script import Step
 from robosc.simulation.simulation import whole_state
 from robosc.view.moments import ActionError
@@ -111,6 +112,33 @@ def test_a_script_is_played_with_what_it_asks_in_vain() -> None:
     shown.do({"action": "perform", "event": EVENTS[1], "inputs": {}})
     assert [moment.get("event") for moment in shown.moments] == [None, EVENTS[1], EVENTS[0], EVENTS[1]]
     assert_true(shown, record()[2])
+
+
+def test_reasons_of_errors_and_refused_cancels() -> None:
+    text = (Path(__file__).parents[1] / "simulation" / "crane.rscd").read_text()
+    lines = ["request to go", "refuse cancel of go", 'error from go because lost with {"rest": 2.5}']
+    description, _, simulation = record(text)
+    steps, findings = read_script("", "\n".join(lines), simulation.engine.events, model=simulation.engine.model)
+    assert findings == []
+    _, shown, _ = record(text, steps)
+    assert [(moment.get("words"), moment.get("by")) for moment in shown.moments[1:]] == [
+        ("request to Base.go", None),
+        ("refusal to cancel Base.go", "plant"),
+        ("error from Base.go", None),
+    ]
+    assert shown.moments[2]["reason"] == "its goal is not being canceled"
+    assert shown.moments[3]["state"] == {"action_go": "error", "component_Base": "unknown", "Base.rest": 2.5}
+    # By hand there are the reasons that the service can have, and what is shown of one is its reason.
+    inputs = {event: about["inputs"] for event, about in description["events"].items()}  # type: ignore[attr-defined]
+    assert inputs["service_lift.u_error"] == [
+        {"name": "i_error_reason", "label": "error", "values": ["unavailable", "timeout", "unreadable", "failed"]}
+    ]
+    shown.do({"action": "restart"})
+    shown.do({"action": "perform", "event": "message_stop.u_response", "inputs": {"i_response": True}})
+    shown.do({"action": "perform", "event": "service_lift.c_trigger", "inputs": {}})
+    shown.do({"action": "perform", "event": "service_lift.u_error", "inputs": {"i_error_reason": "timeout"}})
+    assert shown.moments[-1]["data"] == {"reason": "timeout"}
+    assert shown.moments[-1]["state"]["component_Base"] == "unknown"
 
 
 def test_transitions_that_are_taken_are_those_of_the_text() -> None:

@@ -142,13 +142,17 @@ class Publisher:
 
 @dataclass(frozen=True)
 class Client:
-    """A service that the node calls, or an action that it starts: only actions have feedback and can be canceled."""
+    """A service that the node calls, or an action that it starts: only actions have feedback and can be canceled.
+
+    `unread`: what the log has of an answer that can't be read, and so is an error.
+    """
 
     word: str
     name: str
     interface: rosgraph.Interface
     request: Message
     response: EventHandler
+    unread: reports.EventData | None
     error: EventHandler
     feedback: EventHandler | None
     canceled: EventHandler | None
@@ -406,15 +410,19 @@ class Node:
         )
 
     def _reception(self, reception: rosgraph.Reception) -> EventHandler:
-        values = [assignment.value for assignment in reception.inputs]
-        for reaction in self._reactions.get(reception.event, ()):
-            values += [assignment.value for assignment in reaction.assignments]
+        values = self._values(reception)
         inputs = [self._input(assignment) for assignment in reception.inputs]
         handler = self._handler(reception.event, inputs, reports.received(values, self._names))
         # An answer that can't be read is an error, too: the reason tells whose data the log has.
         is_error = reception.event.kind == sct.EventKind.error
         reads = is_error and (reads_reason(values) or handler.data is not None)
         return replace(handler, reads_reason=reads)
+
+    def _values(self, reception: rosgraph.Reception) -> list[ex.Expression]:
+        """All values that are computed of data that comes in."""
+        reactions = self._reactions.get(reception.event, ())
+        assigned = (assignment.value for reaction in reactions for assignment in reaction.assignments)
+        return [*(given.value for given in reception.inputs), *assigned]
 
     def _input(self, assignment: rosgraph.InputAssignment) -> Assignment:
         kind = assignment.input.type
@@ -518,6 +526,7 @@ class Node:
             client.interface,
             request,
             self._reception(client.response),
+            reports.received([*self._values(client.response), *self._values(client.error)], self._names),
             self._reception(client.error),
             self._reception(action.feedback) if action else None,
             self._reception(action.canceled) if action else None,

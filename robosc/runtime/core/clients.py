@@ -96,6 +96,11 @@ class ServiceClient:
             self._deadline.cancel()
             self._deadline = None
 
+    def fail(self, reason: Failure, why: str) -> None:
+        """Fail the call that is under way, for a reason that no answer of a server brings about."""
+        number = self._number
+        self._event_loop.post(lambda: self._fail(number, reason, why))
+
     def _succeed(self, number: int, response: Message) -> None:
         if number == self._number and self.waiting:
             self.give_up()
@@ -195,6 +200,11 @@ class ActionClient:
         elif self._phase is _Phase.ACCEPTED:
             self._requests.ask()
             self._requests.extend()
+
+    def fail(self, reason: Failure, why: str, result: Message = None) -> None:
+        """Fail the goal at hand, for a reason that no answer of a server brings about."""
+        number = self._number
+        self._event_loop.post(lambda: self._if_current(number, lambda: self._fail(reason, why, result), over=True))
 
     def leave(self) -> None:
         """Abandons the goal as the node ends, and reports what becomes of it."""

@@ -99,13 +99,14 @@ class Controller(EventHandler):
         self._resets: dict[sct.Event, _Failure] = {}
         self._cancels: dict[sct.Event, ActionClient] = {}
         self._starters: dict[Client, ActionClient] = {}
+        self._callers: dict[Client, ServiceClient] = {}
         self._publishers = {sending: publisher for publisher in graph.publishers for sending in publisher.sendings}
         for publisher in graph.publishers:
             for sending in publisher.sendings:
                 self._add_sender(publisher, publisher.topic, sending, Section.MESSAGE, partial(port.publish, publisher))
         for service in graph.serviceClients:
             answers, timeout = Answers(*self._ends(service)), settings.seconds("service_timeout_ms")
-            caller = ServiceClient(port, event_loop, service, timeout, answers)
+            caller = self._callers[service] = ServiceClient(port, event_loop, service, timeout, answers)
             self._add_sender(service, service.identifier, service.request, Section.REQUEST, caller.call)
         for action in graph.actionClients:
             answers = Answers(*self._ends(action), partial(self.feed_back, action), partial(self.end_canceled, action))

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from robosc.configuration.parameters import Value
     from robosc.engine import Settings as LoopSettings
+    from robosc.metamodel import expression as ex
     from robosc.runtime.core.event_loop import EventLoop
     from robosc.runtime.core.json_text import Json
     from robosc.runtime.core.port import Client, Message, Port
@@ -70,6 +71,12 @@ class EventHandler:
         #: The message that the event at hand came with, and the event that would have been made of it.
         self._received: tuple[sct.Event, Message] | None = None
         self._logged = {reception.event: self._read(reception) for reception in receptions(graph)}
+        clients: list[Client] = [*graph.serviceClients, *graph.actionClients]
+        #: What the log has of an answer that can't be read, and so is an error.
+        self._unread = {
+            client.response.event: ReceivedData([*self._values(client.response), *self._values(client.error)])
+            for client in clients
+        }
 
     def _of_role(self, *roles: engine.Role) -> set[sct.Event]:
         """The events for which the control loop does one of these."""
@@ -77,8 +84,10 @@ class EventHandler:
         return {self._events[event.name] for event in executed.events if event.role in roles}
 
     def _read(self, reception: rosgraph.Reception) -> ReceivedData:
-        values = [given.value for given in reception.inputs] + self._data.values_read(reception.event)
-        return ReceivedData(values, has_reason=reception.event.kind == sct.EventKind.error)
+        return ReceivedData(self._values(reception), has_reason=reception.event.kind == sct.EventKind.error)
+
+    def _values(self, reception: rosgraph.Reception) -> list[ex.Expression]:
+        return [given.value for given in reception.inputs] + self._data.values_read(reception.event)
 
     # The node's life
 
@@ -276,8 +285,10 @@ class EventHandler:
         if self._received is None:
             return None
         source, message = self._received
-        data = self._logged[source].read(self._data, message) if source in self._logged else None
-        return data if source is event else {**(data or {"value": {}}), **self._logged[event].reason(self._data)}
+        if source is not event:
+            read = self._unread[source].read(self._data, message) or {"value": {}}
+            return {**read, **self._logged[event].reason(self._data)}
+        return self._logged[event].read(self._data, message) if event in self._logged else None
 
     # What `/diagnostics` tells
 

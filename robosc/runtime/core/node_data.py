@@ -20,7 +20,7 @@ from robosc.semantics.operators import UnreadableError
 if TYPE_CHECKING:
     from robosc.engine import Engine
     from robosc.runtime.core.json_text import Json
-    from robosc.runtime.core.port import ControllerPort, Failure, Message
+    from robosc.runtime.core.port import ControllerPort, Message
 
 #: What whole numbers of a node are kept in.
 LEAST, MOST = INTEGER_RANGES["int64"]
@@ -82,7 +82,7 @@ class NodeData:
     def __init__(self, graph: rosgraph.RosGraph, engine: Engine) -> None:
         self._engine = engine
         #: Why the service or action of the error at hand has failed.
-        self.reason: Failure | None = None
+        self.reason: str | None = None
         self._programs: dict[ex.Expression, Program[Value]] = {}
         self.variables: dict[rosgraph.NodeVariable, Value] = {}
         for variable in (*graph.variables, *graph.parameters):

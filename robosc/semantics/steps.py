@@ -1,0 +1,81 @@
+"""Steps in words: what comes from the robot in a line of a script or a scenario."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from robosc.files.json_reading import JsonError, json_value
+
+_KINDS = ("request", "response", "error", "feedback", "canceled", "cancel")
+#: The first words of a step that is not a bare name.
+FIRST_WORDS = (*_KINDS, "refuse")
+_KIND = rf"(?P<kind>{'|'.join(_KINDS)})"
+_NAME = r"(?P<name>\^?[A-Za-z_]\w*(?:\.\^?\w+)*)"
+#: An event in words, such as `response from scan`; a bare name means what it is there for.
+EVENT = rf"(?:{_KIND}\s+(?:to|from)\s+)?{_NAME}"
+_STEP = re.compile(EVENT + r"(?:\s+because\s+(?P<reason>\w+))?(?:\s+with\s+(?P<message>message\s+)?(?P<data>.+))?")
+_REFUSAL = re.compile(rf"refuse\s+cancel\s+of\s+{_NAME}")
+_LITERAL = re.compile(r"(?!true$|false$|null$)[A-Za-z_]\w*")
+
+
+class StepError(ValueError):
+    """A step that can't be read: the message says why. `position`: where in its text, in code points from 0."""
+
+    def __init__(self, message: str, position: int, hint: str | None) -> None:
+        super().__init__(message)
+        self.position = position
+        self.hint = hint
+
+
+@dataclass(frozen=True)
+class StepInWords:
+    """What comes from the robot. `event` is as `explain` takes it, such as `scan`, `dock.error` or `dock.canceled`.
+
+    `reason`: of an error, None where the text names none. `data` is that of the event as the event log has it, None
+    where the text has none; `is_message`: all fields of what ROS brings. `is_refusal`: it is no event, but the answer
+    of a server that does not cancel the goal whose end `event` would be.
+    """
+
+    event: str
+    is_bare: bool = False
+    reason: str | None = None
+    data: Any = None
+    is_message: bool = False
+    is_refusal: bool = False
+
+
+def step_in_words(text: str) -> StepInWords | None:
+    """The step of a text without blanks around it; None where it is none. Raises StepError for its data."""
+    refusal = _REFUSAL.fullmatch(text)
+    if refusal is not None:
+        return StepInWords(f"{_plain(refusal)}.canceled", is_refusal=True)
+    step = _STEP.fullmatch(text)
+    if step is None:
+        return None
+    data = data_in_words(text, step.start("data")) if step["data"] else None
+    if step["message"] and not isinstance(data, dict):
+        raise StepError("a message is an object with fields", 0, 'write `with message {"ranges": [1.0]}`')
+    return StepInWords(event_in_words(step), not step["kind"], step["reason"], data, bool(step["message"]))
+
+
+def event_in_words(found: re.Match[str]) -> str:
+    """The event that a match of EVENT names, as `explain` takes it."""
+    return f"{_plain(found)}.{found['kind']}" if found["kind"] else _plain(found)
+
+
+def data_in_words(text: str, position: int) -> Any:
+    """Data at the end of a text: JSON, or the name of a literal as it stands. Raises StepError."""
+    data = text[position:]
+    if _LITERAL.fullmatch(data):
+        return data
+    try:
+        return json_value(data)
+    except JsonError as error:
+        hint = error.hint or "data is JSON, or the name of a literal"
+        raise StepError(str(error), position + error.position, hint) from None
+
+
+def _plain(found: re.Match[str]) -> str:
+    return found["name"].replace("^", "")
