@@ -19,18 +19,21 @@ from robosc.language.tokens import Kind, Tokens, too_complex
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import literals
 from robosc.semantics.communication import RUNNING_WORD, event_names, sent_type
+from robosc.semantics.failures import FAILURE, FAILURES, reasons
 from robosc.semantics.naming import written
 from robosc.semantics.operators import FUNCTIONS
 from robosc.semantics.typing import ObjectType, access_types, declared_type, provided_data_type, value_type
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from robosc.language.outline import Block
     from robosc.language.reading import Reading
     from robosc.language.scopes import File
     from robosc.ros_types import RosTypes
 
+#: Declarations of what may hold a reason of an error.
+_KEEPS = (rsc.Variable, rsc.Constant, rsc.FormalParameter, rsc.Function)
 _NAME = "robosc_completes_here"
 #: The word before a place, from its end.
 _WORD = re.compile(r"\w*\^?")
@@ -258,6 +261,8 @@ def _definitions(linker: Linker, file: File, element: Any, feature: str) -> Iter
     match element:
         case rsc.ComplexDataTypeReference():
             yield from _usable(linker, rsc.ComplexDataType)
+            if isinstance(element.eContainer(), _KEEPS):
+                yield FAILURE, None
         case rsc.CommunicationType():
             yield from _usable(linker, rsc.Interface)
         case rsc.Call():
@@ -332,7 +337,10 @@ def _accessible(
         elif first.text in (automata := linker.automata(access)):
             yield from by_name(automata[first.text].states).items()
         return
-    found: dict[str, Any] = {**linker.elements(access), **linker.parameters(access)}
+    found: dict[str, Any] = {}
+    if linker.expects_failure(access):
+        found |= dict.fromkeys(_reasons(access))
+    found |= {**linker.elements(access), **linker.parameters(access)}
     user = access.eContainer()
     if isinstance(user, rsc.Argument):
         found |= _parameters(user)
@@ -345,6 +353,16 @@ def _accessible(
         for name, element in _usable(linker, kind):
             found.setdefault(name, element)
     yield from found.items()
+
+
+def _reasons(access: rsc.Access) -> Sequence[str]:
+    """The reasons that a text may name where it expects one: beside `error` those of its service or action."""
+    around: Any = access
+    while around is not None and not isinstance(around, rsc.ResultTransition | rsc.RequirementTransition):
+        around = around.eContainer()
+    named = around.event if isinstance(around, rsc.RequirementTransition) else around
+    reference = named.communicationType if named is not None else None
+    return reasons(reference.communicationType if reference else None) or sorted(FAILURES)
 
 
 def _running(linker: Linker, component: rsc.Component) -> Iterator[tuple[str, Any]]:

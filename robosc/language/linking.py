@@ -164,6 +164,10 @@ class Linker:
         is_bare = self._file.predefined is not None and self._is_bare(element)
         return is_bare and self._file.references[element]["item"].text in FAILURES
 
+    def expects_failure(self, element: ex.Expression) -> bool:
+        """Whether the text expects a reason of an error where an expression stands."""
+        return self._file.predefined is not None and expects_failure(element, self._is_bare)
+
     def _is_bare(self, element: ex.Located) -> bool:
         if not isinstance(element, rsc.Access) or element.value or element.segments:
             return False

@@ -192,10 +192,12 @@ class File:
 
     @cached_property
     def _files(self) -> list[File]:
-        """The file itself and those of all that it imports, directly or through others."""
+        """The file itself and those of all that it imports, directly or through others, and the predefined one."""
         found, pending = {self: None}, [self]
         while pending:
-            imported = [file for file in pending.pop().libraries.values() if file is not None and file not in found]
+            current = pending.pop()
+            libraries = [*current.libraries.values(), current.predefined]
+            imported = [file for file in libraries if file is not None and file not in found]
             found |= dict.fromkeys(imported)
             pending += imported
         return list(found)

@@ -177,3 +177,31 @@ def test_signatures(project: Project, text: str, label: str | None, active: int 
     snapshot = project.snapshot()
     found = signature_help(snapshot, snapshot.analysis(path), asked)
     assert (found and found.signatures[0].label, found and found.active_parameter) == (label, active)
+
+
+FAILING = """robot C {{
+  component A {{
+    service home with request: none, response: none
+    behaviour {{
+      variable why: {type}
+      initial marked state s {{ on request to home on error from home if {guard} }}
+    }}
+  }}
+  requirement home needs {condition}
+}}"""
+
+
+def failing(type: str = "Failure", guard: str = "true", condition: str = "true") -> str:  # noqa: A002
+    return FAILING.format(type=type, guard=guard, condition=condition)
+
+
+def test_reasons_are_proposed_where_the_text_expects_one(project: Project) -> None:
+    """Those of the service's kind; elsewhere none."""
+    assert "Failure" in complete(project, failing(type="|"))
+    for guard in ("error = |", "why != |", "lost = error and error = |"):
+        found = complete(project, failing(guard=guard))
+        assert {"unavailable", "timeout", "unreadable", "failed"} <= set(found)
+        assert not {"lost", "rejected"} & set(found)
+    assert {"lost", "failed"} <= set(complete(project, failing(guard="error = Failure.|")))
+    assert "error" in complete(project, failing(guard="|"))
+    assert not {"timeout", "lost"} & set(complete(project, failing(condition="|")))
