@@ -39,8 +39,9 @@ class ActionClient:
 
     def is_served(self) -> bool:
         """Whether a server has connected to all topics."""
-        # actionlib looks at least once, however short the time.
-        return bool(self._client.wait_for_server(rospy.Duration(-1)))
+        # actionlib looks at least once, until a time that is over; no time is before 0, where a simulation begins.
+        has_begun = rospy.get_rostime() > rospy.Time()
+        return has_begun and bool(self._client.wait_for_server(rospy.Duration(0, -1)))
 
     def send(self, goal: Message, handlers: GoalHandlers) -> Goal:
         """Sends a goal; the handlers are called from rospy's threads."""
