@@ -252,3 +252,12 @@ def test_without_a_graph_there_are_reasons(crane: Any) -> None:
     data = LoopSimulation(crane.model).data
     assert data.inputs("service_lift.u_error", {}) == {"i_error_reason": "failed"}
     assert data.inputs("service_lift.u_error", {"reason": "timeout"}) == {"i_error_reason": "timeout"}
+
+
+def test_a_saved_model_has_the_reasons(tmp_path: Path) -> None:
+    done = CliRunner().invoke(main, ["transform", str(MODEL), "--to", "xmi", "-o", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    lines = f"{STARTED}\nerror from go because rejected\n"
+    command = ["simulate", str(tmp_path / "Crane.sct.xmi"), "--script", "-"]
+    answer = json.loads(CliRunner().invoke(main, command, input=lines).stdout.splitlines()[-1])
+    assert answer["state"]["Base.why"] == "rejected"
