@@ -221,6 +221,9 @@ class Player(Drive):
     def _come_in(self, line: Incoming) -> None:
         event = event_named(self._graph.model, line.event)
         if not self._controller.engine.enabled(event_name(event)):
+            if event.kind == sct.EventKind.canceled and self._clients[event] in self._robot.goals:
+                hint = f"write `error from {self._called(event)} because canceled`"
+                raise NamingError("the controller has not canceled this goal", hint)
             raise NamingError(f"the {words(event)} can't come now: nothing that it ends is under way", "")
         if event.kind == sct.EventKind.error:
             self._fail(event, line)
