@@ -22,7 +22,8 @@ def sct(tmp_path):
         path = tmp_path / "robot.rscd"
         path.write_text(FAMILIES[name].text(number))
         robot = robosc.load(path, (), [INTERFACES])
-        assert robosc.check(robot, [INTERFACES]) == []
+        # Their robots are for counting: each error is an end.
+        assert {finding.rule for finding in robosc.check(robot, [INTERFACES])} <= {"unknown-end"}
         return robosc.to_sct(robot)
 
     return transformed

@@ -48,6 +48,28 @@ namespace porter_controller {
 
 using namespace robosc;  // NOLINT: what all generated nodes share, see include/robosc
 
+inline std::uint8_t reason_of(Failure reason) {
+  switch (reason) {
+    case Failure::rejected:
+      return porter_Failure_rejected;
+    case Failure::lost:
+      return porter_Failure_lost;
+    case Failure::aborted:
+      return porter_Failure_aborted;
+    case Failure::canceled:
+      return porter_Failure_canceled;
+    case Failure::unavailable:
+      return porter_Failure_unavailable;
+    case Failure::timeout:
+      return porter_Failure_timeout;
+    case Failure::unreadable:
+      return porter_Failure_unreadable;
+    case Failure::failed:
+      break;
+  }
+  return porter_Failure_failed;
+}
+
 // Distance: the first rule that holds; one that reads past the end of an array does not.
 template <typename Data>
 std::uint8_t to_Distance([[maybe_unused]] const Data& value) {
@@ -215,10 +237,12 @@ class Controller : public ControllerNode {
   }
 
   // The reset that follows waits: see `before`.
-  void on_travel_error(Failure, const std::string& why, const nav2_msgs::NavigateToPoseResult&) {
+  void on_travel_error(Failure reason, const std::string& why, const nav2_msgs::NavigateToPoseResult&) {
     if (std::exchange(travel_fault_, why) != why) ROS_WARN("%s: %s", "/travel", why.c_str());
     travel_retry_->start();
     porter_begin(&supervisor_);
+    supervisor_.inputs.action_travel_i_error_reason = reason_of(reason);
+    if (log_.active()) log_.note_reason(failure_name(reason));
     porter_perform(&supervisor_, porter_action_travel_u_error);
     porter_end(&supervisor_);
   }
@@ -450,8 +474,8 @@ class Controller : public ControllerNode {
   // Why the supervisor does not allow it.
   BlockReasons against_crawl() const {
     BlockReasons reasons;
-    if (supervisor_.state.component_Base_left == porter_Distance_distant || supervisor_.state.component_Base ==
-        porter_component_Base_travelling) {
+    if (supervisor_.state.component_Base_left == porter_Distance_distant || supervisor_.state.component_Base !=
+        porter_component_Base_parked) {
       reasons.add_requirement("requirement crawl needs Base.left = near and Base.parked");
     }
     return reasons;
@@ -460,8 +484,8 @@ class Controller : public ControllerNode {
   // Why the supervisor does not allow it.
   BlockReasons against_halt() const {
     BlockReasons reasons;
-    if (supervisor_.state.component_Base_left == porter_Distance_near || supervisor_.state.component_Base ==
-        porter_component_Base_travelling) {
+    if (supervisor_.state.component_Base_left == porter_Distance_near || supervisor_.state.component_Base !=
+        porter_component_Base_parked) {
       reasons.add_requirement("requirement halt needs Base.left != near and Base.parked");
     }
     return reasons;
