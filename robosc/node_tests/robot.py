@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.node_tests.messages import Definition, Field, Path, fields_sent, message
+from robosc.node_tests.messages import Definition, Field, Path, fields_sent, message, new_object
 from robosc.ros_types import Section
 
 if TYPE_CHECKING:
@@ -67,6 +67,10 @@ class Robot:
     def create(self, interface: rosgraph.Interface, section: Section) -> Message:
         """Data with the fields that the model sets."""
         return message(self._fields[interface, section], {}) if self._fields[interface, section] else None
+
+    def unset(self, interface: rosgraph.Interface, section: Section, path: Sequence[str]) -> Message:
+        """An object before anything is stored in it, of what is known of its type."""
+        return new_object(self._distribution, interface, section, path)
 
     def wire_types(self, owner: Message) -> Mapping[str, str]:
         """The types of the fields that the model sets."""

@@ -70,7 +70,9 @@ def test_the_standard_library_drives_with_and_without_a_stamp(
     found = reading(tmp_path, robot)
     assert [*found.findings, *check(found.base, found.findings)] == []
     graph = robosc_to_rosgraph.transform(robosc_to_sct.transform(found.base)[1])
-    sent = [(publisher.topic, f"{publisher.interface.package}/{publisher.interface.type}") for publisher in graph.publishers]
+    sent = [
+        (publisher.topic, f"{publisher.interface.package}/{publisher.interface.type}") for publisher in graph.publishers
+    ]
     assert sent == [("/cmd_vel", ros_type)]
 
 

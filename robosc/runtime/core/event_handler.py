@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.configuration.parameters import model_parameters
 from robosc.engine import ControlLoop, Hooks
-from robosc.metamodel import engine
+from robosc.metamodel import engine, rosgraph
 from robosc.runtime.core.blocking import Blocking
 from robosc.runtime.core.component_status import Own, StatusReporter
 from robosc.runtime.core.event_log import EventLog, ReceivedData
@@ -15,7 +15,7 @@ from robosc.runtime.core.node_data import NodeData
 from robosc.runtime.core.reports import StateReporter, Throttle
 from robosc.runtime.core.times import Times
 from robosc.semantics.durations import set_milliseconds
-from robosc.semantics.messages import receptions
+from robosc.semantics.messages import received, receptions
 from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name
 
@@ -24,12 +24,24 @@ if TYPE_CHECKING:
 
     from robosc.configuration.parameters import Value
     from robosc.engine import Settings as LoopSettings
-    from robosc.metamodel import rosgraph, sct
+    from robosc.metamodel import sct
     from robosc.runtime.core.event_loop import EventLoop
     from robosc.runtime.core.json_text import Json
     from robosc.runtime.core.port import Client, Failure, Message, Port
     from robosc.runtime.core.settings import Settings
     from robosc.semantics.component_parts import Parts
+
+
+def _unset_objects(graph: rosgraph.RosGraph, port: Port) -> dict[rosgraph.NodeVariable, Message]:
+    """The objects that a node keeps, before anything is stored in them: each is new data of its ROS type."""
+    sources = {
+        reception: (interface, section) for interface, section, several in received(graph) for reception in several
+    }
+    return {
+        variable: port.unset(*sources[variable.reception], variable.path)
+        for variable in graph.variables
+        if isinstance(variable.type, rosgraph.ObjectType) and variable.reception is not None
+    }
 
 
 class EventHandler:
@@ -54,6 +66,7 @@ class EventHandler:
         hooks = Hooks(self._before, self._after, self._report_livelock)
         self._control = ControlLoop(graph.model, loop, hooks)
         self._data = NodeData(graph, self._control.engine)
+        self._data.variables.update(_unset_objects(graph, port))
         self._parameters = {known.name: parameter for parameter, known in model_parameters(graph).items()}
         self.set_parameters(settings.parameters)
         self._times = Times(self._control.timers, event_loop, self._expire)

@@ -54,6 +54,11 @@ _BLANK: dict[type[ex.Type], Any] = {
 }
 
 
+def element_type(kind: str) -> str:
+    """The type of an array's elements, or a type that is none, as a node's `wire_types` have it."""
+    return _ELEMENT.sub(r"\1", kind)
+
+
 class PastEndError(UnreadableError):
     """An element that an array does not have."""
 
@@ -291,7 +296,7 @@ def _is_finite(port: ControllerPort, data: Any) -> bool:
     if isinstance(data, Sequence):
         return all(_is_finite(port, element) for element in data)
     for name, kind in port.wire_types(data).items():
-        value, element = getattr(data, name), _ELEMENT.sub(r"\1", kind)
+        value, element = getattr(data, name), element_type(kind)
         if element in _FLOATS and not all(map(math.isfinite, [value] if kind == element else value)):
             return False
         if "/" in element and not _is_finite(port, value):

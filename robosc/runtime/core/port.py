@@ -132,6 +132,9 @@ class Port(Protocol):
     def create(self, interface: rosgraph.Interface, section: Section) -> Message:
         """Data with every field at its ROS default; a ROS 1 quaternion is one of length 1."""
 
+    def unset(self, interface: rosgraph.Interface, section: Section, path: Sequence[str]) -> Message:
+        """The object at a path in such data, as `create` makes it; a step `0` is an element of an array."""
+
     def is_served(self, client: Client) -> bool:
         """Whether there is a server."""
 

@@ -340,8 +340,7 @@ class Ros2Node(Node):
 
     def create(self, interface: rosgraph.Interface, section: Section) -> Message:
         kind = self._types[interface]
-        part = {Section.REQUEST: "Request", Section.GOAL: "Goal"}.get(section)
-        return (getattr(kind, part) if part else kind)()
+        return (kind if section is Section.MESSAGE else getattr(kind, section.name.capitalize()))()
 
     def wire_types(self, message: Message) -> Mapping[str, str]:
         types: Mapping[str, str] = message.get_fields_and_field_types()
