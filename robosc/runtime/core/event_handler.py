@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from robosc.configuration.parameters import model_parameters
 from robosc.engine import ControlLoop, Hooks
@@ -44,6 +44,24 @@ def _unset_objects(graph: rosgraph.RosGraph, port: Port) -> dict[rosgraph.NodeVa
     }
 
 
+class Goals(Protocol):
+    """The goals of one action, one at a time."""
+
+    def cancel(self) -> object:
+        """Cancel the goal at hand."""
+
+    @property
+    def trouble(self) -> str:
+        """The reason why the goal has not ended though it should have; empty where nothing is wrong."""
+
+    @property
+    def waits(self) -> bool:
+        """Whether the end of the node waits for the acceptance of the goal, the answer to its cancel, or its end."""
+
+    def leave(self) -> None:
+        """Report a goal that was to be canceled and has not ended when the node ends."""
+
+
 class EventHandler:
     """Lets the events of one graph happen, with their data; one whose data can't be read does not.
 
@@ -79,6 +97,8 @@ class EventHandler:
         self._warn = Throttle(port.warn, event_loop.clock)
         self._events = {event_name(event): event for plant in graph.model.plants for event in plant.events}
         self._incoming = self._of_role(engine.Role.incoming)
+        #: The goals of the actions, by the event that cancels them.
+        self.goals: dict[sct.Event, Goals] = {}
         #: The message that the event at hand came with, and the event that would have been made of it.
         self._received: tuple[sct.Event, Message] | None = None
         self._logged = {reception.event: self._read(reception) for reception in receptions(graph)}
@@ -119,11 +139,13 @@ class EventHandler:
 
     @property
     def busy(self) -> bool:
-        """Whether something is under way that the node's end should wait for."""
-        return False
+        """Whether the node's end waits for the fate of a goal."""
+        return any(goals.waits for goals in self.goals.values())
 
     def close(self) -> None:
-        """Closes the log; nothing may happen any more."""
+        """Abandon all goals and close the log; nothing may happen any more."""
+        for goals in self.goals.values():
+            goals.leave()
         self._log.close()
 
     # What comes in
