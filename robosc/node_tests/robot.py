@@ -62,7 +62,7 @@ class Robot:
     # What the controller asks
 
     def hear(self) -> None:
-        """What the robot sends is handled at once."""
+        """Do nothing: the robot's messages are handled at once."""
 
     def create(self, interface: rosgraph.Interface, section: Section) -> Message:
         """Data with the fields that the model sets."""
@@ -78,7 +78,7 @@ class Robot:
         return types
 
     def stamp(self, message: Message, frame: str) -> None:
-        """Nobody looks at the header."""
+        """Do nothing: no test reads the header."""
 
     def type_name(self, interface: rosgraph.Interface) -> str:
         """A type's name."""
@@ -105,18 +105,18 @@ class Robot:
         return self.goals[client]
 
     def publish_report(self, name: str, text: str) -> None:
-        """Nobody listens to reports."""
+        """Do nothing: no test reads reports."""
 
     def report_listeners(self, name: str) -> int:
-        """Nobody listens to reports."""
+        """Do nothing: no test reads reports."""
         del name
         return 0
 
     def publish_statuses(self, statuses: Sequence[ComponentStatus]) -> None:
-        """Nobody listens to statuses."""
+        """Do nothing: no test reads statuses."""
 
     def status_listeners(self) -> int:
-        """Nobody listens to statuses."""
+        """Do nothing: no test reads statuses."""
         return 0
 
     def other_servers(self, client: rosgraph.ServiceClient | rosgraph.ActionClient) -> dict[str, str]:  # noqa: ARG002  # a trace has no other nodes
@@ -124,10 +124,10 @@ class Robot:
         return {}
 
     def endpoints(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
-        """Nobody else is there."""
+        """Return nothing: there is no other node."""
         return {}
 
     def info(self, text: str) -> None:
-        """Nobody reads it."""
+        """Do nothing: no test reads the log."""
 
     warn = error = info

@@ -114,7 +114,7 @@ class Controller(EventHandler):
             self._starters[action] = self.goals[action.cancel] = starter
 
     def _ends(self, client: Client) -> tuple[Callable[[Message], None], Callable[[Failure, str, Message], None]]:
-        """What is done with a response of a service or action, and with a failure."""
+        """The handlers of a response of a service or action, and of a failure."""
         self._failures[client] = self._resets[client.reset] = _Failure()
         return partial(self.respond, client), partial(self.fail, client)
 

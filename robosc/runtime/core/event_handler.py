@@ -1,4 +1,4 @@
-"""What controller and layer have in common: what comes in becomes events of the supervisor, which are logged."""
+"""The common part of controller and layer: data that come in become events, which are logged."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ class EventHandler:
 
     @contextmanager
     def _batch(self) -> Iterator[None]:
-        """What happens inside happens with nothing in between; what it makes possible follows."""
+        """A batch: its events happen with nothing in between; events that become possible follow."""
         with self._times:
             yield
             self._control.settle()
@@ -310,7 +310,7 @@ class EventHandler:
         return None
 
     def _faults(self, parts: Parts) -> list[str]:
-        """What is wrong with a component."""
+        """Return the faults of a component."""
         raise NotImplementedError
 
     def _report_livelock(self) -> None:

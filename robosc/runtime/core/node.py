@@ -1,4 +1,4 @@
-"""What the nodes of ROS 1 and ROS 2 have in common, and what keeps a node from starting."""
+"""The common part of the nodes of ROS 1 and ROS 2, and the error of a node that can't start."""
 
 from __future__ import annotations
 
@@ -255,7 +255,7 @@ class Node(ControllerPort, ABC):
     # What is the same on every ROS
 
     def hear(self) -> None:
-        """What has arrived stands in the event loop, before what is planned."""
+        """Do nothing: messages that have arrived stand in the event loop before planned work."""
 
     def stamp(self, message: Message, frame: str) -> None:
         """Gives a header the node's time and a frame."""

@@ -67,7 +67,7 @@ class PastEndError(UnreadableError):
 
 
 class Received(NamedTuple):
-    """What an event brings, from the state before it: values of its inputs, by their names, and the node's new ones."""
+    """The data of an event, computed in the state before it: its inputs by name, and the node's new values."""
 
     inputs: dict[str, Any]
     variables: dict[rosgraph.NodeVariable, Value]
@@ -116,7 +116,7 @@ class NodeData:
     def received(
         self, event: sct.Event, inputs: Sequence[rosgraph.InputAssignment] = (), data: Message = None
     ) -> Received:
-        """What the transitions that the event takes in the present state make of its data; nothing is changed yet.
+        """Return the inputs and new values that the event brings in the present state; change nothing.
 
         Raises UnreadableError where one of them can't read what it needs: then the event must not happen.
         """
@@ -144,7 +144,7 @@ class NodeData:
         return assigned
 
     def reactions(self, event: sct.Event) -> list[rosgraph.Reaction]:
-        """What may happen in the node with the event in the present state, where guards hold."""
+        """The reactions of the node to the event in the present state, where guards hold."""
         return [reaction for reaction in self._reactions.get(event, ()) if any(map(self.is_in, reaction.locations))]
 
     def values_read(self, event: sct.Event) -> list[ex.Expression]:
@@ -181,7 +181,7 @@ class NodeData:
         raise TypeError(f"a ROS graph holds no {type(reference).__name__}")
 
     def _reach(self, access: rosgraph.WireAccess, *given: Any) -> Any:
-        """What an access reads of a message, or of an element, with these indices. Raises UnreadableError."""
+        """The value that an access reads of a message or an element, with these indices. Raises UnreadableError."""
         start = given[-1] if access.variable is None else self.variables[access.variable]
         rest = iter(given if access.quantifier else (start, *given[:-1]))
         reached = next(rest)
@@ -198,7 +198,7 @@ class NodeData:
         return reached
 
     def at(self, data: Any, path: Sequence[str]) -> Any:
-        """What stands at the end of a path of names and positions. Raises UnreadableError."""
+        """The value at a path of names and positions. Raises UnreadableError."""
         for step in path:
             data = self._element(data, int(step)) if step.isdigit() else self._field(data, step)
         return data

@@ -1,4 +1,4 @@
-"""What controller and layer ask of the middleware, and what they are called with."""
+"""The interface of the middleware to controller and layer, and the callbacks for answers."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class CallHandlers:
 
 @dataclass(frozen=True)
 class GoalHandlers:
-    """What becomes of a goal, called from any thread.
+    """Callbacks for the fate of a goal, called from any thread.
 
     `over`: it has ended, and its result may be yet to come; `ended` gets the result, None where none came, and the
     server's own text.

@@ -214,7 +214,7 @@ class Ros2Node(Node):
         return made
 
     def _chosen(self, element: rosgraph.Subscription | rosgraph.Publisher) -> QualityOfService:
-        """What the configuration says of a topic."""
+        """The quality of service in the configuration of a topic."""
         return self._configuration.qos.get(element.topic.removeprefix("/")) or QualityOfService()
 
     def _received_quality(self, element: rosgraph.Subscription | rosgraph.Publisher) -> Any:
@@ -410,7 +410,7 @@ def start(name: str, arguments: Sequence[str]) -> Any:
 
 
 def executor() -> Any:
-    """What waits for ROS: by events where rclpy can, which takes a fiftieth of the time for a message."""
+    """Return the executor: by events where rclpy has one, which takes a fiftieth of the time for a message."""
     try:
         from rclpy.experimental import EventsExecutor  # noqa: PLC0415  # not in every rclpy
     except ImportError:
