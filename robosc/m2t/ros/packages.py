@@ -87,7 +87,7 @@ class Used:
 
 
 class Middleware(Protocol):
-    """What differs between ROS 1 and ROS 2; a folder of its name beside this file has its templates."""
+    """The differences between ROS 1 and ROS 2; a folder of its name beside this file has its templates."""
 
     #: 1 or 2.
     version: ClassVar[int]
@@ -97,10 +97,10 @@ class Middleware(Protocol):
     test_files: ClassVar[Mapping[str, str]]
 
     def controller(self, node: Node, configuration: Configuration, used: Used, *, tests: bool) -> Values:
-        """What only the templates of a controller read."""
+        """Values for the templates of a controller alone."""
 
     def layer(self, layer: LayerNode, configuration: Configuration, used: Used) -> Values:
-        """What only the templates of a layer read."""
+        """Values for the templates of a layer alone."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ class RosTarget:
     ros: Middleware
 
     def preconditions(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
-        """What keeps these models from becoming such a node, and settings that have no effect."""
+        """Return errors that keep these models from becoming such a node, and warnings on settings without effect."""
         return preconditions.preconditions(models, configuration, self.kind, self.ros.version)
 
     def generate(
@@ -362,7 +362,7 @@ def launch_path(configuration: Configuration) -> str:
 
 
 def _no_stop(node: Node, configuration: Configuration) -> list[tuple[str, str]]:
-    """What the node says at its start, under which condition, where nothing would stop its robot."""
+    """The warnings of a node at its start that nothing would stop its robot, each with its condition."""
     if node.shutdown or not node.publishers:
         return []
     silence = [("watchdog_stops_", NO_STOP_ON_SILENCE)] if node.subscriptions else []
