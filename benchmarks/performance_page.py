@@ -56,11 +56,12 @@ take. To show how much that is, an echo was measured in between: a small message
 STOP = """\
 ## Stop
 
-From publishing `/stop` to receiving the first zero on `/cmd_vel`: the line follower, {times} stops at random moments,
-while another program sends scans and corrections at 30 Hz. In milliseconds.
+From publishing `true` on `/emergency_stop` to receiving the first zero on `/cmd_vel`: the line follower, {times} stops
+at random moments, while another program sends scans and corrections at 30 Hz. In milliseconds.
 
 A scan that flickers between free and blocked does not delay a stop, however long the period: it uses up its own
-[count of reactions](ros.md#what-happens-when), not that of `/stop`. Tests hold the control loop to this for any robot.
+[count of reactions](ros.md#what-happens-when), not that of the button. Tests hold the control loop to this for any
+robot.
 """
 
 OBSTACLE = """\

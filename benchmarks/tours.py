@@ -23,12 +23,12 @@ from scipy.sparse import lil_matrix
 
 import robosc
 from robosc import configuration as config
+from robosc.node_tests.plan import Plan
 from robosc.node_tests.steps import WAIT
 from robosc.node_tests.tour import Tour
 from robosc.ros_types import RosTypes
 
 if TYPE_CHECKING:
-    from robosc.node_tests.plan import Plan
     from robosc.node_tests.steps import Place, Step
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
@@ -38,7 +38,44 @@ PATIENCE = 600
 MOST = 20_000
 
 
-def bound(plan: Plan, runs: int, wanted: list[int]) -> int | None:
+class TimelessPlan(Plan):
+    """A plan for which no time passes but on the wait for one that is up, and any time that runs may be up first."""
+
+    @classmethod
+    def of(cls, plan: Plan) -> TimelessPlan:
+        """The plan from the same place on."""
+        made = cls(plan.model, plan.settings, plan.stimuli, plan.longest, plan.period, plan.pause)
+        start = plan.places[0]
+        made.place(plan._known[start].saved, pauses=start.pauses)  # noqa: SLF001 - of its own class
+        return made
+
+    @property
+    def periods(self) -> list[int]:
+        """How many whole periods each time takes."""
+        return [timer.milliseconds // self.period for timer in self._loop.engine.executed.timers]
+
+    def expiries(self, place: Place) -> dict[int, Step]:
+        """By the time that is up, among those that run, the step that follows, whichever would be up first."""
+        loop, found = self._loop, {}
+        for number in sorted(place.running):
+            loop.restore(self._known[place].saved)
+            now, up = loop.timers.saved
+            loop.timers.restore((now, {**up, number: now}))
+            self._pauses, self._shown = place.pauses, 0
+            loop.expire()
+            found[number] = self._ended(WAIT)
+        return found
+
+
+class Start(Tour):
+    """A tour without a step: it sees what is seen before the first one."""
+
+    def _tour(self) -> list[Step]:
+        super()._tour()
+        return []
+
+
+def bound(plan: TimelessPlan, runs: int, wanted: list[int]) -> int | None:
     """The least number of steps that a flow has which shows all that is wanted; None where not all places are known.
 
     What is wanted has a bit for each goal.
@@ -88,7 +125,7 @@ class Arc(NamedTuple):
         return periods if self.step.stimulus == WAIT else 1
 
 
-def all_arcs(plan: Plan, place: Place) -> list[Arc]:
+def all_arcs(plan: TimelessPlan, place: Place) -> list[Arc]:
     """The steps from a place, with the wait for any time that runs instead of that for the first; and what is none."""
     steps = [step for step in plan.steps(place) if step.stimulus != WAIT or place.pauses]
     up = plan.expiries(place)
@@ -98,7 +135,7 @@ def all_arcs(plan: Plan, place: Place) -> list[Arc]:
     ]
 
 
-def look_at_all(plan: Plan) -> int | None:
+def look_at_all(plan: TimelessPlan) -> int | None:
     """What is shown on any step between the places of the control loop, a bit for each goal; None: there are too many.
 
     A place is the state, the times that run, and whether it pauses.
@@ -124,10 +161,11 @@ def main() -> None:
         robosc.synthesize(robosc.to_sct(robot))
         file = config.find(EXAMPLES / name)
         settings = config.read(file) if file else config.Configuration()
-        tour = Tour(robosc.to_rosgraph(robot), settings, RosTypes().distributions[0])
+        graph, distribution = robosc.to_rosgraph(robot), RosTypes().distributions[0]
+        tour, start = Tour(graph, settings, distribution), Start(graph, settings, distribution)
         coverage = tour.coverage
-        wanted = tour.plan.possible - tour.at_start - set(coverage.missed)
-        plan = tour.plan.without_time()
+        wanted = tour.plan.possible - start.coverage.seen - set(coverage.missed)
+        plan = TimelessPlan.of(tour.plan)
         least = bound(plan, len(tour.traces), [tour.plan.bits[goal] for goal in wanted])
         counts = [coverage.transitions, coverage.guards(value=True), coverage.guards(value=False)]
         cells = [f"{seen} of {possible}" for seen, possible in counts]

@@ -44,7 +44,9 @@ def watched(nodes: Workspace | Runner, runner: Runner, folder: Path, rounds: int
     """
     with middleware(nodes, folder) as processes:
         node = processes.start("node", one_process(nodes, PACKAGE))
-        processes.start("sensors", [nodes.ros.python, TESTS / "sensors.py", str(nodes.ros.version), str(SENSORS_HZ)])
+        processes.start(
+            "sensors", [nodes.ros.python, TESTS / "sensors.py", str(nodes.ros.version), str(SENSORS_HZ), "--going"]
+        )
         time.sleep(_WARM_UP)
         who: dict[str, Callable[[], AbstractContextManager[None]]] = {
             "nobody": nullcontext,

@@ -10,6 +10,7 @@ from .world import STEP
 RAYS, RANGE_MIN, RANGE_MAX = 360, 0.12, 3.5
 EMPTY, NUMBER, TWIST = "std_msgs/Empty", "std_msgs/Float32", "geometry_msgs/Twist"
 BOOLEAN, TRIGGER = "std_msgs/Bool", "std_srvs/Trigger"
+STOP, GO_ON = "/emergency_stop", "/continue"
 
 
 class Device:
@@ -130,20 +131,35 @@ class Lidar(Device):
         return [("/scan", data)]
 
 
+class Button(Device):
+    """An emergency stop, and beside it a button to go on: the first repeats whether it is pressed, or is `silent`."""
+
+    says = {STOP: BOOLEAN, GO_ON: EMPTY}  # noqa: RUF012
+
+    def __init__(self):
+        self.pressed = self.silent = False
+
+    def say(self, world):
+        """Whether it is pressed."""
+        del world
+        return [] if self.silent else [(STOP, {"data": self.pressed})]
+
+
 class Rotator(Device):
     """Turns the robot by a number of degrees when asked to and says when it has (thesis section 6.3.5).
 
-    A turn ends where the encoders say so. On `/stop` it gives up and reports nothing. `by` are the degrees of a turn
-    whose message holds none.
+    A turn ends where the encoders say so. It gives up, and reports nothing, while the emergency stop is pressed or has
+    been silent for `patience` seconds. `by` are the degrees of a turn whose message holds none.
     """
 
     period = STEP
     says = {"/rotate_done": EMPTY}  # noqa: RUF012
-    fastest, precision = 0.8, math.radians(0.05)
+    fastest, precision, patience = 0.8, math.radians(0.05), 0.5
 
     def __init__(self, kind, by=90):
-        self.hears = {"/rotate_left": kind, "/rotate_right": kind, "/stop": EMPTY}
+        self.hears = {"/rotate_left": kind, "/rotate_right": kind, STOP: BOOLEAN}
         self._by = by
+        self._button_heard = 0.0
         self._target = None
         self._done = False
         self._news = []
@@ -155,11 +171,10 @@ class Rotator(Device):
 
     def hear(self, world, topic, data):
         """Begins a turn, or gives up."""
-        if topic == "/stop":
-            if self.turning:
-                self._target = None
-                world.drive.command(0.0, 0.0)
-                self._news.append("a turn is given up")
+        if topic == STOP:
+            self._button_heard = world.time
+            if data["data"]:
+                self._give_up(world)
             return
         angle = math.radians(data.get("data", self._by))
         left = topic == "/rotate_left"
@@ -168,6 +183,8 @@ class Rotator(Device):
 
     def act(self, world):
         """Turns on, the slower the nearer the end."""
+        if world.time - self._button_heard > self.patience:
+            self._give_up(world)
         if self._target is None:
             return
         missing = self._target - world.drive.odometry.heading
@@ -176,6 +193,12 @@ class Rotator(Device):
             self._target, self._done = None, True
         else:
             world.drive.command(0.0, max(-self.fastest, min(self.fastest, 4 * missing)))
+
+    def _give_up(self, world):
+        if self.turning:
+            self._target = None
+            world.drive.command(0.0, 0.0)
+            self._news.append("a turn is given up")
 
     def say(self, world):
         """That it is done."""

@@ -83,8 +83,6 @@ def _keep_step(simulation, connection):
 
 
 def _in_step(simulation, connection):
-    if not simulation.scenario.commands_due(simulation):
-        connection.last_heard = simulation.time
     return simulation.time - connection.last_heard < (ANSWER_WITHIN if connection.answered else FIRST_ANSWER_WITHIN)
 
 

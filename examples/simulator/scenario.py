@@ -7,6 +7,9 @@ from __future__ import annotations
 
 from .devices import RANGE_MAX, Lidar, Odometry
 
+#: Seconds until a person presses the next button.
+REACTION = 0.5
+
 
 class Scenario:
     """A place, its devices, a script and a goal; the base of all."""
@@ -46,11 +49,6 @@ class Scenario:
         """Whether the goal is reached."""
         raise NotImplementedError
 
-    def commands_due(self, simulation):
-        """Whether a controller that is alive sends a velocity at each of its ticks."""
-        del simulation
-        return True
-
     def pose(self, world):
         """Where the robot is, and what else is of interest about it, for the record."""
         # JSON knows nothing infinite.
@@ -58,8 +56,16 @@ class Scenario:
         return {"x": world.pose.x, "y": world.pose.y, "heading": world.pose.heading, "gap": gap}
 
 
+def set_going(simulation):
+    """Someone sets the robot going, which begins stopped."""
+    yield REACTION
+    simulation.go_on("the robot is set going")
+
+
 def stop_and_continue(simulation, seconds):
-    """Someone presses stop, and after a while continue."""
-    simulation.press("/stop")
+    """Someone presses stop, releases it after a while, and then presses continue."""
+    simulation.press()
     yield seconds
-    simulation.press("/continue")
+    simulation.release()
+    yield REACTION
+    simulation.go_on("continue is pressed")

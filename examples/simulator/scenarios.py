@@ -78,16 +78,13 @@ class SupervisedLineFollower(LineFollower):
 
     name = "supervised_line_follower"
     controller = "controller/line_stepper.rscd"
+    #: A step that is blocked never gets here.
+    alive = "/supervised_line_follower_layer/state"
 
     def devices(self, world, noise):
         """A platform that takes steps, and a detector."""
         del world
         return [Steps(), LineDetector(noise.up_to(LINE_PIXELS))]
-
-    def commands_due(self, simulation):
-        """A step that is blocked never gets here."""
-        del simulation
-        return False
 
 
 class SimpleNavigation(Scenario):
@@ -99,6 +96,7 @@ class SimpleNavigation(Scenario):
         "/clicked_point": "geometry_msgs/PointStamped",
     }
     unheard = ("/odom", "/scan")
+    alive = "/simple_navigation_controller/state"
     start = Pose(0.6, 0.6, 0.3)
     room = (0.0, 0.0, 4.0, 3.0)
     first, second, third = (2.6, 0.8), (0.8, 2.4), (3.2, 2.3)
@@ -115,11 +113,6 @@ class SimpleNavigation(Scenario):
         """Nav2."""
         del world, noise
         return [Navigation(self.walls())]
-
-    def commands_due(self, simulation):
-        """Nav2 drives."""
-        del simulation
-        return False
 
     def script(self, simulation):
         """Clicks on a map, as in RViz."""
@@ -171,6 +164,7 @@ class ObstacleNavigation(SimpleNavigation):
     """A room with pillars that are on no map; somebody puts one right before the robot."""
 
     name = "obstacle_navigation"
+    alive = "/obstacle_navigation_controller/state"
     room = (0.0, 0.0, 4.4, 3.0)
     start = Pose(0.5, 1.5)
     first, second = (3.9, 1.5), (0.6, 0.6)
@@ -207,6 +201,7 @@ class ObjectFinder(Scenario):
     """Corridors with a dead end, and a stop sign around two corners."""
 
     name = "object_finder"
+    alive = "/object_finder_controller/state"
 
     def world(self):
         """The robot looks into a dead end."""
@@ -222,10 +217,6 @@ class ObjectFinder(Scenario):
         """A platform, a rotator and Darknet."""
         del world, noise
         return [Wheels(), Rotator(EMPTY), ObjectDetector()]
-
-    def commands_due(self, simulation):
-        """Between two turns."""
-        return not simulation.device(Rotator).turning
 
     def script(self, simulation):
         """Stop is pressed once while the robot drives."""
@@ -245,6 +236,7 @@ class MazeSolver(Scenario):
     """A maze of squares, one metre each."""
 
     name = "maze_solver"
+    alive = "/maze_solver_controller/state"
     #: Each square has its own walls: `_` below it, `|` to its right. The way out is in the last row.
     plan = (
         " _ _ _ _ ",
@@ -261,10 +253,6 @@ class MazeSolver(Scenario):
         """A platform and a rotator."""
         del world, noise
         return [Wheels(), Rotator("std_msgs/Int16")]
-
-    def commands_due(self, simulation):
-        """Between two turns."""
-        return not simulation.device(Rotator).turning
 
     def script(self, simulation):
         """Stop is pressed once while the robot drives."""
@@ -400,11 +388,6 @@ class WarehouseRobot(Scenario):
         docking = Docking(self.start.x)
         navigation = WarehouseNavigation(self.walls(), self.start)
         return [Bumpers(), Battery(docking, 0.15), Lift(), AisleManager(), docking, navigation]
-
-    def commands_due(self, simulation):
-        """Nav2 drives, but the controller says at each of its ticks how it is."""
-        del simulation
-        return True
 
     def script(self, simulation):
         """Two orders; the second ends half way, as the battery is used up."""

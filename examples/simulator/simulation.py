@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import random
 from dataclasses import dataclass
+from itertools import chain
 
-from .devices import EMPTY
+from .devices import GO_ON, Button
+from .scenario import set_going
 from .world import STEP
 
-BUTTONS = ("/stop", "/continue")
 POSE_PERIOD = 0.1
 
 
@@ -72,15 +73,14 @@ class Simulation:
         self.scenario = scenario
         self.world = scenario.world()
         noise = Noise(seed, scenario.name)
-        self.devices = [*scenario.sensors(noise), *scenario.devices(self.world, noise)]
+        self.button = Button()
+        self.devices = [self.button, *scenario.sensors(noise), *scenario.devices(self.world, noise)]
         #: Topics that anything is sent to, and that anything is heard on, with their types; also services and actions.
         self.says = {topic: kind for device in self.devices for topic, kind in device.says.items()}
-        self.says.update(dict.fromkeys(BUTTONS, EMPTY))
         self.says.update(scenario.people)
         self.hears = {topic: kind for device in self.devices for topic, kind in device.hears.items()}
         self.answers = {service: kind for device in self.devices for service, kind in device.answers.items()}
         self.serves = {action: kind for device in self.devices for action, kind in device.serves.items()}
-        self.stopped = False
         self.ended = False
         self.reached_at = None
         self.happenings = []
@@ -91,7 +91,7 @@ class Simulation:
         #: Every pillar that stood somewhere, also for a while.
         self.pillars = []
         self._said = []
-        self._script = scenario.script(self)
+        self._script = chain(set_going(self), scenario.script(self))
         self._waiting = None
         self._wait_until(next(self._script))
         self._trace()
@@ -179,11 +179,20 @@ class Simulation:
         if topic in self.hears:
             self._deliver(topic, data)
 
-    def press(self, button):
-        """Someone presses a button."""
-        self.stopped = button == "/stop"
-        self.happens("stop is pressed" if self.stopped else "continue is pressed")
-        self.say(button, {})
+    def press(self):
+        """Someone presses the emergency stop."""
+        self.button.pressed = True
+        self.happens("stop is pressed")
+
+    def release(self):
+        """Someone releases the emergency stop, which sets nobody going."""
+        self.button.pressed = False
+        self.happens("stop is released")
+
+    def go_on(self, words):
+        """Someone presses continue."""
+        self.happens(words)
+        self.say(GO_ON, {})
 
     def happens(self, words):
         """Keeps for the picture what happens now."""

@@ -1,4 +1,4 @@
-"""What blocks, and what would, in the words of the robot model."""
+"""Causes of blocking, and ways out, in the words of the robot model."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _stuck(plant: sct.Plant, reason: Reason) -> str:
 
 
 def counterexample_in_words(counterexample: BlockingCounterexample, model: sct.SupervisoryControlModel) -> str:
-    """What would happen if synthesis did not hold an event back, in a sentence without its full stop."""
+    """Return the consequence of an event that synthesis holds back, as a sentence without its full stop."""
     steps = in_words(counterexample.trace, model)
     problem = "the marked states of all components can't be reached together any more"
     if counterexample.unmarked:
@@ -66,7 +66,7 @@ def counterexample_in_words(counterexample: BlockingCounterexample, model: sct.S
 
 
 def way_out(counterexample: BlockingCounterexample) -> str:
-    """What would make synthesis allow the event."""
+    """Return the change after which synthesis would allow the event."""
     if counterexample.violated:
         loosen = f"loosen the {'requirement' if len(counterexample.violated) == 1 else 'requirements'}"
         if all(isinstance(requirement, sct.Requirement) for requirement in counterexample.violated):

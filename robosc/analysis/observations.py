@@ -1,4 +1,4 @@
-"""What is doubtful about a supervisor that is not empty: what it allows and is hardly meant, and what never happens."""
+"""Doubts about a supervisor that is not empty: unintended freedom, and events and states that never occur."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _FOLLOWS_THE_ROBOT = (sct.EventKind.tau, sct.EventKind.reset, sct.EventKind.canc
 
 
 class Forbidden(Enum):
-    """Who keeps an event from ever happening: the first of these that does."""
+    """The first of these that keeps an event from ever happening."""
 
     BY_PLANTS = auto()
     BY_REQUIREMENTS = auto()
@@ -452,7 +452,7 @@ class Observer:
                 yield event, found
 
     def _counterexample(self, permission: Permission, where: Diagram | None = None) -> BlockingCounterexample:
-        """What is prevented where the event is held back, in some of these states: looked for once, it may be long."""
+        """Return the counterexample that holding back the event prevents in some of these states. Cached."""
         goal = self._held_back(permission)
         if where is not None:
             goal &= where

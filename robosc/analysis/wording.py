@@ -36,7 +36,7 @@ _OWN = (sct.EventKind.tau, sct.EventKind.timeout)
 
 
 def name(plant: sct.Plant) -> str:
-    """What the robot model calls it: a component, or a component's communication with a dot between."""
+    """The name in the robot model: a component, or a component and its communication with a dot between."""
     return plant.origin or plant.name
 
 
@@ -77,7 +77,7 @@ def _where(event: sct.Event) -> str:
 
 
 def change(event: sct.Event) -> str:
-    """What an internal event does: `Lidar changes by itself: blocked to free`; where several do that, the line, too."""
+    """An internal event in words: `Lidar changes by itself: blocked to free`; of several alike with the line."""
     plant = plant_of(event)
     if event.kind == sct.EventKind.reset:
         return f"{name(plant)} is ready to be used again"
@@ -140,7 +140,7 @@ def in_words(steps: Sequence[TraceStep], model: sct.SupervisoryControlModel) -> 
 
 
 def _data(input_name: str, chosen: Value, event: sct.Event) -> str:
-    """What comes with an event: a piece of its data, or what the node computes of it, as the model writes that."""
+    """A piece of an event's data, or the node's computation on it, as the model writes it."""
     computed = next((carried.text for carried in event.inputs if carried.name == input_name), None)
     if computed is None:
         said = input_name.removeprefix(f"i_{event.kind.name}").removeprefix("_") or "value"
@@ -159,7 +159,7 @@ def condition(values: Iterable[tuple[Element, Value]]) -> str:
 
 
 def what_is(element: Element, chosen: Value) -> str:
-    """What a plant or variable is at the moment, such as "`Lidar` is in `free`" or "`Gauge.level` is 3"."""
+    """The present value of a plant or variable, such as "`Lidar` is in `free`" or "`Gauge.level` is 3"."""
     if isinstance(element, sct.Plant):
         return f"`{name(element)}` is in `{chosen}`"
     return f"`{name(element.eContainer())}.{element.name}` is {text(chosen)}"

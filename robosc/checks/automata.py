@@ -1,4 +1,4 @@
-"""Of requirement automata and the events that requirements name: what other rules say of behaviours.
+"""Rules on requirement automata and on the events that requirements name.
 
 And how a text is mended where one state is to be initial, or one of two transitions is to be left out.
 """

@@ -1,4 +1,4 @@
-"""What a robot or library itself defines, in the order of its text; what it imports is in `robosc.checks.libraries`."""
+"""The own definitions of a robot or library, in the order of its text; `robosc.checks.libraries` has its imports."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Text(Protocol):
 
     @property
     def definitions(self) -> Iterable[Any]:
-        """What stands in it."""
+        """Its definitions."""
 
 
 _Element = TypeVar("_Element", bound="ex.Located")
@@ -75,7 +75,7 @@ def communications(base: Text) -> Iterator[rsc.CommunicationType]:
 
 
 def identified_elements(base: rsc.Base) -> Iterator[rsc.CommunicationType | rsc.TopicRemapping]:
-    """What gives a topic, a service or an action its name."""
+    """The declarations and re-mappings that name a topic, a service or an action."""
     yield from communications(base)
     for component in of_kind(rsc.Component, base.definitions):
         if isinstance(component.type, rsc.ImportedComponent):
@@ -147,7 +147,7 @@ def unit_of(element: ex.Located) -> Any:
 
 
 def restricted_events(base: rsc.Base) -> Iterator[rsc.EventSet]:
-    """What orders and counts restrict."""
+    """The events that orders and counts restrict."""
     for order in statements(rsc.OrderRequirement, base):
         yield order.target
     for count in statements(rsc.CountRequirement, base):
@@ -155,7 +155,7 @@ def restricted_events(base: rsc.Base) -> Iterator[rsc.EventSet]:
 
 
 def communication_of(reference: rsc.CommunicationReference | None) -> rsc.CommunicationType | None:
-    """What a reference stands for; None where there is none, or it is not resolved."""
+    """The communication that a reference names; None where there is none, or it is not resolved."""
     return reference.communicationType if reference else None
 
 

@@ -1,4 +1,4 @@
-"""What a rule is, and the register of all of them."""
+"""Rules, their findings, and the register of all rules."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Finding:
-    """What a rule found at an element of the model; the text of a `Repair` takes the element's place.
+    """A breach of a rule at an element of the model; the text of a `Repair` takes the element's place.
 
     `relies_on` is an element that must be free of syntax errors for the finding to be true: what is concluded from
     something being absent. `relies_on_names` are the classes whose own names must be resolved within it, too.
@@ -54,7 +54,7 @@ class Finding:
         return tuple(way for way in found if way.edits)
 
     def _edits(self, way: Way) -> tuple[Edit, ...]:
-        """What a way changes in the file of the element, where it changes nothing else."""
+        """The edits of a way in the file of the element; none where it changes another file, too."""
         return way.edits() if changed_file(way) == place(self.element)[0] else ()
 
     def places(self) -> tuple[Related, ...]:

@@ -1,4 +1,4 @@
-"""What the supervisor needs of a robot or library, and where in its text to say that it can't have it."""
+"""The data of a robot or library that the supervisor needs, and the places where it can't have them."""
 
 from __future__ import annotations
 
@@ -150,7 +150,7 @@ _PRODUCT = _Limit(
 
 
 class _Where(NamedTuple):
-    """What an expression's text means: whose it is, the variable that it is assigned to, and which parts are inputs."""
+    """The meaning of an expression: its instance, the variable that it is assigned to, and its inputs."""
 
     within: Instance | None
     variable: InstanceVariable | None
@@ -164,7 +164,7 @@ def table_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[Faul
 
 
 def _computed(instances: Instances, result: ConeOfInfluence) -> Iterator[tuple[ex.Expression, _Where]]:
-    """What the supervisor computes, with what its text means."""
+    """The expressions that the supervisor computes, each with its meaning."""
     inputs: dict[ex.Expression | None, dict[ex.Expression, Told | None]] = {}
     for reading in result.readings:
         inputs.setdefault(reading.whole, {})[reading.part] = reading.told

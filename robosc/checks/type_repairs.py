@@ -1,4 +1,4 @@
-"""What to write in place of an expression of the wrong type."""
+"""Repairs for expressions of the wrong type."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ _REQUIRED = "requirement:"
 
 @dataclass(frozen=True)
 class Reading:
-    """What came of reading a specification: its sct model, None where it has errors, findings, and texts by path."""
+    """A specification that was read: its sct model, None where it has errors, findings, and texts by path."""
 
     model: sct.SupervisoryControlModel | None
     findings: list[Diagnostic]

@@ -1,4 +1,4 @@
-"""What is wrong with a specification, and where."""
+"""Faults of a specification, with their places."""
 
 from __future__ import annotations
 

@@ -125,7 +125,7 @@ def annotations_of(specification: Any) -> list[Any]:
 
 
 def _too_deep(text: Text) -> Diagnostic | None:
-    """What is wrong at the first bracket, group or statement that is nested too deep in a text; None where nothing is.
+    """Return the finding at the first bracket, group or statement that is nested too deep; None without one.
 
     A bracket that is not closed makes nothing deep that comes after its statement.
     """
@@ -160,7 +160,7 @@ def _close(around: list[tuple[str, int]], word: str) -> None:
 
 
 def _opened(word: str, top: str, *, head: bool) -> str:
-    """What a word opens, `func` where it is the statements of a function or of one of these; empty: nothing."""
+    """The block that a word opens; `func` for the statements of a function; empty: none."""
     if word == ":":
         return "func" if head and top in {"", "group"} else ""
     if word in _FLAT:

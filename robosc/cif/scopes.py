@@ -1,4 +1,4 @@
-"""What the names of a specification stand for: groups, automata, instances of definitions, and what they declare.
+"""Names of a specification: groups, automata, instances of definitions, and their declarations.
 
 `Specification` declares all that it has and makes every instance of a definition, a scope like a group or an
 automaton whose declarations are looked up where the definition stands. What is declared is a `Declared`; what a
@@ -56,7 +56,7 @@ class Declared:
 
 @dataclass(eq=False)
 class Argument:
-    """What a parameter stands for: an expression where the instance is made; `named`, what that is the name of."""
+    """The argument of an instance: its expression, and in `named` the element that this names."""
 
     read: Any
     scope: Scope
@@ -90,7 +90,7 @@ class Scope:
         return f"{self.path}.{name}" if self.path else name
 
     def declarations(self, *rules: str) -> Iterator[Any]:
-        """What it declares by these rules of the grammar."""
+        """Its declarations by these rules of the grammar."""
         for body in self.bodies:
             for declaration in body.declarations:
                 if type(declaration).__name__ in rules:
@@ -158,14 +158,14 @@ class Specification:
 
     @contextmanager
     def reporting(self) -> Iterator[None]:
-        """What is wrong within becomes a finding, one for all instances of a definition."""
+        """Turn a fault within the block into a finding, one for all instances of a definition."""
         try:
             yield
         except CifFaultError as fault:
             self.findings[fault.finding()] = None
 
     def find(self, read: Any, scope: Scope) -> Name:
-        """What a name of the grammar stands for in a scope. Raises CifFaultError."""
+        """Return the element that a name of the grammar stands for in a scope. Raises CifFaultError."""
         return self.lookup(plain(read.text), read, scope)
 
     def lookup(self, name: str, read: Any, scope: Scope) -> Name:
@@ -207,7 +207,7 @@ class Specification:
         return scope
 
     def resolved(self, found: Name) -> Name:
-        """What a parameter that is no algebraic one stands for, through all instances."""
+        """Return the element behind a parameter that is not algebraic, through all instances."""
         while isinstance(found, Argument) and not _is_algebraic(found):
             if isinstance(found.named, CifFaultError):
                 raise found.named
@@ -247,7 +247,7 @@ class Specification:
                 self._declare_names(scope, read, rule)
 
     def _declare_names(self, scope: Scope, read: Any, rule: str) -> None:
-        """What is neither group nor automaton and has a name."""
+        """The named elements that are neither groups nor automata."""
         match rule:
             case "GroupDefinition" | "AutomatonDefinition" | "Enumeration":
                 whole = self._name(rule, read, read, scope)

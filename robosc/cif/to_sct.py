@@ -391,7 +391,7 @@ class _Transformation:
     # Predicates
 
     def _predicates(self, scope: Scope) -> None:
-        """What is initial, marked, and never to happen."""
+        """Translate initial and marked states and the invariants."""
         for read in scope.declarations("Initial", "Marked", "Invariants"):
             with self._names.reporting():
                 if type(read).__name__ == "Invariants":
@@ -479,7 +479,7 @@ class _Transformation:
             self.model.initialPredicates.append(condition)
 
     def _exclude(self) -> None:
-        """What plant invariants exclude, a plant of one location excludes; what no automaton has, nothing restricts."""
+        """Exclude by plants of one location what plant invariants exclude; drop requirements on unused events."""
         used = {edge.event for scope in _inside(self._names.root) if scope.plant for edge in _edges(scope.plant)}
         for requirement in [requirement for requirement in self.model.requirements if requirement.event not in used]:
             self.model.requirements.remove(requirement)
@@ -515,7 +515,7 @@ def _is_automaton(scope: Scope) -> bool:
 
 
 def _elements(scope: Scope) -> Iterator[tuple[sct.Location, Any]]:
-    """What is said in the locations of an automaton, each with its location."""
+    """The elements in the locations of an automaton, each with its location."""
     if _is_automaton(scope) and scope.plant is not None:
         for location, read in zip(scope.plant.locations, scope.bodies[0].locations, strict=True):
             for element in read.elements:
@@ -575,7 +575,7 @@ def _default(kind: Type) -> Any:
 
 
 def _words(read: Any) -> str:
-    """What stands in the text, as one line."""
+    """The text of an element, as one line."""
     start, end = span(read)
     return " ".join(text_of(read).content[start:end].split()).rstrip(";").strip()
 

@@ -1,4 +1,4 @@
-"""What names and types mean in expressions: constants, algebraic variables, types, and the values that never change."""
+"""Names and types in expressions: constants, algebraic variables, types, and values that never change."""
 
 from __future__ import annotations
 
@@ -236,7 +236,7 @@ class Values:
                     yield used
 
     def _made(self, found: Definition) -> Any:
-        """What a definition or an argument is, or what is wrong with it."""
+        """The value of a definition or an argument, or its fault."""
         if len(self._open) > _DEEPEST:
             return CifFaultError(found.read, "cif-construct", "definitions lie too deep within each other")
         before, self._size = self._size, 0
@@ -266,7 +266,7 @@ class Values:
         return Typed(found.read, literal(value), kind)
 
     def _equation(self, found: Declared) -> Typed:
-        """What an algebraic variable is: by its declaration, by an equation, or by one in each location."""
+        """The value of an algebraic variable: by its declaration, by an equation, or by one in each location."""
         if found.read.value is not None:
             return self.typed(found.read.value, found.scope)
         equations = self.equations(found.scope).get(found.name, [])

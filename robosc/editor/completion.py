@@ -40,7 +40,7 @@ _KINDS = {
 
 
 def completion(snapshot: Snapshot, analysis: Analysis, params: types.CompletionParams) -> types.CompletionList:
-    """What can stand at a position."""
+    """Return the completions at a position."""
     text = analysis.text
     offset = to_offset(text, params.position)
     topic = topic_at(text.content, offset)

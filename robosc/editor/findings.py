@@ -40,7 +40,7 @@ _SEVERITIES = {
 
 
 def published(snapshot: Snapshot, analyses: Iterable[Analysis]) -> dict[Path, list[types.Diagnostic]]:
-    """What is to be said of each text that these analyses read, by its path: what is found from several counts once."""
+    """Return the findings in each text that these analyses read, by its path, each once."""
     findings: dict[str, list[Diagnostic]] = {}
     texts: dict[str, Text] = {}
     for analysis in analyses:
@@ -61,7 +61,7 @@ def abandoned(why: str) -> types.Diagnostic:
 
 
 def quickly(snapshot: Snapshot, path: Path) -> list[types.Diagnostic] | None:
-    """What can be said of a large text before it is read in whole; None: nothing."""
+    """Return the findings in a large text before it is read in whole; None where that is impossible."""
     found = snapshot.quick_findings(path)
     if found is None:
         return None
@@ -89,7 +89,7 @@ def diagnostic(snapshot: Snapshot, finding: Diagnostic, texts: Mapping[str, Text
 
 
 def code_actions(snapshot: Snapshot, analysis: Analysis, params: types.CodeActionParams) -> list[types.CodeAction]:
-    """What does what a hint says, for each finding in a range; and all that hints say at once, where that is asked."""
+    """Return the fixes for each finding in a range and, on request, the edit that applies all of them."""
     only = params.context.only
     text, uri = analysis.text, params.text_document.uri
     own = [finding for finding in analysis.findings if finding.file == text.file]

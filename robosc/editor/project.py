@@ -53,7 +53,7 @@ class Document:
 
 
 class Project:
-    """What an editor has open, its folders, and the settings of the server."""
+    """The open texts of an editor, its folders, and the settings of the server."""
 
     def __init__(self, libraries: Sequence[Path | str] = (), interfaces: Sequence[Path | str] = ()) -> None:
         """`libraries` are the folders for libraries after a text's own, `interfaces` those with ROS packages below."""
@@ -137,7 +137,7 @@ def _offset(content: str, breaks: Sequence[tuple[int, int]], line: int, unit: in
 
 @dataclass(eq=False)
 class Analysis:
-    """What came of reading a text and of checking what was read."""
+    """A text that was read and checked, with its findings."""
 
     path: Path
     reading: Reading
@@ -174,7 +174,7 @@ class Analysis:
         return Slices(self.file, self.findings)
 
     def key(self, element: Any) -> tuple[str, int] | None:
-        """What tells an element from all others, in the analysis of any text: the file and offset of its name."""
+        """The identity of an element in the analysis of any text: the file and offset of its name."""
         found = self.declarations.get(element)
         return None if found is None else (found[0].text.file, found[1].start)
 
@@ -224,7 +224,7 @@ class Snapshot:
         return Documents({str(path): document.content for path, document in self.documents.items()})
 
     def analysis(self, path: Path) -> Analysis | None:
-        """What is in the text at a path; None where there is no such text that can be read."""
+        """Return the analysis of the text at a path; None where no such text can be read."""
         with self.memory.only_one(path):
             return self._analysis(path)
 
@@ -250,7 +250,7 @@ class Snapshot:
         return analysis
 
     def quick_findings(self, path: Path) -> tuple[Text, dict[str, Text], list[Diagnostic]] | None:
-        """What is found in a large text that has changed within one definition, without reading all of it again.
+        """Return the findings in a large text that changed within one definition, reading only that again.
 
         With the text, and all texts by the files that the findings carry. None where that can't be told so.
         """

@@ -165,7 +165,7 @@ class Server(LanguageServer):
         self.project.folders = tuple(self.project.path(uri) for uri in uris)
 
     async def answer(self, uri: str, job: Callable[[Snapshot, Analysis], _Answer]) -> _Answer | None:
-        """What a job says of a text, when its turn comes; None where there is no such text."""
+        """Run a job on a text when its turn comes; None where there is no such text."""
         path = self.project.path(uri)
 
         def with_text(snapshot: Snapshot) -> _Answer | None:
@@ -175,7 +175,7 @@ class Server(LanguageServer):
         return await self.answer_project(with_text)
 
     async def answer_project(self, job: Callable[[Snapshot], _Answer]) -> _Answer:
-        """What a job says of the whole project."""
+        """Run a job on the whole project."""
         snapshot, canceled = self.project.snapshot(), threading.Event()
 
         def in_turn() -> _Answer:
@@ -210,7 +210,7 @@ class Server(LanguageServer):
         self._waiting = asyncio.get_running_loop().create_task(self._find(typed))
 
     def verdict(self, asked: Question) -> Verdict | str | None:
-        """What synthesis says, as soon as it says it."""
+        """Return the verdict of synthesis once it is known; None before."""
         project = self.project
         return self.verdicts.ask(asked, list(map(str, project.libraries)), list(map(str, project.interfaces)))
 

@@ -1,4 +1,4 @@
-"""What is found in the definition in which somebody types, before a whole large text is read again.
+"""Findings in the definition that the user edits, before a whole large text is read again.
 
 A change within one definition is looked at in a slice of the text: this definition, all that it may name, and what
 names it; everything else is blank, so that lines and columns are those of the text. Findings in the definition are

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Snippet(NamedTuple):
-    """What it is called, its text, and the word that VS Code offers it by where no server runs; empty: it does not."""
+    """A snippet: its name, its text, and the word by which VS Code offers it without a server, if any."""
 
     label: str
     body: str

@@ -1,4 +1,4 @@
-"""What can be generated: a target is a part of `robosc.m2t` of its name; those that are ROS packages share `ros`.
+"""The targets: each is a part of `robosc.m2t` of its name; those that are ROS packages share `ros`.
 
 Packages of others add targets by entry points (`robosc.targets`).
 """
@@ -22,17 +22,17 @@ if TYPE_CHECKING:
 
 
 class Generator(Protocol):
-    """What the module of a target offers."""
+    """The interface of a target's module."""
 
     def preconditions(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
-        """What keeps the target from these models, or is doubtful about them."""
+        """Return the findings that keep the target from these models, or warn of them."""
 
     def generate(self, models: Models, configuration: Configuration) -> dict[str, str]:
         """Files: POSIX path in the target's folder to text. The models have a supervisor; the preconditions hold."""
 
 
 class Options(TypedDict, total=False):
-    """What else some generators are told."""
+    """Options of some generators."""
 
     #: What a package of theirs is tested with.
     tests: TraceTest
@@ -41,14 +41,14 @@ class Options(TypedDict, total=False):
 
 
 class OptionalGenerator(Protocol):
-    """What the module of a target offers that knows options."""
+    """The interface of the module of a target with options."""
 
     def generate(self, models: Models, configuration: Configuration, **options: Unpack[Options]) -> dict[str, str]:
         """The files that it generates without options, but as these ask for."""
 
 
 class PackageGenerator(Protocol):
-    """What the module of a target offers that is a ROS package."""
+    """The interface of the module of a target that is a ROS package."""
 
     def interfaces(self, models: Models, configuration: Configuration) -> dict[str, str]:
         """The package with the types of its own, if it needs any: paths begin with its name."""
@@ -89,14 +89,14 @@ class Target:
         return f"{self._folder}/{named(models.sct)}"
 
     def beside(self, models: Models, configuration: Configuration) -> dict[str, str]:
-        """What it generates beside that folder: POSIX path below the output folder to text."""
+        """The texts beside that folder, by POSIX path below the output folder."""
         if self.package is None:
             return {}
         made = cast("PackageGenerator", self.generator()).interfaces(models, configuration)
         return {f"{self._folder}/{path}": text for path, text in made.items()}
 
     def findings(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
-        """What keeps the target from these models and settings, and what is doubtful about them."""
+        """Return the findings that keep the target from these models and settings, and warnings."""
         found = self.generator().preconditions(models, configuration)
         graph = models.rosgraph
         if not self.needs_graph or graph is None:
@@ -119,7 +119,7 @@ class Target:
         *,
         into: str | None = None,
     ) -> dict[str, str]:
-        """What it generates, with these tests.
+        """Generate the texts, with these tests.
 
         `into` names what of the user's own the code becomes part of, where it can be included: a package, or a target
         of CMake. Then there is a `fragment.cmake`, and neither `CMakeLists.txt` nor `package.xml`.
@@ -132,7 +132,7 @@ class Target:
         return cast("OptionalGenerator", self.generator()).generate(models, configuration, **options)
 
     def generator(self) -> Generator:
-        """What generates it: a module of its name, or a target of `robosc.m2t.ros`; loaded when it is asked for."""
+        """The generator: a module of its name, or a target of `robosc.m2t.ros`; loaded on first use."""
         if self.package is None:
             return cast("Generator", import_module(f"robosc.m2t.{self.name}"))
         return cast("Generator", import_module("robosc.m2t.ros").TARGETS[self.name])
@@ -167,7 +167,7 @@ class ExtensionTarget(Target):
 
     @property
     def can_be_included(self) -> bool:
-        """Nobody asks that of it."""
+        """Not called for this target."""
         return False
 
     @property

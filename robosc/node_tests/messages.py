@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
-from robosc.ros_types.wire import Basic, Sequence
+from robosc.ros_types.wire import Basic, DefinitionError, Nested, Section, Sequence
+from robosc.runtime.core.node_data import BLANK
 from robosc.semantics.messages import EACH, Read, holds_objects, parts_of, path_of
 from robosc.semantics.messages import reads as all_reads
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from robosc.ros_types import RosDistribution, Section, WireType
+    from robosc.ros_types import RosDistribution, WireType
 
 
 #: Elements of an array that a walk makes at most.
@@ -170,6 +171,35 @@ def message(fields: Mapping[Path, Field], values: Mapping[Path, Leaf]) -> Any:
     if () in element:
         return [_whole(values.get((str(index),)), element[()]) for index in range(length)]
     return [message(element, _below(str(index), values)) for index in range(length)]
+
+
+def new_object(
+    distribution: RosDistribution, interface: rosgraph.Interface, section: Section, path: Iterable[str]
+) -> Any:
+    """The object at a path in new data of a type; one of which every field is zero where the type is unknown."""
+    reached = distribution.reached(interface.package, interface.type, section, path)
+    if reached is None or not isinstance(reached[0], Nested):
+        return BLANK
+    return _new(*reached, distribution)
+
+
+def _new(kind: WireType, section: Section, distribution: RosDistribution) -> Any:
+    match kind:
+        case Basic():
+            return kind.initial
+        case Sequence():
+            elements = kind.default or (_new(kind.element, section, distribution),) * kind.initial_length
+            return list(elements)
+    try:
+        fields = distribution.fields(kind.package, kind.name, section)
+    except DefinitionError:
+        fields = None
+    if fields is None:
+        return BLANK
+    made = {name: _new(field, Section.MESSAGE, distribution) for name, field in fields.items()}
+    if str(kind) == "geometry_msgs/Quaternion":
+        made["w"] = 1.0  # nodes make it one in ROS 1, too
+    return Record(**made, wire_types={name: str(field) for name, field in fields.items()})
 
 
 def leaf_values(fields: Any, path: Path = ()) -> dict[Path, Leaf]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from collections import Counter
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property, reduce
 from operator import or_
 from typing import TYPE_CHECKING, NamedTuple
@@ -141,23 +141,6 @@ class Plan:
             known.steps = [step for step in found if step is not None and (step.end != place or step.shows)]
         return known.steps
 
-    @property
-    def periods(self) -> list[int]:
-        """How many whole periods each time takes."""
-        return [timer.milliseconds // self.period for timer in self._loop.engine.executed.timers]
-
-    def expiries(self, place: Place) -> dict[int, Step]:
-        """By the time that is up, among those that run, the step that follows, whichever would be up first."""
-        loop, found = self._loop, {}
-        for number in sorted(place.running):
-            loop.restore(self._known[place].saved)
-            now, up = loop.timers.saved
-            loop.timers.restore((now, {**up, number: now}))
-            self._pauses, self._shown = place.pauses, 0
-            loop.expire()
-            found[number] = self._ended(WAIT)
-        return found
-
     def _step(self, place: Place, saved: SavedLoop, stimulus: Stimulus) -> Step | None:
         loop = self._loop
         loop.restore(saved)
@@ -206,12 +189,6 @@ class Plan:
         if cells not in self._at_rest:
             self._at_rest[cells] = self._mask(self._watcher.at_rest())
         return self._at_rest[cells]
-
-    def without_time(self) -> Plan:
-        """A plan from the same place on for which no time passes but on the wait for one that is up."""
-        other, start = replace(self, _known={}, _found={}), self.places[0]
-        other.place(self._known[start].saved, pauses=start.pauses)
-        return other
 
     # Tours
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.node_tests.messages import Definition, Field, Path, fields_sent, message
+from robosc.node_tests.messages import Definition, Field, Path, fields_sent, message, new_object
 from robosc.ros_types import Section
 
 if TYPE_CHECKING:
@@ -77,11 +77,15 @@ class Robot:
     # What the controller asks
 
     def hear(self) -> None:
-        """What the robot sends is handled at once."""
+        """Do nothing: the robot's messages are handled at once."""
 
     def create(self, interface: rosgraph.Interface, section: Section) -> Message:
         """Data with the fields that the model sets, or reads where a goal ended without a result."""
         return message(self._fields[interface, section], {}) if self._fields[interface, section] else None
+
+    def unset(self, interface: rosgraph.Interface, section: Section, path: Sequence[str]) -> Message:
+        """An object before anything is stored in it, of what is known of its type."""
+        return new_object(self._distribution, interface, section, path)
 
     def wire_types(self, owner: Message) -> Mapping[str, str]:
         """The types of the fields that the model sets."""
@@ -89,7 +93,7 @@ class Robot:
         return types
 
     def stamp(self, message: Message, frame: str) -> None:
-        """Nobody looks at the header."""
+        """Do nothing: no test reads the header."""
 
     def type_name(self, interface: rosgraph.Interface) -> str:
         """A type's name."""
@@ -116,18 +120,18 @@ class Robot:
         return self.goals[client]
 
     def publish_report(self, name: str, text: str) -> None:
-        """Nobody listens to reports."""
+        """Do nothing: no test reads reports."""
 
     def report_listeners(self, name: str) -> int:
-        """Nobody listens to reports."""
+        """Do nothing: no test reads reports."""
         del name
         return 0
 
     def publish_statuses(self, statuses: Sequence[ComponentStatus]) -> None:
-        """Nobody listens to statuses."""
+        """Do nothing: no test reads statuses."""
 
     def status_listeners(self) -> int:
-        """Nobody listens to statuses."""
+        """Do nothing: no test reads statuses."""
         return 0
 
     def other_servers(self, client: rosgraph.ServiceClient | rosgraph.ActionClient) -> dict[str, str]:  # noqa: ARG002  # a trace has no other nodes
@@ -135,10 +139,10 @@ class Robot:
         return {}
 
     def endpoints(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
-        """Nobody else is there."""
+        """Return nothing: there is no other node."""
         return {}
 
     def info(self, text: str) -> None:
-        """Nobody reads it."""
+        """Do nothing: no test reads the log."""
 
     warn = error = info

@@ -40,7 +40,7 @@ _CLASSES = 64
 
 @dataclass(frozen=True)
 class Read:
-    """What the event log shows of a message: a value as it is, or what a conversion makes of what is there."""
+    """A value of a message in the event log: as it is, or after a conversion."""
 
     path: Path
     conversion: rosgraph.Conversion | None
@@ -77,7 +77,7 @@ class Incoming:
         return message(self.fields, {**self.initial, **values})
 
     def defaults(self, values: Mapping[Path, Leaf]) -> dict[Path, Leaf]:
-        """Of the fields that are not among these values, those that are not zero, `false` or empty by default."""
+        """The other fields whose default is not zero, `false` or empty."""
         found: dict[Path, Leaf] = {}
         for path, known in self.fields.items():
             if known.initial:
@@ -87,12 +87,12 @@ class Incoming:
 
     @property
     def conversions(self) -> list[Read]:
-        """What is shown as literals."""
+        """The values that the log shows as literals."""
         return [read for _, shown in self.events for read in shown if read.conversion is not None]
 
     @property
     def direct(self) -> list[Path]:
-        """What is shown as it is."""
+        """The paths of the values that the log shows as they are."""
         return list(dict.fromkeys(read.path for _, shown in self.events for read in shown if read.conversion is None))
 
 
@@ -161,7 +161,7 @@ def incoming(
     part: Section,
     receptions: Sequence[tuple[str, messages.Shown, Collection[ex.Expression], Collection[tuple[Path, messages.Read]]]],
 ) -> Incoming:
-    """What comes in as one message: by event its name, what is shown of it, what reads it, what is read of it later."""
+    """One kind of message that comes in: its events, with the values that the log shows and that are read."""
     definition = Definition(distribution, interface, part)
     fields: dict[Path, Field] = {}
     events = []
@@ -183,7 +183,7 @@ def incoming(
 
 
 def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dict[sct.Event, Incoming]:
-    """What each event that comes in shows, and the messages to choose from; the events of one topic share it."""
+    """Return the messages to choose from for each event that comes in; the events of one topic share them."""
     data = NodeData(graph, Engine(graph.model))
     data.reason = Failure.ABORTED
     values, kept = Values(graph), list(messages.kept_reads(graph))
@@ -241,7 +241,7 @@ def _find_samples(kind: Incoming, values: Values, data: NodeData, receptions: Se
 def _events(
     receptions: Sequence[rosgraph.Reception], made: Any, data: NodeData
 ) -> tuple[tuple[str, tuple[tuple[str, Any], ...]], ...] | None:
-    """What the supervisor is told of a message; None where some of it can't be read."""
+    """The inputs of the supervisor from a message; None where some of them can't be read."""
     events = []
     try:
         for reception in receptions:

@@ -126,8 +126,6 @@ class Tour(Drive):
             self.plan, self._planned_before = earlier.plan, iter(earlier.planned)
         self._shown: set[Goal] = set()
         self._steps = 0
-        #: What is seen before the first step.
-        self.at_start: frozenset[Goal] = frozenset()
         self.traces: list[list[str]] = []
         self._run()
         while len(self.traces) < _TRACES and (left := self.plan.possible - self._shown):
@@ -147,8 +145,6 @@ class Tour(Drive):
         try:
             self._pass_period()
             self._controller.look()
-            if not self.traces:
-                self.at_start = frozenset(self._shown)
             while any(self._stepped(step) for step in self._tour()):
                 pass
         finally:

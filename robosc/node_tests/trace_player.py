@@ -33,6 +33,8 @@ ANSWER = 2.0
 REACTION = 0.3
 SETTLED = 0.05
 MOST_IDLE_TICKS = 3
+#: How often the first time is told.
+INTRODUCTIONS = 10
 #: Seconds by which times may differ that are the same.
 EXACT = 1e-6
 #: Seconds after the node's tick at which it is over.
@@ -422,14 +424,20 @@ class Player:
         #: When a call that nobody answers has failed, and when a client is ready again after a failure.
         self._due: dict[str, float] = {}
         self._now = START * self._period
+        #: How much later the clock shows what the trace tells.
+        self._later = 0.0
 
     def play(self, lines: list[Line]) -> None:
         """Plays a trace from the node's start on. Raises TraceError where the node does not follow it."""
         self._port.connect()
-        self._port.set_time(self._now)
+        # A node that misses the first time begins later: its ticks, and the times that run from the start, are others.
+        for _ in range(INTRODUCTIONS):
+            self._port.set_time(self._now)
+            time.sleep(SETTLED)
         # A trace that was made with the package tells times from the node's start, a log of a robot does not.
         begun = self._now if lines[0].time < 2 * self._period else lines[0].time
         previous = replace(lines[0], time=begun)
+        self._later = self._now - begun
         for position, line in enumerate(lines):
             if line.direction == "in" and position >= self._sent_until:
                 self._let_pass(line, previous)
@@ -469,7 +477,7 @@ class Player:
     def _let_pass(self, line: Line, previous: Line) -> None:
         """The time of which the trace does not tell because nothing happened in it."""
         if self._timed:
-            self._pass_until(self._now + line.time - previous.time)
+            self._pass_until(line.time + self._later)
             return
         for _ in range(min(math.floor((line.time - previous.time) / self._period + 1e-3), MOST_IDLE_TICKS)):
             self._pass_period()
@@ -578,7 +586,7 @@ class Player:
         at_once = position > 0 and line.time - previous.time < self._period / 20
         done = self._log.wait(SETTLED if at_once else 0)
         if done is None and self._timed:
-            self._pass_until(self._now + line.time - previous.time)
+            self._pass_until(line.time + self._later)
             done = self._log.peek()
         if done is None:
             self._begin_batch(lines, position)

@@ -97,7 +97,7 @@ def _node(
 
 
 def _started(name: str, graph: rosgraph.RosGraph, *, shows: bool) -> str:
-    """What a person who has started a node wants to know: what it is connected to, where to look, how it ends."""
+    """Return the lines for the user who starts a node: its connections, where to look, how it ends."""
     parts = (
         ("hears", [subscription.topic for subscription in graph.subscriptions]),
         ("sends", [publisher.topic for publisher in graph.publishers]),

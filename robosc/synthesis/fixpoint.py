@@ -43,7 +43,7 @@ _TERMINAL = sys.maxsize
 
 @dataclass(frozen=True)
 class SupervisedStates:
-    """What the fixpoint found.
+    """The result of the fixpoint.
 
     `rounds` are the states still held to be good, from all that are reachable under the requirements to the final ones;
     `alive` of the same round those from which a marked state can be reached within them and without one that violates

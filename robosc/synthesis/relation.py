@@ -1,4 +1,4 @@
-"""What each event does to the state: one relation per event, over no more than the event touches."""
+"""Transition relations: one for each event, over no more than the event touches."""
 
 from __future__ import annotations
 
@@ -147,17 +147,17 @@ class EventRelation:
 
     @cached_property
     def plant_step(self) -> Step | None:
-        """What the event does where the plants enable it; None where it changes nothing at all."""
+        """The step of the event where the plants enable it; None where it changes nothing at all."""
         return self.step_where(self._encoding.diagrams.true)
 
     @cached_property
     def step(self) -> Step | None:
-        """What the event does where the requirements allow it too."""
+        """The step of the event where the requirements allow it, too."""
         return self.plant_step if self.requirement.valid() else self.step_where(self.requirement)
 
     @cached_property
     def touched(self) -> frozenset[Element]:
-        """Whatever the plants read or change when it happens, or to find out whether it can."""
+        """The elements that the plants read or change when it happens, or read to decide whether it can."""
         touched = {*self.enabled_by, *self.changed}
         for edge in (edge for edges in self._edges for edge in edges):
             touched.update(referenced(edge.guard))
@@ -171,7 +171,7 @@ class EventRelation:
         return self.touched.union(*(referenced(requirement.condition) for requirement in self.requirements))
 
     def step_where(self, condition: Diagram) -> Step | None:
-        """What the event does where the plants enable it and the condition holds; None where it changes nothing."""
+        """The step of the event where the plants enable it and the condition holds; None where it changes nothing."""
         if not self.changed:
             return None
         domains = self._encoding.layout.domains
@@ -288,7 +288,7 @@ def required_moves(relations: Iterable[EventRelation]) -> list[Move]:
 
 
 def steps(moves: Iterable[Move]) -> list[Step]:
-    """What the events do."""
+    """The steps of the events."""
     return [step for _, step in moves]
 
 

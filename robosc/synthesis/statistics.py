@@ -1,4 +1,4 @@
-"""What a synthesis does and what it costs, while it runs and afterwards."""
+"""Phases and costs of a synthesis, while it runs and afterwards."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Phase(StrEnum):
-    """What synthesis does, in this order."""
+    """The phases of synthesis, in this order."""
 
     #: Puts the variables in order.
     ORDER = "order"

@@ -14,6 +14,7 @@ from robosc.cli import main
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "cif-simulator.md").read_text(encoding="utf-8")
 MODEL = "examples/line_follower/line_follower.rscd"
+PRESSED = 'message_pressed.u_response {"value": true}'
 
 
 def call(*words: str, given: str = "") -> str:
@@ -39,13 +40,13 @@ def test_the_inputs_and_events_are_there(supervised: Path) -> None:
         assert f"input FrontView {name};" in plants[plant]
     for plant, name in re.findall(r"`((?:message|component)_\w+)\.(\w+)`", PAGE):
         assert re.search(rf"controllable {name};", plants[plant])
-    assert "CIF counts 128" in text
+    assert "CIF counts 384" in text
 
 
 @pytest.mark.parametrize("option", [[], ["--counts"]])
 def test_states_are_counted_as_cif_counts_them(option: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
-    for inputs, states in (([], 64), (["--count-inputs"], 128)):
+    for inputs, states in (([], 96), (["--count-inputs"], 384)):
         told = json.loads(call("synthesize", MODEL, "--json", *option, *inputs))
         assert (told["controlled_states"], told["uncontrolled_states"]) == (states, states)
         assert call("synthesize", MODEL, *option, *inputs).startswith(f"LineFollower: {states} states, of {states} ")
@@ -55,7 +56,7 @@ def test_the_same_steps_on_the_desk(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     [given] = re.findall(r"^printf '%s\\n' (.*) \|$", PAGE, re.MULTILINE)
     events = [event.strip("'") for event in re.findall(r"'[^']*'|\S+", given)]
-    script = "\n".join([*events, "message_stop.u_response", "message_move.c_trigger"])
+    script = "\n".join([*events, PRESSED, "message_move.c_trigger"])
     told = [json.loads(line) for line in call("simulate", MODEL, "--script", "-", given=script).splitlines()]
     assert [step["accepted"] for step in told] == [*[True] * len(events), True, False]
     call("explain", MODEL, "--event", "move")
@@ -70,4 +71,4 @@ def test_an_input_that_changes(supervised: Path) -> None:
     assert text.count(old) == supervised.read_text().count(old) == 1
     model.write_text(f"{text.replace(old, new)}\n{plant}")
     # The value of the input has become part of the state.
-    assert json.loads(call("synthesize", str(model), "--json"))["controlled_states"] == 128
+    assert json.loads(call("synthesize", str(model), "--json"))["controlled_states"] == 384

@@ -102,14 +102,15 @@ def test_the_button_cancels_the_journey(name: str) -> None:
 
 
 class Robot(ControlLoop):
-    """A loop that gives what it sends, in short: `move` for `message_move.c_trigger`."""
+    """A loop that gives what it sends, in short: `move` for `message_move.c_trigger`. The robot has been set going."""
 
     def __init__(self, name: str) -> None:
         self.sent: list[str] = []
         super().__init__(models_of(name).sct, hooks=Hooks(after=self.note))
         self.inputs = {event_name(event): [data.name for data in event.inputs] for event in self.engine.roles.events}
         self.tick()
-        self.sent.clear()
+        self.hears(pressed=False)
+        self.hears(**{"continue": None})
 
     def note(self, event: str) -> None:
         kind, _, name = event.partition("_")
@@ -166,7 +167,9 @@ def test_the_maze_solver_turns_once_and_looks_first() -> None:
 def test_the_maze_solver_comes_free_of_a_turn_that_is_never_reported() -> None:
     robot = Robot("maze_solver")
     assert "rotate_left" in robot.hears(**scan("wall_ahead", "wall_right", "wall_back_right"))
-    assert robot.hears(stop=None) == ["halt"]
+    assert robot.hears(pressed=True) == ["halt"]
+    assert robot.hears(**{"continue": None}) == [], "it is still pressed"
+    assert robot.hears(pressed=False) == []
     assert robot.hears(**{"continue": None}) == []
     assert robot.ticks() == ["halt"]
     assert robot.hears(**scan("way_ahead", "wall_right", "wall_back_right")) == ["move"]
@@ -212,8 +215,9 @@ def test_releasing_the_button_sets_nobody_off() -> None:
     robot = Robot("simple_navigation")
     robot.hears(initial_pose=None)
     robot.hears(clicked_point=None)
-    assert robot.hears(stop=None) == ["navigate.c_cancel"]
+    assert robot.hears(pressed=True) == ["navigate.c_cancel"]
     robot.hears(clicked_point=None)
+    assert robot.hears(pressed=False) + robot.ticks() == []
     assert robot.hears(**{"continue": None}) + robot.ticks() == []
 
 
@@ -232,7 +236,8 @@ def test_too_many_recoveries_end_the_journey_but_not_the_next() -> None:
 def test_the_ball_pusher_is_told_when_its_velocities_change() -> None:
     robot = Robot("push_ball")
     assert robot.ticks() == ["halt"]
-    assert robot.hears(no_ball=None) == ["move"]
+    assert robot.hears(no_ball=None) == [], "the lidar says nothing yet"
+    assert robot.hears(scan="obstructed") == ["move"]
     assert robot.hears(ball_correction=None) == ["halt"]
     assert robot.hears(scan="free") == ["move"]
     assert robot.hears(ball_front_check=None) == ["move"]
@@ -243,6 +248,7 @@ def test_the_ball_pusher_is_told_when_its_velocities_change() -> None:
 def test_the_person_follower_turns_but_does_not_drive_to_who_is_near() -> None:
     robot = Robot("person_follower")
     assert robot.ticks() == ["halt"]
+    assert robot.hears(scan="near") == []
     assert robot.hears(who="person", place=None) == ["move"]
     assert robot.state["data_move"] == "d2"
     assert robot.hears(scan="far") == ["move"]

@@ -2,6 +2,7 @@
 
 import json
 import re
+from itertools import accumulate, pairwise
 
 import pytest
 from click.testing import CliRunner
@@ -15,21 +16,39 @@ REFUSED = ' {"value": {"success": false}}'
 FREE = ' {"value": {"ranges": [2.0, 1.5]}}'
 
 
-def play(name: str, *lines: str) -> list[list[str]]:
-    """What the controller asks for after each line of a script and the tick that follows it, once each."""
-    script = "\n".join(f"{line}\ntick" for line in lines)
+def heard(name: str, value: object = None) -> str:
+    return f"message_{name}.u_response" + ("" if value is None else " " + json.dumps({"value": value}))
+
+
+PRESSED, RELEASED, GO_ON = heard("pressed", True), heard("pressed", False), heard("continue")
+#: Seconds for which nothing counts as silent.
+PATIENCE = 0.4
+
+
+def play(name: str, *lines: str, button: bool = True) -> list[list[str]]:
+    """What the controller asks for after each line of a script and the tick that follows it, once each.
+
+    The robot has been set going. While a line waits, the `button` repeats whether it is pressed.
+    """
+    level, steps = RELEASED, [[RELEASED], [GO_ON]]
+    for line in lines:
+        level = line if line in (PRESSED, RELEASED) else level
+        seconds = float(line.removeprefix("wait ")) if line.startswith("wait ") and button else 0.0
+        pauses = [PATIENCE] * int(seconds / PATIENCE) + [seconds % PATIENCE]
+        steps.append([step for pause in pauses for step in (level, f"wait {pause:.3f}")] if seconds else [line])
+    script = "\n".join(line for step in steps for line in [*step, "tick"])
     done = CliRunner().invoke(main, ["simulate", str(MODELS[name]), "--loop", "--script", "-"], script)
     assert done.exit_code == 0, done.stderr
     answers = [json.loads(line) for line in done.stdout.splitlines()]
-    assert [answer["by"] for answer in answers] == [None] * 2 * len(lines)
-    pairs = zip(answers[::2], answers[1::2], strict=True)
-    happened = [" ".join(line["happened"] + tick["happened"]) for line, tick in pairs]
+    assert all(answer["by"] is None for answer in answers)
+    ends = [0, *accumulate(len(step) + 1 for step in steps)]
+    assert len(answers) == ends[-1]
+    happened = [
+        " ".join(event for answer in answers[start:end] for event in answer["happened"])
+        for start, end in pairwise(ends)
+    ][2:]
     sent = [re.findall(r"(?:message|service|action)_(\w+)\.c_(trigger|cancel)", text) for text in happened]
     return [[*dict.fromkeys(name if way == "trigger" else f"cancel {name}" for name, way in names)] for names in sent]
-
-
-def heard(name: str, value: object = None) -> str:
-    return f"message_{name}.u_response" + ("" if value is None else " " + json.dumps({"value": value}))
 
 
 def scans() -> list[str]:
@@ -39,7 +58,7 @@ def scans() -> list[str]:
 def shelved() -> list[str]:
     """The robot is ready for its way to a shelf, in the aisle, but for its lidars."""
     return [
-        *(heard(f"{name}_pressed", False) for name in ("Front", "Rear", "Left", "Right")),
+        *(heard(f"{name}_touched", False) for name in ("Front", "Rear", "Left", "Right")),
         heard("charge", {"percentage": 0.8}),
         heard("order"),
         f"service_undock.u_response{DONE}",
@@ -67,7 +86,7 @@ def test_the_warehouse_robot_serves_an_order() -> None:
 @pytest.mark.slow
 def test_the_warehouse_robot_stops_for_what_it_touches_or_no_longer_sees() -> None:
     under_way = [*shelved(), *scans()]
-    for trouble in (heard("Left_pressed", True), heard("stop"), "wait 0.6"):
+    for trouble in (heard("Left_touched", True), PRESSED, "wait 0.6"):
         assert work(play("warehouse_robot", *under_way, trouble))[-1] == ["cancel navigate"]
 
 
@@ -81,7 +100,7 @@ def test_the_warehouse_robot_turns_back_where_its_power_is_low() -> None:
 
 def test_the_warehouse_robot_leaves_the_aisle_when_its_goal_has_ended() -> None:
     """A goal that succeeds before its cancel arrives is one that has arrived: the robot leaves the aisle then."""
-    lines = [*shelved(), *scans(), heard("Left_pressed", True), "tick", "action_navigate.u_response"]
+    lines = [*shelved(), *scans(), heard("Left_touched", True), "tick", "action_navigate.u_response"]
     assert work(play("warehouse_robot", *lines))[-3:] == [["cancel navigate"], [], ["leave"]]
 
 
@@ -141,7 +160,7 @@ def test_the_sprayer_drives_a_route_to_its_end() -> None:
 
 @pytest.mark.slow
 def test_the_sprayer_gives_up_its_way_where_it_may_not_go_on() -> None:
-    for trouble in (heard("stop"), at(100.5), at(0.0, -40.5), heard("automatic", False), "wait 1"):
+    for trouble in (PRESSED, at(100.5), at(0.0, -40.5), heard("automatic", False), "wait 1"):
         sent = wheels(play("sprayer", *AUTOMATIC, route(3), trouble, "tick", "action_drive.u_canceled"))
         assert sent[-3:] == [["cancel drive"], [], ["halt"]]
 
@@ -151,7 +170,7 @@ def test_the_sprayer_gives_up_its_way_where_it_may_not_go_on() -> None:
     ("before", "release", "sent_then"),
     [
         pytest.param([*AUTOMATIC, route(3)], heard("automatic", False), ["cancel drive"], id="mode"),
-        pytest.param([heard("heartbeat"), heard("stop")], heard("continue"), ["halt"], id="stop"),
+        pytest.param([heard("heartbeat"), PRESSED, RELEASED], GO_ON, ["halt"], id="stop"),
     ],
 )
 def test_a_stick_that_was_held_before_it_counted_has_to_be_let_go(
@@ -170,15 +189,61 @@ def test_a_section_sprays_where_it_is_due_in_the_field() -> None:
     ready = [*AUTOMATIC, heard("level", 0.8), heard("Left_sprayed", False), route(1)]
     sent = play("sprayer", *ready)
     assert [name for name in sent[-1] if name.endswith("_open")] == ["Left_open"]
-    for end in (heard("Left_sprayed", True), heard("level", 0.01), at(101.0), heard("stop")):
+    for end in (heard("Left_sprayed", True), heard("level", 0.01), at(101.0), PRESSED):
         last = play("sprayer", *ready, end)[-1]
         assert "Left_open" not in last
         assert "Left_shut" in last
 
 
-@pytest.mark.parametrize(("name", "view"), [("object_finder", "scan_front"), ("push_ball", "scan")])
-def test_a_robot_whose_lidar_falls_silent_halts(name: str, view: str) -> None:
-    clear = heard(view, {"ranges": [2.0] * 360})
-    lines = [heard("ball_correction", 0.0), clear] if name == "push_ball" else [clear]
-    sent = play(name, *lines, "wait 0.4", clear, "wait 0.4", "wait 0.2", clear)
-    assert sent[-6:] == [*[["move"]] * 4, ["halt"], ["move"]]
+CLEAR = {"ranges": [2.0] * 360}
+LINE = heard("correction", 0.0)
+PERSON = heard("who", {"bounding_boxes": [{"class_id": "person"}]})
+BALL = heard("ball_correction", 0.0)
+#: What each robot that drives by itself hears when it moves.
+MOVING = {
+    "line_follower": [LINE, heard("scan", CLEAR)],
+    "maze_solver": [heard("scan_front", CLEAR)],
+    "object_finder": [heard("scan_front", CLEAR)],
+    "person_follower": [PERSON, heard("scan", CLEAR)],
+    "push_ball": [BALL, heard("scan", CLEAR)],
+    "supervised_line_follower": [LINE, heard("scan", CLEAR)],
+}
+SENSORS = [(name, sensor) for name, sensors in MOVING.items() for sensor in sensors]
+
+
+@pytest.mark.parametrize(
+    ("name", "sensor"), SENSORS, ids=[f"{name} {sensor.split('.')[0]}" for name, sensor in SENSORS]
+)
+def test_a_robot_with_a_sensor_that_falls_silent_stops(name: str, sensor: str) -> None:
+    """Also where all other sensors go on; and it moves on when the sensor is back."""
+    others = [line for line in MOVING[name] if line != sensor]
+    sent = play(name, *others, sensor, "wait 0.4", *others, sensor, "wait 0.4", *others, "wait 0.2", sensor)
+    moves, stops = [["step"], []] if name == "supervised_line_follower" else [["move"], ["halt"]]
+    assert sent[len(others) : -2] == [moves] * (4 + 2 * len(others))
+    assert sent[-2:] == [stops, moves]
+
+
+#: What sets the others going, and what they send when they stop.
+UNDER_WAY = {
+    "obstacle_navigation": [heard("initial_pose"), heard("clicked_point")],
+    "simple_navigation": [heard("initial_pose"), heard("clicked_point")],
+    "sprayer": [*AUTOMATIC, route(1)],
+    "warehouse_robot": [*shelved(), *scans()],
+}
+
+
+@pytest.mark.parametrize("name", [*MOVING, *UNDER_WAY])
+def test_a_robot_with_a_button_that_falls_silent_stops_until_it_is_set_going(name: str) -> None:
+    sensors = MOVING.get(name, [])
+    lines = [*UNDER_WAY.get(name, sensors), "wait 0.4", *sensors, *([*scans()] if name == "warehouse_robot" else [])]
+    sent = play(name, *lines, "wait 0.2", *sensors, RELEASED, *sensors, GO_ON, *sensors, button=False)
+    stopped = sent[len(lines)]
+    moves = {"supervised_line_follower": "step"}.get(name, "move")
+    if name in MOVING:
+        assert sent[len(lines) - 1] == [moves]
+        assert all(moves not in names for names in sent[len(lines) : -1 - len(sensors)])
+        assert sent[-1] == [moves]
+    else:
+        assert [names for names in stopped if names.startswith("cancel")] == [
+            "cancel drive" if name == "sprayer" else "cancel navigate"
+        ]

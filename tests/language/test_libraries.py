@@ -5,8 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from robosc.checks import check
 from robosc.files.resources import locate
 from robosc.language import read
+from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.places import place
 from tests.language.texts import places, reading, underlined
@@ -51,6 +53,27 @@ def test_the_standard_library_holds_no_fault() -> None:
     assert [library_read.findings for library_read in readings] == [[]] * len(files)
     names = {library_read.base.name for library_read in readings if library_read.base}
     assert names >= {"EmergencyStopLibrary", "TurtlebotLibrary"}
+
+
+@pytest.mark.parametrize(
+    ("library_name", "data", "ros_type"),
+    [
+        ("TurtlebotLibrary", "{ linear: { x: 0.3 } }", "geometry_msgs/Twist"),
+        ("StampedTurtlebotLibrary", "{ twist: { linear: { x: 0.3 } } }", "geometry_msgs/TwistStamped"),
+    ],
+)
+def test_the_standard_library_drives_with_and_without_a_stamp(
+    tmp_path: Path, library_name: str, data: str, ros_type: str
+) -> None:
+    provided = f"provide move with {data} provide halt with {data.replace('0.3', '0.0')}"
+    robot = f"robot R {{ component Platform from {library_name} import TurtlebotPlatform {provided} }}"
+    found = reading(tmp_path, robot)
+    assert [*found.findings, *check(found.base, found.findings)] == []
+    graph = robosc_to_rosgraph.transform(robosc_to_sct.transform(found.base)[1])
+    sent = [
+        (publisher.topic, f"{publisher.interface.package}/{publisher.interface.type}") for publisher in graph.publishers
+    ]
+    assert sent == [("/cmd_vel", ros_type)]
 
 
 @pytest.mark.parametrize(

@@ -60,10 +60,10 @@ def tool(installed: Path, *arguments: object, status: int = 0) -> str:
 def test_a_target_of_another_package_is_listed_and_generates(installed: Path, tmp_path: Path) -> None:
     assert "structured-text the supervisor as a function block" in tool(installed, "transform", "--help")
     out = tmp_path / "out"
-    tool(installed, "transform", LINE_FOLLOWER, "--to", "structured-text,cif", "-o", out)
-    text = (out / "structured-text" / "LineFollower.st").read_text()
-    assert "FUNCTION_BLOCK FB_LineFollower\n" in text
-    assert (out / "LineFollower.cif").exists()
+    tool(installed, "transform", MODELS["line_stepper"], "--to", "structured-text,cif", "-o", out)
+    text = (out / "structured-text" / "LineStepper.st").read_text()
+    assert "FUNCTION_BLOCK FB_LineStepper\n" in text
+    assert (out / "LineStepper.cif").exists()
     assert "a time has no form in the function block [structured-text]" in tool(
         installed, "transform", ROOT / "tests/analysis/verify/patrol.rscd", "--to", "structured-text", status=1
     )
@@ -90,7 +90,7 @@ def test_another_synthesizer_finds_as_many_states(installed: Path) -> None:
         json.loads(tool(installed, "synthesize", LINE_FOLLOWER, "--json", *other))
         for other in ((), ("--synthesizer", "faudes"))
     ]
-    assert both[0]["controlled_states"] == both[1]["controlled_states"] == 64
+    assert both[0]["controlled_states"] == both[1]["controlled_states"] == 96
     enabled = [{event["name"]: event["ever_enabled"] for event in answer["events"]} for answer in both]
     assert enabled[0] == enabled[1]
 
@@ -190,7 +190,7 @@ SHY = (
     "            guard.synthesis = expression.BooleanLiteral(value=False)\n"
     "    return found\n"
 )
-STATE = "LineDetector=following,Lidar=free"
+STATE = "LineDetector=following,Lidar=free,EmergencyStop=in_service"
 
 
 def test_the_supervisor_of_another_tool_is_explained(broken) -> None:
@@ -220,7 +220,7 @@ def test_the_debugger_takes_another_synthesizer(broken, tmp_path: Path) -> None:
     with not_longer_than(120):
         program = Program(tmp_path, "--synthesizer", "broken", packages=packages)
         program.launch(LINE_FOLLOWER)
-        for text in ("correction 0.1", 'scan "clear"', "component_Lidar.c_tau1"):
+        for text in ("pressed false", "continue", "correction 0.1", 'scan "clear"', "component_Lidar.c_tau1"):
             program.console(text)
         move = program.scope("Can't happen")["message_move.c_trigger"]
         assert program.children(move)["supervisor"]["value"].startswith("only this supervisor forbids it")

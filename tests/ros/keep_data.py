@@ -23,6 +23,9 @@ class World:
         self.listen("/twist", "geometry_msgs/Twist", lambda m: [m.linear.x, m.linear.y, m.linear.z])
         self.listen("/stamped", "geometry_msgs/PoseStamped", lambda m: [m.pose.position.x, m.pose.orientation.w])
         self.listen("/text", "std_msgs/String", lambda m: m.data)
+        self.unset = {"/seated": set(), "/turn": set()}
+        self.topics.listen("/seated", "geometry_msgs/Pose", lambda m: self.unset["/seated"].add(m.orientation.w))
+        self.topics.listen("/turn", "std_msgs/Float64", lambda m: self.unset["/turn"].add(m.data))
         self.joints = self.topics.publisher("/joints", "sensor_msgs/JointState")
         self.cloud = self.topics.publisher("/cloud", "geometry_msgs/PoseArray")
         self.image = self.topics.publisher("/image", "sensor_msgs/CompressedImage")
@@ -41,7 +44,7 @@ class World:
     def start(self):
         """Until the node hears, and is heard on all topics; then nothing of it is remembered."""
         until, number = time.monotonic() + PATIENCE, 0
-        while not self.topics.heard() or not all(self.heard.values()):
+        while not self.topics.heard() or not all([*self.heard.values(), *self.unset.values()]):
             if time.monotonic() > until:
                 sys.exit(f"the node is not heard within {PATIENCE} s: {self.heard}")
             number = 1 - number
@@ -95,4 +98,4 @@ if __name__ == "__main__":
     world = World(sys.argv[1])
     world.start()
     world.run()
-    Path(sys.argv[2]).write_text(json.dumps(world.heard))
+    Path(sys.argv[2]).write_text(json.dumps(world.heard | {name: list(seen) for name, seen in world.unset.items()}))

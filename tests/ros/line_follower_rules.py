@@ -18,7 +18,8 @@ class Inputs:
 
     correction: float | None = None
     clear: bool = False
-    stopped: bool = False
+    stopped: bool = True
+    released: bool = False
 
     @property
     def may_move(self) -> bool:
@@ -33,10 +34,21 @@ class Inputs:
                 self.correction = None
             case "scan":
                 self.clear = data
-            case "stop":
-                self.stopped = True
+            case "pressed" | "emergency_stop":
+                pressed = data["data"] if isinstance(data, Mapping) else data
+                self.stopped, self.released = self.stopped or pressed, not pressed
             case "continue":
-                self.stopped = False
+                self.stopped = self.stopped and not self.released
+
+    def miss(self, component: str) -> None:
+        """Takes in that what a component waits for has fallen silent."""
+        match component:
+            case "LineDetector":
+                self.correction = None
+            case "Lidar":
+                self.clear = False
+            case "EmergencyStop":
+                self.stopped, self.released = True, False
 
 
 def violations(log: Iterable[Entry]) -> list[str]:
@@ -49,6 +61,8 @@ def violations(log: Iterable[Entry]) -> list[str]:
         if event == "u_response":
             topic = plant.removeprefix("message_")
             inputs.hear(topic, value == "clear" if topic == "scan" else value)
+        elif event.startswith("u_after"):
+            inputs.miss(plant.removeprefix("component_"))
         elif entry["event"] == MOVE:
             wanted = {"linear": {"x": 0.2}, "angular": {"z": -(inputs.correction or 0.0) / 100}}
             if not inputs.may_move:

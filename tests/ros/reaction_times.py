@@ -2,7 +2,7 @@
 
 python3 reaction_times.py 1|2 FILE --reason stop|obstacle [--times N] [--seed S] [--frozen SECONDS]
 
-A `stop` is a message on /stop, while somebody else sends the sensors' messages; an `obstacle` is a scan, in a stream
+A `stop` is a press of the button, while somebody else sends the sensors' messages; an `obstacle` is a scan, in a stream
 of scans that is this program's. The robot drives each time, and the moment is random.
 
 In between it is measured what `echo.py` takes to answer. `--frozen` is for a node in simulated time whose period is
@@ -35,11 +35,12 @@ class World:
         self.answers = []
         self.topics.listen("/cmd_vel", "geometry_msgs/Twist", self._commanded)
         self.topics.listen("/answer", "std_msgs/Int32", self._answered)
-        self.stop, self.go = (self.topics.publisher(topic, "std_msgs/Empty") for topic in ("/stop", "/continue"))
+        self.button = self.topics.publisher("/emergency_stop", "std_msgs/Bool")
+        self.go_on = self.topics.publisher("/continue", "std_msgs/Empty")
         self.scan = self.topics.publisher("/scan", "sensor_msgs/LaserScan") if scans else None
         self.correct = self.topics.publisher("/correction", "std_msgs/Float32") if scans else None
         self.ask = self.topics.publisher("/question", "std_msgs/Int32")
-        self.seen = CLEAR
+        self.seen, self.pressed = CLEAR, False
         self._due = time.monotonic()
 
     def _commanded(self, message):
@@ -49,47 +50,60 @@ class World:
         self.answers.append((time.perf_counter(), message.data))
 
     def live(self, seconds):
-        """Time passes; scans are sent when they are due."""
+        """Time passes; scans, and whether the button is pressed, are sent when they are due."""
         until = time.monotonic() + seconds
         while True:
             now = time.monotonic()
-            if self.scan and now >= self._due:
+            if now >= self._due:
                 self.sense()
             left = until - now
             if left <= 0:
                 return
-            self.topics.receive(min(left, self._due - now) if self.scan and self._due > now else left)
+            self.topics.receive(min(left, max(0.0, self._due - now)))
 
     def sense(self):
-        """What the sensors say now, and again a period later."""
-        self.scan(**self.seen)
-        self.correct(data=10.0)
+        """What the sensors and the button say now, and again a period later."""
+        self.button(data=self.pressed)
+        if self.scan:
+            self.scan(**self.seen)
+            self.correct(data=10.0)
         self._due = time.monotonic() + 1 / HZ
 
-    def wait(self, condition, what):
-        """Lives until a condition holds."""
+    def wait(self, condition, what, period=0.002):
+        """Lives until a condition holds, which is looked at once in a period."""
         until = time.monotonic() + PATIENCE
         while not condition():
             if time.monotonic() > until:
                 sys.exit(f"{what}: not within {PATIENCE} s")
-            self.live(0.002)
+            self.live(period)
 
-    def reaction(self, speed, act):
-        """Seconds from an act to the first command of a speed that is zero or not."""
+    def drive(self):
+        """Releases the button and presses continue until the robot drives."""
+        since = len(self.commands)
+        self.seen, self.pressed = CLEAR, False
+        self.sense()
+
+        def drives():
+            self.go_on()
+            return any(sent for _, sent in self.commands[since:])
+
+        self.wait(drives, "the robot drives", 0.05)
+
+    def reaction(self):
+        """Seconds from what is told now to the first command to stand."""
         since = len(self.commands)
         began = time.perf_counter()
-        act()
+        self.sense()
 
         def found():
-            return next((at for at, sent in self.commands[since:] if bool(sent) == speed), None)
+            return next((at for at, sent in self.commands[since:] if not sent), None)
 
-        self.wait(found, "the robot drives" if speed else "the robot stands")
+        self.wait(found, "the robot stands")
         return found() - began
 
     def start(self):
-        """Waits until the robot drives."""
+        """Waits until the node listens."""
         self.wait(self.topics.heard, "the node listens")
-        self.reaction(True, lambda: None)
 
     def start_frozen(self, period):
         """As `start`, with a clock that allows one tick and no more."""
@@ -123,15 +137,14 @@ def measure(world, options):
     chance = random.Random(options.seed)  # noqa: S311  # no secret
     reactions, echoes = [], []
     for number in range(options.times):
-        if options.reason == "obstacle":
-            world.seen = CLEAR
-            world.reaction(True, world.sense)
-        else:
-            world.reaction(True, world.go)
+        world.drive()
         world.live(chance.uniform(0, DRIVES))
         echoes.append(world.round_trip(number))
-        world.seen = BLOCKED if options.reason == "obstacle" else CLEAR
-        reactions.append(world.reaction(False, world.sense if options.reason == "obstacle" else world.stop))
+        if options.reason == "obstacle":
+            world.seen = BLOCKED
+        else:
+            world.pressed = True
+        reactions.append(world.reaction())
         world.live(chance.uniform(0, STANDS))
     return {"reactions": reactions, "echoes": echoes}
 

@@ -1,6 +1,8 @@
 """Sends what a line follower's sensors say where the line is in view and the way is clear, until interrupted.
 
-python3 sensors.py 1|2 HZ
+python3 sensors.py 1|2 HZ [--going]
+
+With `--going` also a button that is released, and somebody who presses continue.
 """
 
 import sys
@@ -9,13 +11,20 @@ from reaction_times import CLEAR
 from topics import connect
 
 
-def main(version, hz):
+def main(version, hz, *options):
     topics = connect(version, "sensors")
     scan, correct = (
         topics.publisher(topic, kind)
         for topic, kind in (("/scan", "sensor_msgs/LaserScan"), ("/correction", "std_msgs/Float32"))
     )
+    button, go_on = None, None
+    if options:
+        button = topics.publisher("/emergency_stop", "std_msgs/Bool")
+        go_on = topics.publisher("/continue", "std_msgs/Empty")
     while True:
+        if options:
+            button(data=False)
+            go_on()
         scan(**CLEAR)
         correct(data=10.0)
         topics.receive(1 / float(hz))

@@ -48,6 +48,9 @@ def test_what_came_in_is_kept_and_handed_on(nodes: Workspace | Runner, tmp_path:
         ],
         "/stamped": [[7.0, 0.0], [1.6, 0.5], [2.0, 0.5], [2.5, 0.25]],
         "/text": ["ab", "last"],
+        # An object that nothing was stored in.
+        "/seated": [1.0],
+        "/turn": [1.0],
     }
     shown = {}
     for line in map(json.loads, log.read_text(encoding="utf-8").splitlines()):

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 #: Seconds for a message on its way and for the ticks that answer it.
 TRANSPORT = 0.8
+GOING = "the robot is set going"
 OBSTACLE, CLEAR = "an obstacle is put on the line", "the obstacle is taken away"
 STOP, CONTINUE = "stop is pressed", "continue is pressed"
 COVER, UNCOVER = "the line is covered", "the line is uncovered"
@@ -31,13 +32,14 @@ END = "the goal is reached"
 
 
 def test_follows_the_line(drive: Drive) -> None:
-    until = drive.when(OBSTACLE)
+    start, until = drive.when(GOING), drive.when(OBSTACLE)
     poses = drive.poses(end=until)
     assert len(poses) > 45
     assert max(pose["off_line"] for pose in drive.poses()) < 0.1
-    assert max(pose["off_line"] for pose in drive.poses(4.0)) < 0.06
-    assert poses[-1]["travelled"] > 0.2 * until * 0.9
-    assert all(linear == 0.2 for _, linear, _ in drive.commands(1.0, until))
+    assert max(pose["off_line"] for pose in drive.poses(start + 4.0)) < 0.06
+    assert poses[-1]["travelled"] > 0.2 * (until - start) * 0.9
+    assert all(linear == 0.0 for _, linear, _ in drive.commands(end=start))
+    assert all(linear == 0.2 for _, linear, _ in drive.commands(start + TRANSPORT, until))
 
 
 def test_halts_for_the_obstacle_and_goes_on_when_it_is_gone(drive: Drive) -> None:
@@ -114,7 +116,8 @@ def test_reports_state_and_definition(drive: Drive) -> None:
         for state in component["states"]
     }
     assert seen == declared
-    assert sum(event == "message_stop.u_response" for state in states for event in state["transitions"]) == 1
+    # The last time somebody presses continue; the listener may have missed the first.
+    assert sum(event == "message_continue.u_response" for state in states for event in state["transitions"]) in (1, 2)
     assert all(state["transitions"] for state in states[1:])
     told = [event for state in states for event in state["transitions"]]
     happened = [entry["event"] for entry in drive.log]

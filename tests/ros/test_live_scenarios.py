@@ -18,10 +18,12 @@ if TYPE_CHECKING:
 LINE_FOLLOWER = EXAMPLES / "line_follower" / "line_follower.rscd"
 STOPS = """\
 scenario "stops"
+  pressed with false
+  continue
   response from correction with 0.1
   response from scan with clear
   expect move sent with {"linear": {"x": 0.2}}
-  stop
+  pressed with true
   expect halt sent
 """
 PUMP = """\
@@ -217,7 +219,7 @@ def test_a_node_that_does_something_else_is_told_at_the_line(runner: Runner, tmp
     model.write_text(text.replace(" and EmergencyStop.in_service", "").replace(" or EmergencyStop.stopped", ""))
     status, said = played(runner, runner.robosc, tmp_path, STOPS, "--node", shlex.join(runner.command(model)))
     assert (status, "1 scenario, 1 failed" in said) == (1, True), said
-    assert "own.scenarios:5:3: error: the node does something else: the trace says out message_halt.c_trigger" in said
+    assert "own.scenarios:7:3: error: the node does something else: the trace says out message_halt.c_trigger" in said
 
 
 @pytest.mark.parametrize(

@@ -108,8 +108,8 @@ ROS1_PACKAGES = [
         with_tests=True,
         fault=(
             "src/line_follower_supervisor.c",
-            "state->component_EmergencyStop == line_follower_component_EmergencyStop_in_service",
-            "1",
+            "&& state->component_EmergencyStop == line_follower_component_EmergencyStop_in_service;",
+            "&& true;",
         ),
     ),
 ]

@@ -10,6 +10,7 @@ from robosc.configuration import Configuration
 from robosc.configuration.parameters import controller_parameters
 from robosc.runtime.core.controller import Controller
 from robosc.runtime.core.event_loop import EventLoop
+from robosc.runtime.core.node_data import BLANK
 from robosc.runtime.core.settings import SafeMessages, Settings
 
 if TYPE_CHECKING:
@@ -97,6 +98,9 @@ class FakePort:
 
     def create(self, interface: rosgraph.Interface, part: str) -> Record:
         return Record()
+
+    def unset(self, interface: rosgraph.Interface, part: object, path: object) -> Any:
+        return BLANK
 
     def stamp(self, message: Record, frame: str) -> None:
         pass

@@ -94,3 +94,14 @@ def test_nothing_is_early_nothing_is_lost(delays: list[float]) -> None:
     assert sorted(delay for delay, _ in done) == sorted(delays)
     assert all(passed >= delay - 1e-9 for delay, passed in done)
     assert [delay for delay, _ in done] == sorted(delay for delay, _ in done)
+
+
+def test_what_begins_with_the_clock_begins_when_it_has_started() -> None:
+    clock, done = Clock(0.0), []
+    event_loop = EventLoop(clock, starts_late=True)
+    event_loop.at_start(lambda: done.append(clock.now))
+    event_loop.run_pending()
+    assert done == []
+    for clock.now in (0.002, 1.0):
+        event_loop.run_pending()
+    assert done == [0.002]

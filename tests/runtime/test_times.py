@@ -114,6 +114,21 @@ def test_a_clock_that_starts_late(tmp_path: Path) -> None:
     }
 
 
+def test_times_begin_with_the_clock_before_anything_happens(tmp_path: Path) -> None:
+    world = World(GUARD, tmp_path / "events.jsonl", Configuration(on_shutdown=[]))
+    world.port.time = 0.0
+    world.event_loop = EventLoop(lambda: world.port.time, starts_late=True)
+    world.controller._event_loop = world.controller._times._event_loop = world.event_loop
+    world.start()
+    for world.port.time in (0.002, 0.09):
+        world.event_loop.run_pending()
+    with world.controller._times:
+        assert world.controller._control.timers.running == {
+            "component_Base.u_after1": 501 - 88,
+            "component_Base.u_after2": 1001 - 88,
+        }
+
+
 def test_a_tick_comes_after_the_timers_that_have_expired(guard: World) -> None:
     """A timer that has expired when a tick is due is handled before the tick, and what arrived before the timer."""
     guard.hear("scan")

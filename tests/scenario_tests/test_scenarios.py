@@ -84,7 +84,7 @@ def test_the_example(engine: str) -> None:
     files = [str(EXAMPLE / "line_follower.rscd"), str(EXAMPLE / "line_follower.scenarios")]
     answer = played_files(*files, "--engine", engine)
     assert answer.exit_code == 0, answer.output
-    assert "3 scenarios, 0 failed\n" in answer.stderr
+    assert "4 scenarios, 0 failed\n" in answer.stderr
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
+from examples.simulator.devices import GO_ON, STOP
 from examples.simulator.engine import connected, play
 from examples.simulator.playing import over
 from examples.simulator.scenarios import SCENARIOS
@@ -77,10 +78,29 @@ def times_of(record: Iterable[Entry], topic: str) -> list[float]:
     return [entry["time"] for entry in record if entry["topic"] == topic]
 
 
+def stops(record: Iterable[Entry]) -> list[tuple[float, float]]:
+    """From when to when the robot was stopped: from a press of the button to the `continue` after its release."""
+    entries = [entry for entry in record if entry["topic"] in (STOP, GO_ON)]
+    found, pressed = list[tuple[float, float]](), None
+    for entry in entries:
+        if entry["topic"] == GO_ON and pressed is not None:
+            found.append((pressed, entry["time"]))
+            pressed = None
+        elif entry["topic"] == STOP and entry["data"]["data"] and pressed is None:
+            pressed = entry["time"]
+    return found
+
+
 def moved_while_stopped(record: Sequence[Entry], allowance: float) -> float:
-    """How far the robot got, or turned in radians, at most, from so many seconds after a stop until continue."""
+    """How far the robot got, or turned in radians, at most, from so many seconds after a stop until continue.
+
+    It stands before somebody sets it going, too.
+    """
     most = 0.0
-    for stop, go in zip(times_of(record, "/stop"), times_of(record, "/continue"), strict=True):
+    begins = (-allowance, times_of(record, GO_ON)[0])
+    pressed = stops(record)
+    assert pressed, "nobody has pressed the button"
+    for stop, go in [begins, *pressed]:
         stood = poses(record, stop + allowance, go)
         assert len(stood) > 3, "stopped for too short a time to tell"
         first = stood[0]

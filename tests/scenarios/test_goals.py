@@ -13,7 +13,7 @@ from examples.simulator.field import Boom
 from examples.simulator.scenarios import SCENARIOS
 from examples.simulator.world import STEP
 from tests.scenarios.rules.books import BOOKS
-from tests.scenarios.runs import Entry, moved_while_stopped, played, poses, run_of, times_of
+from tests.scenarios.runs import Entry, moved_while_stopped, played, poses, run_of, stops, times_of
 from tests.searching import matrix_but, slow_but
 
 if TYPE_CHECKING:
@@ -140,7 +140,7 @@ def test_the_person_is_followed_at_a_distance() -> None:
 def test_the_layer_blocks_steps_of_a_controller_that_knows_no_danger() -> None:
     run = run_of("supervised_line_follower")
     blocked = [entry["time"] for entry in run.log if entry["direction"] == "blocked"]
-    (stop,), (go,) = times_of(run.record, "/stop"), times_of(run.record, "/continue")
+    ((stop, go),) = stops(run.record)
     assert sum(stop < time < go for time in blocked) > 10
     # Before the obstacle, too: where the robot stood for seconds.
     waiting = [pose["travelled"] for pose in poses(run.record, 8.0, 11.0)]

@@ -29,7 +29,7 @@ DEMANDS = [
     ("object_finder", " and !ObjectDetector.found", ""),
     ("maze_solver", "requirement EmergencyStop.stopped disables { move, rotate_left, rotate_right }", ""),
     ("maze_solver", "Lidar.front = wall_ahead and on_its_way", "on_its_way"),
-    ("push_ball", "    EmergencyStop.in_service\n    and !Ball", "    !Ball"),
+    ("push_ball", "    EmergencyStop.in_service\n    and Lidar", "    Lidar"),
     ("push_ball", "BallDetector.offset) / 200", "BallDetector.offset) / 250"),
     ("person_follower", " and PersonDetector.detected", ""),
     ("supervised_line_follower", "requirement step needs Lidar.front = clear", ""),
@@ -100,7 +100,9 @@ def heard(name: str, value: Any = None) -> dict[str, Any]:
     return {"time": 1.0, "direction": "in", "event": f"message_{name}.u_response", "data": {"value": value}}
 
 
-FORWARDED = [heard("correction"), heard("scan", "clear"), step("out")]
+GOING = [heard("pressed", False), heard("continue")]
+READY = [*GOING, heard("correction"), heard("scan", "clear")]
+FORWARDED = [*READY, step("out")]
 STOPPED = [*FORWARDED, step("blocked"), step("outside")]
 
 
@@ -130,6 +132,42 @@ def test_a_stop_takes_the_place_of_the_first_step_that_is_blocked(log: list[dict
 )
 def test_any_other_step_that_a_layer_sends_itself_is_noticed(log: list[dict[str, Any]], fault: str) -> None:
     assert any(violation.endswith(fault) for violation in Stepper().violations(log))
+
+
+def missed(component: str, time: float) -> dict[str, Any]:
+    return {"time": time, "direction": "internal", "event": f"component_{component}.u_after1"}
+
+
+@pytest.mark.parametrize("component", ["LineDetector", "Lidar", "EmergencyStop"])
+def test_nothing_goes_out_after_a_silence(component: str) -> None:
+    for time, faults in ((1.4, 2), (1.5, 1)):
+        found = Stepper().violations([*READY, missed(component, time), step("out") | {"time": time}])
+        assert len(found) == faults
+        assert ("is not silent" in found[0]) == (faults == 2)
+
+
+@pytest.mark.parametrize("name", ["correction", "scan", "pressed"])
+def test_a_silence_that_nobody_misses_is_noticed(name: str) -> None:
+    later = [entry | {"time": 1.9} for entry in READY if entry["event"] != f"message_{name}.u_response"]
+    [found] = Stepper().violations([*READY, *later, step("out") | {"time": 1.9}])
+    assert f"{name} is silent" in found
+
+
+@pytest.mark.parametrize(
+    ("log", "going"),
+    [
+        (GOING, True),
+        ([heard("continue"), heard("pressed", False)], False),
+        ([heard("pressed", True), heard("continue")], False),
+        ([*GOING, heard("pressed", True), heard("pressed", False)], False),
+        ([*GOING, heard("pressed", True), *GOING], True),
+        ([*GOING, missed("EmergencyStop", 1.5), heard("continue")], False),
+    ],
+)
+def test_second_opinions_know_when_a_robot_goes_on(log: list[dict[str, Any]], going: bool) -> None:
+    book = Stepper()
+    assert book.violations(log) == []
+    assert book.stopped is not going
 
 
 @pytest.mark.parametrize("name", SCENARIOS)

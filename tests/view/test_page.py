@@ -95,6 +95,7 @@ def click(page: Any, event: str, data: Any = None) -> None:
     if isinstance(data, float):
         page.locator(f'.performer:has(button[data-event="{event}"]) input').fill(str(data))
     elif data is not None:
+        data = str(data).lower() if isinstance(data, bool) else data
         page.locator(f'.performer:has(button[data-event="{event}"]) select').select_option(label=data)
     page.click(f'button[data-event="{event}"]')
 
@@ -259,7 +260,7 @@ def test_one_of_several_robots_is_chosen(chromium: Any) -> None:
     other = ROOT / "examples" / "simple_navigation" / "simple_navigation.rscd"
     with served(MODEL, other) as address, opened(chromium, address) as page:
         assert page.locator("#robot-name").text_content() == "LineFollower"
-        click(page, "message_stop.u_response")
+        click(page, "message_pressed.u_response", False)
         at(page, 1)
         page.locator("#robots-choice").select_option("SimpleNavigation")
         page.wait_for_url("**/?robot=1")
@@ -316,7 +317,7 @@ def test_by_keyboard_alone(chromium: Any) -> None:
         page.keyboard.press("Enter")
         assert "state searching" in page.locator(".line.here").first.text_content()
         page.keyboard.press("Shift+Tab")
-        tab_to(page, 'svg > .transition[aria-label="on response from no_line"]')
+        tab_to(page, 'svg > .transition[aria-label^="on response from no_line"]')
         page.keyboard.press("Enter")
         assert "on response from no_line goto searching" in page.locator(".line.here").text_content()
         tab_to(page, '#commands > li[data-event="message_move.c_trigger"] .links button:last-child')

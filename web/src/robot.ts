@@ -188,8 +188,9 @@ export class RobotView {
       { class: "transition" },
       svg("path", { d: path(drawn.points), class: "line", "marker-end": "url(#tip)" }),
     );
+    // A space between the texts: a screen reader, and who compares the name with what is seen, read them as one.
     line.texts.forEach((text, index) =>
-      group.append(svg("text", { x: drawn.label.x + 3, y: drawn.label.y + (index + 1) * LINE - 3, class: "label" }, text)),
+      group.append(svg("text", { x: drawn.label.x + 3, y: drawn.label.y + (index + 1) * LINE - 3, class: "label" }, text), " "),
     );
     return group;
   }

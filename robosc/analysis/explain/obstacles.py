@@ -1,4 +1,4 @@
-"""What plants and requirements have against an event in a state, and which events would make it possible."""
+"""Obstacles of plants and requirements to an event in a state, and the events that would remove them."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _WAITING = {
 
 
 class Obstacles:
-    """Of one event in one state."""
+    """The obstacles to one event in one state."""
 
     def __init__(self, system: SynthesizedSystem, event: sct.Event, codes: Codes) -> None:
         self._system = system
@@ -96,7 +96,7 @@ class Obstacles:
         return edges_from(self._here(plant), self._event)
 
     def _guard(self, plant: sct.Plant) -> ex.Expression | None:
-        """What the plant's edges for the event ask for here, any of them; None where one asks for nothing."""
+        """The guards of the plant's edges for the event here; None where one edge has no guard."""
         guards = [edge.guard for edge in self._edges(plant)]
         return None if None in guards else disjunction(copied(guard) for guard in guards if guard is not None)
 
@@ -122,7 +122,7 @@ class Obstacles:
         return Note(here, f"`{name(plant)}` is in `{here.name}`, without {self._transition(plant)}: {elsewhere}")
 
     def _transition(self, plant: sct.Plant) -> str:
-        """What a component writes to take part in the event."""
+        """The text with which a component takes part in the event."""
         owner: sct.Plant = self._event.eContainer()
         if plant.kind == sct.PlantKind.data:
             return "this `provide`"
@@ -193,7 +193,7 @@ class Obstacles:
 
 
 def _change(element: Element, edge: sct.Edge, here: sct.Location, after: Codes, by: str) -> Note:
-    """What an edge, taken from here by an event, makes of its plant or of a variable."""
+    """The value of a plant or a variable after an edge is taken from here."""
     if isinstance(element, sct.Plant):
         return Note(edge, f"`{name(element)}` goes from `{here.name}` to `{edge.target.name}` by {by}")
     whole = f"`{name(element.eContainer())}.{element.name}`"

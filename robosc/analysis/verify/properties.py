@@ -64,6 +64,7 @@ def properties(system: GuardedSystem) -> list[Callable[[], Verdict]]:
         *(partial(_stated, invariant_holds, system, stated) for stated in system.model.invariants),
         *(partial(_stated, claim_holds, system, stated) for stated in system.model.properties),
         *([] if stepwise else [partial(no_dead_events, system)]),
+        *([] if stepwise or not _cancelable(system) else [partial(cancel_when_due, system)]),
         partial(maximal_permissiveness, system),
         *([] if stepwise else _in_the_loop(system)),
     ]
@@ -235,6 +236,41 @@ def no_dead_events(system: GuardedSystem) -> Verdict:
         return Verdict("no dead events", Outcome.PROVED, evidence)
     explanation = f"{listed([words(event) for event in dead])} can never happen"
     return Verdict("no dead events", Outcome.REFUTED, evidence, explanation)
+
+
+def _cancelable(system: GuardedSystem) -> dict[sct.Event, sct.Event]:
+    """The cancels of actions on whose start a requirement stands, each with the event of the start.
+
+    An order, a count or an automaton refuses a start, and cancels nothing.
+    """
+    found = {}
+    for event in system.relations:
+        if event.kind == sct.EventKind.cancel:
+            starts = (start for start in plant_of(event).events if start.kind == sct.EventKind.trigger)
+            for start in starts:
+                if any(requirement.automaton is None for requirement in system.relations[start].requirements):
+                    found[event] = start
+    return found
+
+
+def cancel_when_due(system: GuardedSystem) -> Verdict:
+    """Where an action runs and a requirement on its start no longer holds, its cancel can happen."""
+    cancels = _cancelable(system)
+    held_back = {
+        cancel: system.controlled
+        & system.relations[cancel].enabled_by[plant_of(cancel)]
+        & ~system.diagrams.all_of(
+            holds for requirement, holds in system.relations[start].asked.items() if requirement.automaton is None
+        )
+        & ~system.allowed[cancel]
+        for cancel, start in cancels.items()
+    }
+
+    def explanation(cancel: sct.Event, _path: Path) -> str:
+        return f"a requirement on the start of `{name(plant_of(cancel))}` does not hold, and its cancel can't happen"
+
+    evidence = f"{system.size}, {counted(len(cancels), 'action')} that requirements cancel"
+    return _nowhere("cancel when due", system, evidence, held_back, explanation)
 
 
 def maximal_permissiveness(system: GuardedSystem) -> Verdict:

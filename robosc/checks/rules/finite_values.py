@@ -228,7 +228,7 @@ def _is_unranged(declared: rsc.DataType) -> bool:
 
 
 def _too_large(meaning: Meaning) -> Iterator[Finding]:
-    """What a robot computes with are integers of 64 bits."""
+    """All integers of a robot fit into 64 bits."""
     computed: list[ex.Expression | None] = [constant.value for constant in statements(rsc.Constant, meaning)]
     for declared in of_kind(rsc.IntegerDataType, data_types(meaning)):
         computed += [declared.lower, declared.upper]

@@ -75,7 +75,7 @@ def _too_large(base: rsc.Base) -> Iterator[Finding]:
 
 @rule("argument")
 def arguments(base: rsc.Base) -> Iterator[Finding]:
-    """Whatever has parameters gets an argument for each, of its type, and a positive constant to divide by."""
+    """Each parameter gets an argument of its type, and each division a positive constant."""
     for _, element in tree(base):
         match element:
             case ex.FunctionCall():
@@ -154,7 +154,7 @@ def _of_type(reference: rsc.ComplexDataTypeReference) -> Iterator[Finding]:
 def _given(
     user: ex.Located, definition: rsc.Component | rsc.EnumDataType, given: Sequence[rsc.Argument]
 ) -> Iterator[Finding]:
-    """What is wrong with the arguments of a template or an enum; a parameter with a default needs none."""
+    """The faults in the arguments of a template or an enum; a parameter with a default needs none."""
     parameters = list(definition.parameters)
     found: dict[rsc.FormalParameter, rsc.Argument] = {}
     named = False
@@ -202,7 +202,7 @@ def _naming(
 
 
 def _typed(value: ex.Expression | None, parameter: rsc.FormalParameter, *, settable: bool = False) -> Iterator[Finding]:
-    """What is wrong with an argument or a default value; `settable`: it may be a parameter of the node."""
+    """The faults of an argument or a default value; `settable`: it may be a parameter of the node."""
     constant = _ENUM_ARGUMENT if settable else _ARGUMENT
     check = ExpressionCheck(Place(None) if settable and set_on_robot(value) else constant)
     check.expect(value, declared_type(parameter.type), f"the argument for `{parameter.name}`")
@@ -243,7 +243,7 @@ def _of_enums(meaning: Meaning, made: Instances) -> Iterator[Finding]:
 def _of_enum(
     reference: rsc.ComplexDataTypeReference, enum: rsc.EnumDataType, meaning: Meaning, made: Instances
 ) -> Iterator[Finding]:
-    """What the arguments of an enum can be on the robot, or are by the arguments of a template; and divisors in it."""
+    """The faults in the arguments of an enum, with those of a template around it, and in its divisors."""
     given = bound_arguments(enum.parameters, reference.arguments)
     for parameter, value in given.items():
         access = set_on_robot(value)
@@ -269,7 +269,7 @@ def _of_enum(
 
 
 def _divisors(root: ex.Located) -> Iterator[tuple[Operator, int, ex.Expression]]:
-    """What functions divide by: the function, which of its arguments it is, and the argument."""
+    """The divisors in functions: the function, the position of its argument, and the argument."""
     for _, call in tree(root):
         row = operator_of(call) if isinstance(call, ex.FunctionCall) else None
         if row is not None and len(call.arguments) == row.parameters:
@@ -327,7 +327,7 @@ def _built_in(element: ex.FunctionCall) -> Iterator[Finding]:
 
 
 def _made(meaning: Meaning) -> Iterator[Finding]:
-    """What built-in functions divide by, with the arguments of a template."""
+    """The divisors of built-in functions, with the arguments of a template."""
     assert meaning.made is not None
     for row, position, divisor in _divisors(meaning.made.local):
         (value,) = meaning.values(divisor)

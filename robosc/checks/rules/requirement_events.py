@@ -45,7 +45,7 @@ def requirement_event(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _sent_on_change(base: rsc.Base) -> Iterator[Finding]:
-    """What is sent on change and comes from its component, or is named as an event: when it goes out means nothing."""
+    """Messages that are sent on change are no events of requirements: their moment means nothing."""
     for message in communications(base):
         if isinstance(message, rsc.Message) and message.onChange and message.direction == rsc.MessageDirection.outgoing:
             what = f"`{message.name}` comes from its component whenever that sends it, expected an incoming message"
@@ -76,7 +76,7 @@ def _with_every_tick(hint: str, message: rsc.Message, *, is_choice: bool = False
 
 
 def _readers(base: rsc.Base) -> Iterator[Finding]:
-    """What reads a requirement automaton and is no requirement; what it inlines reads it, too."""
+    """The expressions outside of requirements that read a requirement automaton, also by what they inline."""
     found = instances(base)
     for instance in found:
         for transition, _ in instance.transitions:

@@ -1,4 +1,4 @@
-"""What shares a topic or a server: `topic-types`, `shared-server` and `indistinct-commands`."""
+"""Shared topics and servers: `topic-types`, `shared-server` and `indistinct-commands`."""
 
 from __future__ import annotations
 

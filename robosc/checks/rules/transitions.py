@@ -136,7 +136,7 @@ def _never_taken(
     first: tuple[rsc.ResultTransition, rsc.State | None],
     state: rsc.State | None,
 ) -> tuple[str, str]:
-    """What is wrong with a transition beside an earlier one, and how to mend it."""
+    """The fault of a transition beside an earlier one, and how to mend it."""
     taken, other = first
     where = state or other
     place = f"state `{component.name}.{where.name}`" if where else f"every state of `{component.name}`"
@@ -153,7 +153,7 @@ def _never_taken(
 
 
 def _event(transition: rsc.Transition) -> _Event | None:
-    """What a transition reacts to; None for a silent one, and for an event that does not exist (`result-type`)."""
+    """The event of a transition; None for a silent one, and for an event that does not exist (`result-type`)."""
     if not isinstance(transition, rsc.ResultTransition) or transition.communicationType is None:
         return None
     reference, event = transition.communicationType, str(transition.resultType)

@@ -1,4 +1,4 @@
-"""Who waits for whom: `cancel-is-not-the-end`, `answer-unheard` and `failure-unheard`.
+"""Waits of components: `cancel-is-not-the-end`, `answer-unheard` and `failure-unheard`.
 
 A request, a call and a cancel are asked for at one moment and done at a later one. These rules look for components that
 take the first moment for the second.
@@ -178,7 +178,7 @@ def _answers_heard(known: Instances) -> set[PortInstance]:
 
 
 def _restricted(known: Instances) -> set[PortInstance]:
-    """What a requirement restricts the start of."""
+    """The communications whose start a requirement restricts."""
     found: set[PortInstance | None] = set()
     for requirement in known.statements(rsc.CommunicationRequirement):
         found |= commands_of(requirement, known)

@@ -37,7 +37,7 @@ class Reason:
 
 @dataclass(frozen=True)
 class Gate:
-    """What goes to the robot and the supervisor lets through or blocks.
+    """A command to the robot that the supervisor lets through or blocks.
 
     A word fit for names, the event's enumerator, its communication in the model, what requirements say about it.
     Without reasons nothing is known that could block it.

@@ -14,7 +14,7 @@ from robosc.m2t.ros import preconditions, typed_state
 from robosc.m2t.ros.gates import gates
 from robosc.m2t.ros.layer import LayerNode
 from robosc.m2t.ros.names import CppNames
-from robosc.m2t.ros.node import Node
+from robosc.m2t.ros.node import Node, Variable
 from robosc.m2t.ros.rendering import fold, node_environment
 from robosc.m2t.ros.statuses import statuses
 from robosc.metamodel import rosgraph
@@ -69,7 +69,7 @@ _HEADERS = {
     "robosc_ros{ros}/service_client": {"controller", "services"},
     "robosc_ros{ros}/service_proxy": {"layer", "services"},
     "robosc_ros{ros}/shutdown_hook": {"layer", "actions", "ros2"},
-    "robosc_ros{ros}/unit_quaternions": {"composes", "defaults", "ros1"},
+    "robosc_ros{ros}/unit_quaternions": {"quaternions", "ros1"},
 }
 
 _MESSAGE = rosgraph.InterfaceKind.message
@@ -87,7 +87,7 @@ class Used:
 
 
 class Middleware(Protocol):
-    """What differs between ROS 1 and ROS 2; a folder of its name beside this file has its templates."""
+    """The differences between ROS 1 and ROS 2; a folder of its name beside this file has its templates."""
 
     #: 1 or 2.
     version: ClassVar[int]
@@ -97,10 +97,10 @@ class Middleware(Protocol):
     test_files: ClassVar[Mapping[str, str]]
 
     def controller(self, node: Node, configuration: Configuration, used: Used, *, tests: bool) -> Values:
-        """What only the templates of a controller read."""
+        """Values for the templates of a controller alone."""
 
     def layer(self, layer: LayerNode, configuration: Configuration, used: Used) -> Values:
-        """What only the templates of a layer read."""
+        """Values for the templates of a layer alone."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ class RosTarget:
     ros: Middleware
 
     def preconditions(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
-        """What keeps these models from becoming such a node, and settings that have no effect."""
+        """Return errors that keep these models from becoming such a node, and warnings on settings without effect."""
         return preconditions.preconditions(models, configuration, self.kind, self.ros.version)
 
     def generate(
@@ -235,6 +235,7 @@ class RosTarget:
             "no_stop": _no_stop(node, configuration),
             "awaited": _awaited(node, configuration) if kind == "controller" else [],
             "has_defaults": has_defaults,
+            "turned": _turned(node) if ros.version == 1 else [],
             "frame": lambda topic: configuration.frame_id.get(topic.removeprefix("/"), ""),
             "controller": configuration.supervisor.controller,
             **(
@@ -261,16 +262,19 @@ class RosTarget:
             sent = [end.interface for ends in (node.publishers, node.clients) for end in ends]
         else:
             sent = [last.publisher.interface for last in node.on_blocked]
+        composes = self.kind == "controller" or node.on_blocked
+        defaults = any(has_defaults(interface) for interface in sent)
         present = {
             self.kind: True,
             f"ros{self.ros.version}": True,
             "actions": node.actions,
             "awaits": _awaited(node, configuration),
-            "composes": self.kind == "controller" or node.on_blocked,
-            "defaults": any(has_defaults(interface) for interface in sent),
+            "composes": composes,
+            "defaults": defaults,
             "gates": (layer and layer.gates) or any(status.commands for status in told),
             "hands_on": node.hands_on,
             "managed": configuration.lifecycle,
+            "quaternions": (composes and defaults) or _turned(node),
             "reports": configuration.publish_state_information or told or (layer and layer.gates),
             "services": node.services,
             "state": configuration.publish_state_information,
@@ -282,6 +286,16 @@ class RosTarget:
         }
         features = {feature for feature, is_there in present.items() if is_there}
         return [name.format(ros=self.ros.version) for name, needed in _HEADERS.items() if needed <= features]
+
+
+def _turned(node: Node) -> list[tuple[Variable, str]]:
+    """The objects that the node keeps and that may hold quaternions, each with its component."""
+    return [
+        (variable, component)
+        for component, variables in node.components
+        for variable in variables
+        if variable.part and not variable.part.is_array and has_defaults(variable.part.interface)
+    ]
 
 
 def _awaited(node: Node, configuration: Configuration) -> list[str]:
@@ -348,7 +362,7 @@ def launch_path(configuration: Configuration) -> str:
 
 
 def _no_stop(node: Node, configuration: Configuration) -> list[tuple[str, str]]:
-    """What the node says at its start, under which condition, where nothing would stop its robot."""
+    """The warnings of a node at its start that nothing would stop its robot, each with its condition."""
     if node.shutdown or not node.publishers:
         return []
     silence = [("watchdog_stops_", NO_STOP_ON_SILENCE)] if node.subscriptions else []

@@ -1,4 +1,4 @@
-"""What a node tells on `/diagnostics` of each component, ready to be printed."""
+"""Statuses of components for `/diagnostics`, ready to be printed."""
 
 from __future__ import annotations
 

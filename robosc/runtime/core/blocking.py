@@ -27,7 +27,7 @@ _SAID = {
 
 @dataclass(frozen=True)
 class Reason:
-    """What `~/blocked` tells: a kind, and the texts of that kind."""
+    """The reason on `~/blocked`: a kind, and the texts of that kind."""
 
     kind: str
     because: Sequence[str]

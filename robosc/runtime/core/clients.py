@@ -27,7 +27,7 @@ UNKNOWN_GOAL = "the server does not know the goal"
 
 @dataclass(frozen=True)
 class Answers:
-    """What a client calls, never before what was asked of it returns: any number of `feedback`, then one of the others.
+    """Callbacks of a client, after the request has returned: any number of `feedback`, then one of the others.
 
     `error` gets the reason, a text, and the result that came with the end of a goal, None where none came. `canceled`
     gets the same, with the reason that counts where the model did not cancel the goal.
@@ -360,7 +360,7 @@ class ActionClient:
         self._answers.error(reason, why, result)
 
     def _lose(self, why: str) -> None:
-        """Nobody knows what becomes of the goal: should it be heard of again, it is canceled."""
+        """End with `lost`: the fate of the goal is unknown. A goal that is heard of again is canceled."""
         if self._goal is not None:
             self._lost[self._number] = self._goal
         self._fail(Failure.LOST, why)

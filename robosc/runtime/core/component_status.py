@@ -1,4 +1,4 @@
-"""What a node tells on `/diagnostics`: a status for each component of its robot."""
+"""Reports on `/diagnostics`: a status for each component of the robot."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Own:
-    """What a controller or a layer knows beside its engine."""
+    """The knowledge of a controller or a layer beside its engine."""
 
     #: What it says of a command that the supervisor allows: None where it can be sent.
     held_back: Callable[[sct.Event], str | None]

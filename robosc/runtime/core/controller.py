@@ -97,7 +97,6 @@ class Controller(EventHandler):
         self._on_change: list[_Sender] = []
         self._failures: dict[Client, _Failure] = {}
         self._resets: dict[sct.Event, _Failure] = {}
-        self._cancels: dict[sct.Event, ActionClient] = {}
         self._starters: dict[Client, ActionClient] = {}
         self._callers: dict[Client, ServiceClient] = {}
         self._publishers = {sending: publisher for publisher in graph.publishers for sending in publisher.sendings}
@@ -113,10 +112,10 @@ class Controller(EventHandler):
             times = GoalTimes(settings.seconds("action_timeout_ms"), settings.seconds("retry_ms"))
             starter = ActionClient(port, event_loop, action, times, answers)
             self._add_sender(action, action.identifier, action.request, Section.GOAL, starter.start)
-            self._starters[action] = self._cancels[action.cancel] = starter
+            self._starters[action] = self.goals[action.cancel] = starter
 
     def _ends(self, client: Client) -> tuple[Callable[[Message], None], Callable[[Failure, str, Message], None]]:
-        """What is done with a response of a service or action, and with a failure."""
+        """The handlers of a response of a service or action, and of a failure."""
         self._failures[client] = self._resets[client.reset] = _Failure()
         return partial(self.respond, client), partial(self.fail, client)
 
@@ -178,17 +177,6 @@ class Controller(EventHandler):
             self._stopping = True
             self._halt()
 
-    @property
-    def busy(self) -> bool:
-        """Whether the end has to wait: for the acceptance of a goal, the answer to its cancel, its end, each a time."""
-        return any(client.waits for client in self._cancels.values())
-
-    def close(self) -> None:
-        """Gives up all goals and closes the log; nothing may happen any more."""
-        for client in self._cancels.values():
-            client.leave()
-        super().close()
-
     def _watch(self, topic: str, seconds: float) -> Watchdog:
         def silent() -> None:
             self._port.warn(f"{topic}: silent for {round(seconds * 1000)} ms")
@@ -204,7 +192,7 @@ class Controller(EventHandler):
     def _halt(self) -> None:
         """Cancels running actions, then sends the last messages, whatever the requirements on them say."""
         with self._batch():
-            for event, client in self._cancels.items():
+            for event, client in self.goals.items():
                 self._control.perform(event_name(event))
                 client.cancel()
         self._send_outside(self._safe.on_shutdown)
@@ -272,7 +260,7 @@ class Controller(EventHandler):
         return not (sender.sending.onChange and sender.unchanged)
 
     def _may_wait(self, event: sct.Event) -> bool:
-        return event not in self._cancels
+        return event not in self.goals
 
     def _held_back(self, event: sct.Event) -> str | None:
         if self._unheard and not self._stopping:
@@ -329,8 +317,8 @@ class Controller(EventHandler):
             if sender.sending.onChange:
                 sender.handed = sender.message
             return "out", sender.logged
-        if event in self._cancels:
-            self._cancels[event].cancel()
+        if event in self.goals:
+            self.goals[event].cancel()
             return "out", None
         return None
 

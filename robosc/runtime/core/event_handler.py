@@ -1,9 +1,9 @@
-"""What controller and layer have in common: what comes in becomes events of the supervisor, which are logged."""
+"""The common part of controller and layer: data that come in become events, which are logged."""
 
 from __future__ import annotations
 
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from robosc.configuration.parameters import model_parameters
 from robosc.engine import ControlLoop, Hooks
@@ -17,7 +17,7 @@ from robosc.runtime.core.port import Failure
 from robosc.runtime.core.reports import StateReporter, Throttle
 from robosc.runtime.core.times import Times
 from robosc.semantics.durations import set_milliseconds
-from robosc.semantics.messages import receptions
+from robosc.semantics.messages import received, receptions
 from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name
 
@@ -32,6 +32,36 @@ if TYPE_CHECKING:
     from robosc.runtime.core.port import Client, Message, Port
     from robosc.runtime.core.settings import Settings
     from robosc.semantics.component_parts import Parts
+
+
+def _unset_objects(graph: rosgraph.RosGraph, port: Port) -> dict[rosgraph.NodeVariable, Message]:
+    """The objects that a node keeps, before anything is stored in them: each is new data of its ROS type."""
+    sources = {
+        reception: (interface, section) for interface, section, several in received(graph) for reception in several
+    }
+    return {
+        variable: port.unset(*sources[variable.reception], variable.path)
+        for variable in graph.variables
+        if isinstance(variable.type, rosgraph.ObjectType) and variable.reception is not None
+    }
+
+
+class Goals(Protocol):
+    """The goals of one action, one at a time."""
+
+    def cancel(self) -> object:
+        """Cancel the goal at hand."""
+
+    @property
+    def trouble(self) -> str:
+        """The reason why the goal has not ended though it should have; empty where nothing is wrong."""
+
+    @property
+    def waits(self) -> bool:
+        """Whether the end of the node waits for the acceptance of the goal, the answer to its cancel, or its end."""
+
+    def leave(self) -> None:
+        """Report a goal that was to be canceled and has not ended when the node ends."""
 
 
 class EventHandler:
@@ -56,6 +86,7 @@ class EventHandler:
         hooks = Hooks(self._before, self._after, self._report_livelock)
         self._control = ControlLoop(graph.model, loop, hooks)
         self._data = NodeData(graph, self._control.engine)
+        self._data.variables.update(_unset_objects(graph, port))
         self._parameters = {known.name: parameter for parameter, known in model_parameters(graph).items()}
         self.set_parameters(settings.parameters)
         self._times = Times(self._control.timers, event_loop, self._expire)
@@ -68,6 +99,8 @@ class EventHandler:
         self._warn = Throttle(port.warn, event_loop.clock)
         self._events = {event_name(event): event for plant in graph.model.plants for event in plant.events}
         self._incoming = self._of_role(engine.Role.incoming)
+        #: The goals of the actions, by the event that cancels them.
+        self.goals: dict[sct.Event, Goals] = {}
         #: The message that the event at hand came with, and the event that would have been made of it.
         self._received: tuple[sct.Event, Message] | None = None
         self._logged = {reception.event: self._read(reception) for reception in receptions(graph)}
@@ -117,18 +150,20 @@ class EventHandler:
 
     @property
     def busy(self) -> bool:
-        """Whether something is under way that the node's end should wait for."""
-        return False
+        """Whether the node's end waits for the fate of a goal."""
+        return any(goals.waits for goals in self.goals.values())
 
     def close(self) -> None:
-        """Closes the log; nothing may happen any more."""
+        """Abandon all goals and close the log; nothing may happen any more."""
+        for goals in self.goals.values():
+            goals.leave()
         self._log.close()
 
     # What comes in
 
     @contextmanager
     def _batch(self) -> Iterator[None]:
-        """What happens inside happens with nothing in between; what it makes possible follows."""
+        """A batch: its events happen with nothing in between; events that become possible follow."""
         with self._times:
             yield
             self._control.settle()
@@ -297,7 +332,7 @@ class EventHandler:
         return None
 
     def _faults(self, parts: Parts) -> list[str]:
-        """What is wrong with a component."""
+        """Return the faults of a component."""
         raise NotImplementedError
 
     def _report_livelock(self) -> None:

@@ -47,6 +47,7 @@ class EventLoop:
         self._numbers = count()
         self._last = clock()
         self._started = self._last != 0 or not starts_late
+        self._at_start: deque[Callable[[], None]] = deque()
 
     def post(self, action: Callable[[], None], topic: str | None = None, depth: int = 10) -> None:
         """Makes a call after all that were posted before; from any thread.
@@ -70,6 +71,10 @@ class EventLoop:
         heapq.heappush(self._timers, (now + seconds, next(self._numbers), timer))
         return timer
 
+    def at_start(self, action: Callable[[], None]) -> None:
+        """Makes a call as soon as the clock has started; only from the loop's own thread."""
+        self._at_start.append(action)
+
     def run_pending(self) -> float | None:
         """Makes all calls that are due; returns the seconds until the next is, None where none is planned.
 
@@ -82,6 +87,8 @@ class EventLoop:
                 _, action = self._posted.popleft()
             action()
         now = self._time()
+        while self._started and self._at_start:
+            self._at_start.popleft()()
         while self._timers and self._timers[0][0] <= now:
             heapq.heappop(self._timers)[2].fire()
         if self._posted:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from robosc.engine import Settings as LoopSettings
 from robosc.metamodel import engine, rosgraph
@@ -26,30 +26,11 @@ if TYPE_CHECKING:
     from robosc.semantics.component_parts import Parts
 
 
-class ForwardedGoals(Protocol):
-    """The goals of one action that the layer has forwarded, one at a time."""
-
-    def cancel(self) -> None:
-        """Cancels the goal at hand."""
-
-    @property
-    def trouble(self) -> str:
-        """Why the goal has not ended though it should have; empty where nothing is wrong."""
-
-    @property
-    def waits(self) -> bool:
-        """Whether the end of the layer waits for what becomes of the goal."""
-
-    def leave(self) -> None:
-        """Reports a goal that the layer has canceled and that has not ended when the layer ends."""
-
-
 class Layer(EventHandler):
     """The layer of a robot. It decides, others forward. Of `safe` it sends `on_blocked`.
 
     What the robot sends moves the supervisor before it is forwarded (`receive`, `respond`, `fail`, `feed_back`); what
-    the controller sends is forwarded where `passes` allows it. `goals` are the goals of the actions, by the event that
-    cancels them; set by whoever forwards.
+    the controller sends is forwarded where `passes` allows it. The proxies of actions add their `goals`.
     """
 
     def __init__(
@@ -73,7 +54,6 @@ class Layer(EventHandler):
         }
         #: Of `on_blocked`, the messages that the layer forwarded last: it sends one when it blocks the next.
         self._forwarded: set[rosgraph.Sending] = set()
-        self.goals: dict[sct.Event, ForwardedGoals] = {}
 
     def start(self) -> None:
         """Publishes its definition, and its state from now on."""
@@ -88,17 +68,6 @@ class Layer(EventHandler):
         if self._statuses.publish():
             self._blocked.clear()
         self._event_loop.call_later(self._period, self._publish_state)
-
-    @property
-    def busy(self) -> bool:
-        """Whether the end has to wait: for what becomes of goals that the layer cancels."""
-        return any(goals.waits for goals in self.goals.values())
-
-    def close(self) -> None:
-        """Reports goals that the layer has canceled and that have not ended, and closes the log."""
-        for goals in self.goals.values():
-            goals.leave()
-        super().close()
 
     # From the controller
 

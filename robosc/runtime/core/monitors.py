@@ -1,4 +1,4 @@
-"""What a node watches: topics that fall silent, and how it is connected to the rest of the ROS graph."""
+"""Monitors of a node: silent topics, and its connections in the ROS graph."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the nodes of ROS 1 and ROS 2 have in common, and what keeps a node from starting."""
+"""The common part of the nodes of ROS 1 and ROS 2, and the error of a node that can't start."""
 
 from __future__ import annotations
 
@@ -8,10 +8,13 @@ import time
 from abc import ABC, abstractmethod
 from functools import partial
 from importlib import import_module
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from robosc.ros_types.wire import FOLDERS
+from robosc.metamodel import rosgraph
+from robosc.ros_types.wire import FOLDERS, Section
 from robosc.runtime.core.layer import Layer
+from robosc.runtime.core.node_data import element_type
 from robosc.runtime.core.port import ControllerPort
 from robosc.runtime.core.proxies import ServiceProxy
 from robosc.runtime.core.settings import check
@@ -20,7 +23,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from robosc.configuration.parameters import Parameter, Value
-    from robosc.metamodel import rosgraph
     from robosc.runtime.core.controller import Controller
     from robosc.runtime.core.event_handler import EventHandler
     from robosc.runtime.core.event_loop import EventLoop
@@ -66,6 +68,19 @@ class Node(ControllerPort, ABC):
         self._changing: dict[str, Parameter] = {}
         self._publishers: dict[rosgraph.Publisher, Any] = {}
         self._clients: dict[Client, Any] = {}
+
+    def unset(self, interface: rosgraph.Interface, section: Section, path: Sequence[str]) -> Message:
+        """Return the object at a path in new data of a type; a step `0` is an element of an array."""
+        made = self.create(interface, section)
+        for name, behind in zip_longest(path, path[1:]):
+            if behind == "0":
+                package, *_, kind = element_type(self.wire_types(made)[name]).split("/")
+                element = rosgraph.Interface(package=package, type=kind, kind=rosgraph.InterfaceKind.message)
+                self._types[element] = self._load_type(element)
+                made = self.create(element, Section.MESSAGE)
+            elif name != "0":
+                made = getattr(made, name)
+        return made
 
     def _load_type(self, interface: rosgraph.Interface, suffix: str = "") -> Any:
         """The Python class of a ROS type, its name with a suffix. Raises StartError where there is none."""
@@ -240,7 +255,7 @@ class Node(ControllerPort, ABC):
     # What is the same on every ROS
 
     def hear(self) -> None:
-        """What has arrived stands in the event loop, before what is planned."""
+        """Do nothing: messages that have arrived stand in the event loop before planned work."""
 
     def stamp(self, message: Message, frame: str) -> None:
         """Gives a header the node's time and a frame."""

@@ -54,6 +54,11 @@ _BLANK: dict[type[ex.Type], Any] = {
 }
 
 
+def element_type(kind: str) -> str:
+    """The type of an array's elements, or a type that is none, as a node's `wire_types` have it."""
+    return _ELEMENT.sub(r"\1", kind)
+
+
 class PastEndError(UnreadableError):
     """An element that an array does not have."""
 
@@ -62,7 +67,7 @@ class PastEndError(UnreadableError):
 
 
 class Received(NamedTuple):
-    """What an event brings, from the state before it: values of its inputs, by their names, and the node's new ones."""
+    """The data of an event, computed in the state before it: its inputs by name, and the node's new values."""
 
     inputs: dict[str, Any]
     variables: dict[rosgraph.NodeVariable, Value]
@@ -113,7 +118,7 @@ class NodeData:
     def received(
         self, event: sct.Event, inputs: Sequence[rosgraph.InputAssignment] = (), data: Message = None
     ) -> Received:
-        """What the transitions that the event takes in the present state make of its data; nothing is changed yet.
+        """Return the inputs and new values that the event brings in the present state; change nothing.
 
         Raises UnreadableError where one of them can't read what it needs: then the event must not happen.
         """
@@ -141,7 +146,7 @@ class NodeData:
         return assigned
 
     def reactions(self, event: sct.Event) -> list[rosgraph.Reaction]:
-        """What may happen in the node with the event in the present state, where guards hold."""
+        """The reactions of the node to the event in the present state, where guards hold."""
         return [reaction for reaction in self._reactions.get(event, ()) if any(map(self.is_in, reaction.locations))]
 
     def values_read(self, event: sct.Event) -> list[ex.Expression]:
@@ -180,7 +185,7 @@ class NodeData:
         raise TypeError(f"a ROS graph holds no {type(reference).__name__}")
 
     def _reach(self, access: rosgraph.WireAccess, *given: Any) -> Any:
-        """What an access reads of a message, or of an element, with these indices. Raises UnreadableError."""
+        """The value that an access reads of a message or an element, with these indices. Raises UnreadableError."""
         start = given[-1] if access.variable is None else self.variables[access.variable]
         rest = iter(given if access.quantifier else (start, *given[:-1]))
         reached = next(rest)
@@ -197,7 +202,7 @@ class NodeData:
         return reached
 
     def at(self, data: Any, path: Sequence[str]) -> Any:
-        """What stands at the end of a path of names and positions. Raises UnreadableError."""
+        """The value at a path of names and positions. Raises UnreadableError."""
         for step in path:
             data = self._element(data, int(step)) if step.isdigit() else self._field(data, step)
         return data
@@ -295,7 +300,7 @@ def _is_finite(port: ControllerPort, data: Any) -> bool:
     if isinstance(data, Sequence):
         return all(_is_finite(port, element) for element in data)
     for name, kind in port.wire_types(data).items():
-        value, element = getattr(data, name), _ELEMENT.sub(r"\1", kind)
+        value, element = getattr(data, name), element_type(kind)
         if element in _FLOATS and not all(map(math.isfinite, [value] if kind == element else value)):
             return False
         if "/" in element and not _is_finite(port, value):

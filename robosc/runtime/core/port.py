@@ -1,4 +1,4 @@
-"""What controller and layer ask of the middleware, and what they are called with."""
+"""The interface of the middleware to controller and layer, and the callbacks for answers."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class CallHandlers:
 
 @dataclass(frozen=True)
 class GoalHandlers:
-    """What becomes of a goal, called from any thread.
+    """Callbacks for the fate of a goal, called from any thread.
 
     `over`: it has ended, and its result may be yet to come; `ended` gets the result, None where none came, and the
     server's own text.
@@ -131,6 +131,9 @@ class Port(Protocol):
 
     def create(self, interface: rosgraph.Interface, section: Section) -> Message:
         """Data with every field at its ROS default; a ROS 1 quaternion is one of length 1."""
+
+    def unset(self, interface: rosgraph.Interface, section: Section, path: Sequence[str]) -> Message:
+        """The object at a path in such data, as `create` makes it; a step `0` is an element of an array."""
 
     def is_served(self, client: Client) -> bool:
         """Whether there is a server."""

@@ -1,4 +1,4 @@
-"""What a layer offers its controller in the place of the robot's services and actions."""
+"""The services and actions that a layer offers its controller in the place of the robot's."""
 
 from __future__ import annotations
 

@@ -31,6 +31,10 @@ class Times:
     def start(self) -> None:
         """Starts all times: the node begins to work."""
         self._begun = False
+        self._go_on()
+        self._event_loop.at_start(self._go_on)
+
+    def _go_on(self) -> None:
         with self:
             pass
 

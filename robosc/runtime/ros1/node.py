@@ -185,12 +185,15 @@ class Ros1Node(Node):
 
     def create(self, interface: rosgraph.Interface, section: Section) -> Message:
         kind = self._types[interface]
-        if section is Section.GOAL:
-            made = kind["Goal"]()
-        elif section is Section.REQUEST:
-            made = kind._request_class()  # noqa: SLF001  # there is no other way to it
-        else:
-            made = kind()
+        match section:
+            case Section.MESSAGE:
+                made = kind()
+            case Section.REQUEST:
+                made = kind._request_class()  # noqa: SLF001  # there is no other way to it
+            case Section.RESPONSE:
+                made = kind._response_class()  # noqa: SLF001
+            case _:
+                made = kind[section.name.capitalize()]()
         _unit_quaternions(made)
         return made
 

@@ -30,7 +30,7 @@ LOOKS = 4
 
 
 def cancel_answer(response: Message) -> CancelAnswer:
-    """What a server has answered to a request to cancel one goal."""
+    """The answer of a server to a request to cancel one goal."""
     match response.return_code:
         case response.ERROR_GOAL_TERMINATED:
             return CancelAnswer.TERMINATED

@@ -214,7 +214,7 @@ class Ros2Node(Node):
         return made
 
     def _chosen(self, element: rosgraph.Subscription | rosgraph.Publisher) -> QualityOfService:
-        """What the configuration says of a topic."""
+        """The quality of service in the configuration of a topic."""
         return self._configuration.qos.get(element.topic.removeprefix("/")) or QualityOfService()
 
     def _received_quality(self, element: rosgraph.Subscription | rosgraph.Publisher) -> Any:
@@ -340,8 +340,7 @@ class Ros2Node(Node):
 
     def create(self, interface: rosgraph.Interface, section: Section) -> Message:
         kind = self._types[interface]
-        part = {Section.REQUEST: "Request", Section.GOAL: "Goal"}.get(section)
-        return (getattr(kind, part) if part else kind)()
+        return (kind if section is Section.MESSAGE else getattr(kind, section.name.capitalize()))()
 
     def wire_types(self, message: Message) -> Mapping[str, str]:
         types: Mapping[str, str] = message.get_fields_and_field_types()
@@ -411,7 +410,7 @@ def start(name: str, arguments: Sequence[str]) -> Any:
 
 
 def executor() -> Any:
-    """What waits for ROS: by events where rclpy can, which takes a fiftieth of the time for a message."""
+    """Return the executor: by events where rclpy has one, which takes a fiftieth of the time for a message."""
     try:
         from rclpy.experimental import EventsExecutor  # noqa: PLC0415  # not in every rclpy
     except ImportError:

@@ -230,6 +230,40 @@ class Explicit:
             if self.allowed(requirement.event, state) and self.oracle.value(requirement.condition, state, {}) != wanted
         }
 
+    def uncanceled(self) -> set[State] | None:
+        """Where a running action is not cancelled though what its start needs does not hold; None: of no action."""
+        needed: dict[sct.Event, list[sct.Requirement]] = {}
+        for cancel in self.oracle.events:
+            starts = [event for event in plant_of(cancel).events if event.kind == sct.EventKind.trigger]
+            stated = [
+                requirement
+                for requirement in self.model.requirements
+                if requirement.event in starts and requirement.automaton is None
+            ]
+            if cancel.kind == sct.EventKind.cancel and stated:
+                needed[cancel] = stated
+
+        def runs(cancel: sct.Event, state: State) -> bool:
+            place = state[self.oracle.places[plant_of(cancel)]]
+            return any(edge.event is cancel and self.oracle.value(edge.guard, state, {}) for edge in edges_from(place))
+
+        def holds(requirement: sct.Requirement, state: State) -> bool:
+            wanted = requirement.kind == sct.RequirementKind.needs
+            return self.oracle.value(requirement.condition, state, {}) == wanted
+
+        return (
+            {
+                state
+                for state in self.states
+                for cancel, stated in needed.items()
+                if runs(cancel, state)
+                and not all(holds(requirement, state) for requirement in stated)
+                and not self.allowed(cancel, state)
+            }
+            if needed
+            else None
+        )
+
     def dead(self) -> set[sct.Event]:
         live = (sct.EventKind.trigger, *_SILENT)
         happen = {event for state in self.states for event, _ in self.moves(state)}

@@ -59,6 +59,10 @@ def test_random_models(model: sct.SupervisoryControlModel) -> None:
         assert verdict.property == requirement_name(requirement)
         check(explicit, verdict, explicit.broken(requirement), appended=True)
     assert (by_name["no dead events"].outcome is Outcome.REFUTED) == bool(explicit.dead())
+    uncanceled = explicit.uncanceled()
+    assert ("cancel when due" in by_name) == (uncanceled is not None)
+    if uncanceled is not None:
+        check(explicit, by_name["cancel when due"], uncanceled)
     check_silent_events(explicit, by_name)
     check_control_loop(explicit, by_name["non-blocking in the control loop"])
     for reached in verdicts:

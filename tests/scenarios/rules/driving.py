@@ -7,10 +7,14 @@ from typing import Any
 from .judging import Fault, RuleBook, first_fault, velocity
 
 HALT = velocity(0.0, 0.0)
+#: Seconds after which a lidar, or what looks through a camera, counts as silent.
+PATIENCE = 0.5
 
 
 class LineFollower(RuleBook):
     """Moves along the line while the way is clear; else halts."""
+
+    silences = {"LineDetector": ("correction", PATIENCE), "Lidar": ("scan", PATIENCE)}  # noqa: RUF012  # never changed
 
     def __init__(self) -> None:
         super().__init__()
@@ -22,8 +26,15 @@ class LineFollower(RuleBook):
             self.correction = value
         elif name == "no_line":
             self.correction = None
+            self.awaits_no("correction")
         elif name == "scan":
             self.clear = value == "clear"
+
+    def fell_silent(self, name: str) -> None:
+        if name == "correction":
+            self.correction = None
+        elif name == "scan":
+            self.clear = False
 
     def sent(self, name: str, value: Any) -> Fault:
         may_move = self.correction is not None and self.clear and not self.stopped
@@ -35,6 +46,8 @@ class LineFollower(RuleBook):
 
 class ObjectFinder(RuleBook):
     """Drives where the way is clear, turns to free sides where it is not, and does neither once the sign is found."""
+
+    silences = {"Lidar": ("scan_front", PATIENCE)}  # noqa: RUF012
 
     def __init__(self) -> None:
         super().__init__()
@@ -66,6 +79,10 @@ class ObjectFinder(RuleBook):
             case "rotate_done" | "continue":
                 self.looking = self.looking or self.turning
                 self.turning = False
+
+    def fell_silent(self, name: str) -> None:
+        if name == "scan_front":
+            self.front = None
 
     def sent(self, name: str, value: Any) -> Fault:
         half = (self.views % 3 != 0, "half of a scan has been heard")
@@ -105,6 +122,8 @@ class ObjectFinder(RuleBook):
 class MazeSolver(RuleBook):
     """Keeps its right hand on the wall. It decides on whole scans, of which each brings three views."""
 
+    silences = {"Lidar": ("scan_front", PATIENCE)}  # noqa: RUF012
+
     def __init__(self) -> None:
         super().__init__()
         self.front = "nothing_known"
@@ -130,6 +149,10 @@ class MazeSolver(RuleBook):
                 if self.turning:
                     self.turned = self.turning if name == "rotate_done" else None
                     self.turning, self.looking = None, True
+
+    def fell_silent(self, name: str) -> None:
+        if name == "scan_front":
+            self.front = "nothing_known"
 
     def sent(self, name: str, value: Any) -> Fault:
         half = (self.views % 3 != 0, "half of a scan has been heard")
@@ -169,18 +192,22 @@ class MazeSolver(RuleBook):
 class PushBall(RuleBook):
     """Looks for the ball, drives up to it, pushes it to the goal; halts before walls, unless it only turns."""
 
+    silences = {"Lidar": ("scan", PATIENCE), "BallDetector": ("image", PATIENCE)}  # noqa: RUF012
+
     def __init__(self) -> None:
         super().__init__()
-        self.free = False
+        self.sees = self.free = False
         #: What it knows of the ball: nothing, that it is away, in view, in front, or slipping aside.
         self.ball = "unknown"
         self.offset = self.goal_offset = 0.0
         self.goal = False
 
     def heard(self, name: str, value: Any) -> None:
+        if name in ("ball_correction", "no_ball"):
+            self.awaits("image")
         match name, self.ball:
             case "scan", _:
-                self.free = value == "free"
+                self.sees, self.free = True, value == "free"
             case "ball_correction", _:
                 self.offset = value
                 self.ball = "view" if self.ball in ("unknown", "away") else self.ball
@@ -197,8 +224,14 @@ class PushBall(RuleBook):
             case "no_goal", _:
                 self.goal = False
 
+    def fell_silent(self, name: str) -> None:
+        if name == "scan":
+            self.sees = False
+        elif name == "image":
+            self.ball = "unknown"
+
     def sent(self, name: str, value: Any) -> Fault:
-        may_move = not self.stopped and self.ball != "unknown" and (self.free or self.ball == "away")
+        may_move = not self.stopped and self.sees and self.ball != "unknown" and (self.free or self.ball == "away")
         if name == "halt":
             return first_fault((may_move, "nothing keeps it from moving"), (value != HALT, "that is no halt"))
         wanted = {
@@ -213,22 +246,30 @@ class PushBall(RuleBook):
 class PersonFollower(RuleBook):
     """Turns to a person, and drives there while nothing is near."""
 
+    silences = {"Lidar": ("scan", PATIENCE), "PersonDetector": ("who", PATIENCE)}  # noqa: RUF012
+
     def __init__(self) -> None:
         super().__init__()
-        self.far = self.person = False
+        self.sees = self.far = self.person = False
         self.left = self.right = self.width = 0
 
     def heard(self, name: str, value: Any) -> None:
         if name == "scan":
-            self.far = value == "far"
+            self.sees, self.far = True, value == "far"
         elif name == "who":
             self.person = value == "person"
         elif name == "place" and value is not None:
             box = value["bounding_boxes"]["0"]
             self.left, self.right, self.width = box["xmin"], box["xmax"], box["img_width"]
 
+    def fell_silent(self, name: str) -> None:
+        if name == "scan":
+            self.sees = False
+        elif name == "who":
+            self.person = False
+
     def sent(self, name: str, value: Any) -> Fault:
-        may_move = self.person and not self.stopped
+        may_move = self.person and self.sees and not self.stopped
         if name == "halt":
             return first_fault((may_move, "nothing keeps it from moving"), (value != HALT, "that is no halt"))
         wanted = velocity(0.2 if self.far else 0.0, (self.width - self.left - self.right) / 1000)
@@ -239,6 +280,7 @@ class Stepper(RuleBook):
     """The layer before a line follower: a step passes only along the line, the way clear, no stop pressed."""
 
     replaced = frozenset({"step"})
+    silences = LineFollower.silences
 
     def __init__(self) -> None:
         super().__init__()
@@ -247,8 +289,16 @@ class Stepper(RuleBook):
     def heard(self, name: str, value: Any) -> None:
         if name in ("correction", "no_line"):
             self.line = name == "correction"
+            if not self.line:
+                self.awaits_no("correction")
         elif name == "scan":
             self.clear = value == "clear"
+
+    def fell_silent(self, name: str) -> None:
+        if name == "correction":
+            self.line = False
+        elif name == "scan":
+            self.clear = False
 
     def sent(self, name: str, value: Any) -> Fault:
         del value

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from .judging import Fault, RuleBook, first_fault
+from .judging import SLACK, Fault, RuleBook, first_fault
 
-#: Seconds by which a node may notice silence later than it begins to count: it, and its clock, have other things to do.
-SLACK = 0.3
 NEVER = float("-inf")
 
 
@@ -44,7 +42,7 @@ class WarehouseRobot(RuleBook):
     def _sense(self, name: str, value: Any) -> None:
         """Takes what a sensor says."""
         device, _, what = name.partition("_")
-        if what == "pressed":
+        if what == "touched":
             (self.touched.add if value else self.touched.discard)(device)
         elif what == "scan":
             self.scanned[device], self.zones[device] = self.time, self.zone(value["ranges"])
@@ -230,12 +228,12 @@ class Sprayer(RuleBook):
 
     half_length, half_width = 100.0, 40.0
     #: Seconds after which what is silent counts for nothing; before another attempt to drive.
-    silences = {"radio": 1.0, "odometry": 0.5, "stick": 0.3}  # noqa: RUF012
+    patiences = {"radio": 1.0, "odometry": 0.5, "stick": 0.3}  # noqa: RUF012
     pause = 5.0
 
     def __init__(self) -> None:
         super().__init__()
-        self.heard_at = dict.fromkeys(self.silences, NEVER)
+        self.heard_at = dict.fromkeys(self.patiences, NEVER)
         self.within = self.filled = self.automatic = False
         #: Driving to the end of the goal: also while the goal is being cancelled.
         self.driving = self.canceling = False
@@ -247,7 +245,7 @@ class Sprayer(RuleBook):
     def speaks(self, what: str) -> bool | None:
         """Whether something is heard; None: it may just have been found silent."""
         silent = self.time - self.heard_at[what]
-        return True if silent < self.silences[what] else False if silent > self.silences[what] + SLACK else None
+        return True if silent < self.patiences[what] else False if silent > self.patiences[what] + SLACK else None
 
     @property
     def may_steer(self) -> bool | None:

@@ -9,7 +9,7 @@ import pytest
 
 from examples.simulator import camera
 from examples.simulator.camera import BallDetector, GoalDetector, LineDetector, ObjectDetector, PersonDetector
-from examples.simulator.devices import Device, Lidar, Odometry, Rotator, Steps, Wheels
+from examples.simulator.devices import STOP, Button, Device, Lidar, Odometry, Rotator, Steps, Wheels
 from examples.simulator.geometry import Pose, Segment
 from examples.simulator.world import STEP, Ball, Person, Sight, World
 
@@ -21,10 +21,12 @@ def velocity(linear: float, angular: float) -> dict[str, Any]:
     return {"linear": {"x": linear}, "angular": {"z": angular}}
 
 
-def passed(world: World, device: Device, seconds: float) -> list[tuple[str, dict[str, Any]]]:
-    """Lets time pass; what the device said."""
+def passed(world: World, device: Device, seconds: float, *, button: bool = True) -> list[tuple[str, dict[str, Any]]]:
+    """Lets time pass; what the device said. The button repeats that it is released."""
     said = []
     for _ in range(round(seconds / STEP)):
+        if button and STOP in device.hears:
+            device.hear(world, STOP, {"data": False})
         device.act(world)
         world.step()
         said += device.say(world)
@@ -82,13 +84,32 @@ def test_the_rotator_gives_up_on_stop_and_says_nothing() -> None:
     world, rotator = World(HERE), Rotator("std_msgs/Empty")
     rotator.hear(world, "/rotate_left", {})
     assert passed(world, rotator, 1.0) == []
-    rotator.hear(world, "/stop", {})
+    rotator.hear(world, STOP, {"data": True})
     assert passed(world, rotator, 4.0) == []
     assert 0.2 < world.pose.heading < 1.2
     assert world.drive.speed == (0.0, 0.0)
-    rotator.hear(world, "/stop", {})  # nothing to give up
+    rotator.hear(world, STOP, {"data": True})  # nothing to give up
     rotator.hear(world, "/rotate_right", {})
     assert passed(world, rotator, 4.0) == [("/rotate_done", {})]
+
+
+def test_the_rotator_gives_up_where_its_button_is_silent() -> None:
+    world, rotator = World(HERE), Rotator("std_msgs/Empty")
+    rotator.hear(world, "/rotate_left", {})
+    assert passed(world, rotator, 0.5, button=False) == []
+    assert rotator.turning
+    assert passed(world, rotator, 1.0, button=False) == []
+    assert not rotator.turning
+    assert world.drive.speed == (0.0, 0.0)
+
+
+def test_the_button_repeats_whether_it_is_pressed() -> None:
+    world, button = World(HERE), Button()
+    assert button.say(world) == [(STOP, {"data": False})]
+    button.pressed = True
+    assert button.say(world) == button.say(world) == [(STOP, {"data": True})]
+    button.silent = True
+    assert button.say(world) == []
 
 
 def test_the_line_is_seen_where_it_is() -> None:

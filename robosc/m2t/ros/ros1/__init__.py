@@ -1,4 +1,4 @@
-"""What is ROS 1's own about a package: catkin, launch files in XML, callback queues."""
+"""Packages of ROS 1: catkin, launch files in XML, callback queues."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Ros1:
         return f"{interface.package}/{interface.type}{action}.h"
 
     def controller(self, node: Node, configuration: Configuration, used: Used, *, tests: bool) -> dict[str, Any]:  # noqa: ARG002
-        """What only the templates of a controller read; see `Middleware`."""
+        """Values for the templates of a controller alone; see `Middleware`."""
         libraries = {"rosconsole", "roscpp", "xmlrpcpp", *(["actionlib"] if node.actions else [])}
         return {
             "headers": self._headers(node, used.reports),
@@ -48,7 +48,7 @@ class Ros1:
         }
 
     def layer(self, layer: LayerNode, configuration: Configuration, used: Used) -> dict[str, Any]:
-        """What only the templates of a layer read; see `Middleware`."""
+        """Values for the templates of a layer alone; see `Middleware`."""
         dependencies = {"rosconsole", "roscpp", *used.types, *(["actionlib_msgs"] if layer.node.actions else [])}
         run = configuration.supervisor.controller.run
         return {

@@ -1,4 +1,4 @@
-"""What is ROS 2's own about a package: ament, launch files in Python, components, qualities of service."""
+"""Packages of ROS 2: ament, launch files in Python, components, qualities of service."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Ros2:
         return f"{interface.package}/{_FOLDERS[interface.kind.name]}/{name}.hpp"
 
     def controller(self, node: Node, configuration: Configuration, used: Used, *, tests: bool) -> dict[str, Any]:
-        """What only the templates of a controller read; see `Middleware`."""
+        """Values for the templates of a controller alone; see `Middleware`."""
         types = set(used.types)
         libraries, started = ["rclcpp"], ["launch", "launch_ros"]
         if node.actions:
@@ -68,7 +68,7 @@ class Ros2:
         }
 
     def layer(self, layer: LayerNode, configuration: Configuration, used: Used) -> dict[str, Any]:
-        """What only the templates of a layer read; see `Middleware`."""
+        """Values for the templates of a layer alone; see `Middleware`."""
         types = {*used.types, *(["action_msgs"] if layer.node.actions else [])}
         hands_on = layer.instead and layer.node.hands_on
         libraries = ["rclcpp", *(["rosidl_typesupport_introspection_cpp"] if hands_on else [])]
@@ -122,12 +122,12 @@ def _client(client: Client) -> str:
 
 
 def _chosen(name: str, configuration: Configuration) -> QualityOfService:
-    """What the configuration says of a topic, service or action."""
+    """The quality of service in the configuration of a topic, service or action."""
     return configuration.qos.get(name.removeprefix("/")) or QualityOfService()
 
 
 def _sent(topic: Publisher) -> str:
-    """What is usual for what is sent: what is sent on change only is kept for those who come later."""
+    """The usual quality of service of commands: those sent on change are kept for late subscribers."""
     return f"rclcpp::QoS({QUEUE_DEPTH}){'.transient_local()' if topic.on_change else ''}"
 
 
