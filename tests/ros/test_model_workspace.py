@@ -207,7 +207,7 @@ def test_what_stops_a_build(model_workspace: Workspace) -> None:
 def a_fault_stops_it_with_its_place(model_workspace: Workspace) -> None:
     model = source(model_workspace, "follower_robot", "person_follower.rscd")
     text = model.read_text(encoding="utf-8")
-    right = "  requirement move needs EmergencyStop.in_service and PersonDetector.detected\n"
+    right = "  requirement move needs EmergencyStop.in_service and Lidar.sensing and PersonDetector.detected\n"
     assert right in text
     line = right.replace("detected", "detectd").rstrip("\n")
     with touched_later(model, text.replace(right, f"{line}\n")):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from examples.simulator.devices import GO_ON, STOP
 from examples.simulator.engine import connected, load, model_of
 from examples.simulator.scenarios import SCENARIOS
 from examples.simulator.simulation import Message, Simulation
@@ -32,6 +33,7 @@ class HalfSeeing(Controller):
         for reception in subscription.receptions:
             with self._batch():
                 self._receive(reception, subscription.topic, message)
+        self._note_received(subscription)
 
 
 def on_half(log: list[dict[str, Any]]) -> list[str]:
@@ -66,6 +68,8 @@ def test_a_corner_that_comes_up_together_with_a_wall_ahead(kind: type[Controller
     corner[225] = 0.5
     simulation.world.steps = 10
     node.work()  # the first tick
+    node.take(Message(STOP, {"data": False}))
+    node.take(Message(GO_ON, {}))
     for ranges in (along, corner):
         node.take(Message("/scan", {"ranges": ranges}))
         node.work()
