@@ -14,7 +14,7 @@ from robosc.ros_types import RosTypes
 from robosc.runtime.core.controller import Controller
 from robosc.runtime.core.event_log import EventLog
 from robosc.runtime.core.event_loop import EventLoop
-from robosc.runtime.core.port import Outcome
+from robosc.runtime.core.port import CancelAnswer, Outcome
 from robosc.runtime.core.settings import Settings
 
 if TYPE_CHECKING:
@@ -35,6 +35,8 @@ class _Goal(RunningGoal):
     def cancel(self) -> None:
         super().cancel()
         self.asked()
+        # As the servers of the player do: a request without an answer is made again.
+        self.handlers.cancel_answered(CancelAnswer.ACCEPTED)
 
 
 class _Robot(Robot):

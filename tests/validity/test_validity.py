@@ -259,7 +259,10 @@ BROKEN: list[tuple[Callable[[Any], None], list[str]]] = [
     (_guard_no_boolean, ["this is of integer, but boolean is wanted"]),
     (_condition_no_boolean, ["this is of integer, but boolean is wanted"]),
     (_part_no_boolean, ["this is of integer, but boolean is wanted"]),
-    (_input_in_guard, ["an input is read in guards and updates of edges only", "an initial value is a literal"]),
+    (
+        _input_in_guard,
+        ["an input is read in guards and updates of edges, and in requirements, only", "an initial value is a literal"],
+    ),
     (_input_of_another_event, ["'c' does not carry the input 'i'"]),
     (_carried_from_elsewhere, ["the input 'i' is another plant's"]),
     (_unbounded, ["both bounds of an integer are given in an sct model"]),
