@@ -45,7 +45,7 @@ def test_the_snippet_on_time_is_a_behaviour(tmp_path: Path) -> None:
 def test_the_standard_library_is_what_the_page_says() -> None:
     page = PAGE.read_text(encoding="utf-8")
     files = list(locate("robosc/stdlib").glob("*.rscd"))
-    assert len(files) == 2
+    assert len(files) == 3
     for file in files:
         text = file.read_text(encoding="utf-8")
         for kind in ("library", "component", "message"):

@@ -94,7 +94,7 @@ def _cif_says_the_same(models: Models) -> None:
     model, name = models.sct, models.sct.name
     files = cif.generate(models, Configuration())
     lowered = transform(model).model
-    again, supervised = (read_back(files[f"{name}.{ending}"], lowered) for ending in ("cif", "supervised.cif"))
+    again, supervised = (named_like(files[f"{name}.{ending}"], lowered) for ending in ("cif", "supervised.cif"))
     assert (found := differences(model, again)) == [], found[:3]
     assert (found := differences(model, supervised)) == [], found[:3]
     synthesis, read_back = synthesize(model), synthesize(again)
@@ -108,7 +108,7 @@ def _cif_says_the_same(models: Models) -> None:
         assert supervised_states(supervised) == synthesis.controlled_states
 
 
-def read_back(text: str, model: sct.SupervisoryControlModel) -> sct.SupervisoryControlModel:
+def named_like(text: str, model: sct.SupervisoryControlModel) -> sct.SupervisoryControlModel:
     """The model in a text of CIF, with the names of the lowered one where CIF has to call something else."""
     again, names = read(text), CifNames(model)
 

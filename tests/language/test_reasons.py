@@ -62,9 +62,9 @@ def test_the_enum_has_the_reasons_of_the_page(tmp_path: Path) -> None:
 @pytest.mark.parametrize("reason", sorted(REASONS[rsc.Action]))
 def test_a_condition_on_the_reason(reason: str) -> None:
     text = robot(f"on error from drive if error = {reason} goto other on error from drive goto ready")
-    for told in REASONS[rsc.Action]:
-        engine = failed(text, {"i_error_reason": told})
-        assert engine.state["component_Base"] == ("other" if told == reason else "ready")
+    for other in REASONS[rsc.Action]:
+        engine = failed(text, {"i_error_reason": other})
+        assert engine.state["component_Base"] == ("other" if other == reason else "ready")
 
 
 @pytest.mark.parametrize(("event", "kind"), [("action_drive", rsc.Action), ("service_dock", rsc.Service)])
@@ -104,9 +104,9 @@ def test_bare_values(condition: str, reasons: set[str]) -> None:
       function bad(reason: Failure): boolean = reason = lost or timeout = (if true then reason else lost)"""
     text = robot(f"on error from drive if {condition} goto other on error from drive goto ready", "", definitions)
     taken = {
-        told
-        for told in REASONS[rsc.Action]
-        if failed(text, {"i_error_reason": told}).state["component_Base"] == "other"
+        reason
+        for reason in REASONS[rsc.Action]
+        if failed(text, {"i_error_reason": reason}).state["component_Base"] == "other"
     }
     assert taken == reasons
 

@@ -186,7 +186,7 @@ ACTION = rsc.Action(
         (ACTION, "request", None),
         (ACTION, "response", BOOLEAN),
         (ACTION, "feedback", STRING),
-        (ACTION, "error", None),
+        (ACTION, "error", BOOLEAN),
         (ACTION, "cancel", None),
         (None, "response", UNKNOWN),
     ],
