@@ -7,6 +7,7 @@ from functools import cached_property
 from math import prod
 from typing import TYPE_CHECKING
 
+from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.domains import domain
 from robosc.semantics.edges import edges_of
@@ -43,11 +44,15 @@ def is_from_cif(model: sct.SupervisoryControlModel) -> bool:
 def input_values(model: sct.SupervisoryControlModel) -> int:
     """How many values the inputs of a robot have together: to CIF these are part of a state, at any time.
 
-    1 for a model that was read from CIF: its inputs are variables.
+    1 for a model that was read from CIF: its inputs are variables. An input of CIF can be each literal of its
+    enumeration.
     """
     if is_from_cif(model):
         return 1
-    return prod(domain(parameter.type).size for plant in model.plants for parameter in plant.inputs)
+    kinds = [parameter.type for plant in model.plants for parameter in plant.inputs]
+    return prod(
+        len(kind.enumeration.literals) if isinstance(kind, ex.EnumerationType) else domain(kind).size for kind in kinds
+    )
 
 
 def event_name(event: sct.Event) -> str:

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING
 import pytest
 from click.testing import CliRunner
 
+import robosc
 from robosc.cif import read
 from robosc.cli import main
 from robosc.configuration import Configuration
 from robosc.m2t import cif
 from robosc.metamodel import expression as ex
+from robosc.semantics.roles import input_values
 from robosc.synthesis import synthesize
 from tests.cif.comparing import reading_of
 from tests.cif.escet import CONTROLLER_CHECK, TRANSFORMER, Explored, Tools, home, without_inputs
@@ -68,6 +70,17 @@ def test_synthesis_counts_as_many_states(tools: Tools, tmp_path: Path, start: in
             assert theirs.states == specification.controlled_states(), text + theirs.call.output
             compared += 1
     assert compared > 10
+
+
+@pytest.mark.parametrize("name", ["data", "failures", "transitions"])
+def test_robots_with_inputs_have_as_many_states(tools: Tools, tmp_path: Path, name: str) -> None:
+    """For CIF an input is part of the state, and one of an enumeration can be each literal."""
+    robot = robosc.load(_ROOT / "tests" / "every_view" / f"{name}.rscd")
+    model = robosc.to_sct(robot)
+    states = robosc.synthesize(model).controlledStates
+    for path, text in robosc.generate("cif", robosc.Models(model)).items():
+        (tmp_path / path).write_text(text)
+    assert tools.synthesize(tmp_path / f"{model.name}.cif").states == states * input_values(model)
 
 
 def test_what_is_written_of_specifications_is_valid(tools: Tools, tmp_path: Path) -> None:
