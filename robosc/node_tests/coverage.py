@@ -95,11 +95,8 @@ class Watcher:
 
     def before_event(self, event: str) -> Iterator[Goal]:
         """What is seen as an enabled event happens, with the inputs that are set."""
-        for edge, taken in self._transitions.tried(event):
-            yield Goal(edge, taken)
-        goal = Goal(self._events[event])
-        if goal in self._goals:
-            yield goal
+        seen = [Goal(edge, taken) for edge, taken in self._transitions.tried(event)]
+        yield from (goal for goal in [*seen, Goal(self._events[event])] if goal in self._goals)
 
     def at_rest(self) -> frozenset[Goal]:
         """What is seen where the control loop has done what it can do at once: then it has asked all guards."""

@@ -106,7 +106,7 @@ def inputs_in(
         part, limits = pending.pop()
         # A condition and its negation are one input, and a reason is one by itself.
         splits = isinstance(part, ex.Negation) or reads[part].reason
-        if happens_anyway(event) and reads[part].elements:
+        if happens_anyway(event) and reads[part].elements and reads[part].data:
             splits = is_condition and isinstance(part, ex.Conjunction)
             if not splits and not reads[part].computed:
                 yield part, None

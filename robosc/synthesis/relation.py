@@ -111,8 +111,25 @@ class EventRelation:
         self.changed = tuple(element for element in changed if encoding.layout.domains[element].size > 1)
         self.enabled_by = {edges[0].target.eContainer(): self.taken(edges) for edges in self._edges}
         self.enabled = encoding.diagrams.all_of(self.enabled_by.values())
-        self.asked = {requirement: encoding.permits(requirement) for requirement in requirements}
+        self.asked = {requirement: self._permitted(requirement) for requirement in requirements}
         self.requirement = encoding.diagrams.all_of(self.asked.values())
+
+    def _permitted(self, requirement: sct.Requirement) -> Diagram:
+        """The states in which a requirement lets the event happen, with all data with which the plants enable it."""
+        permits = self._encoding.permits(requirement)
+        if not any(isinstance(element, sct.Input) for element in referenced(requirement.condition)):
+            return permits
+        encoding, diagrams = self._encoding, self._encoding.diagrams
+        happens = diagrams.all_of(
+            [
+                encoding.whole(self.event.inputs),
+                *(
+                    diagrams.any_of(encoding.source(edge) & encoding.holds(edge.guard) for edge in edges)
+                    for edges in self._edges
+                ),
+            ]
+        )
+        return ~(happens & ~permits).exists(self._inputs)
 
     def with_inputs(self) -> Diagram:
         """The relation of present, inputs and next values, without the requirements."""

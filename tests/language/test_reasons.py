@@ -200,3 +200,42 @@ def test_the_first_transition_whose_reason_fits_is_taken(tests: list[tuple[str, 
     fits = [number for number, (wanted, symbol) in enumerate(tests, 1) if (reason == wanted) is (symbol == "=")]
     engine = failed(text, {"i_error_reason": reason})
     assert engine.state["Base.number"] == next(iter(fits), 0)
+
+
+FORBIDDEN = """robot Forbidden {
+  component Lamp {
+    service light with request: none, response: none
+    behaviour {
+      initial marked state dark { on request to light goto lighting }
+      state lighting { on response from light goto dark on error from light goto dark }
+    }
+  }
+  %s
+  requirement Never: automaton { initial marked state all { on error from light if error != timeout } }
+}"""
+
+
+@pytest.mark.parametrize("others", [0, 3])
+def test_an_error_that_is_forbidden_for_a_reason_must_not_come(others: int) -> None:
+    """The error can't be prevented, so that the call is."""
+    more = "".join(
+        f"""component C{number} {{ outgoing message m{number} with type: none
+        behaviour {{ initial marked state a {{ on response from m{number} goto b }}
+          marked state b {{ on response from m{number} goto a }} }} }}"""
+        for number in range(others)
+    )
+    engine = running(FORBIDDEN % more)
+    assert not engine.enabled("service_light.c_trigger")
+
+
+@pytest.mark.parametrize(
+    "driving",
+    [
+        "on error from drive if kept[0] = 1 goto other",
+        "on canceled from drive if kept[0] = 1 goto other",
+        "on error from drive if error = lost do number := kept[0] goto other transition if number = 9 goto other",
+    ],
+)
+def test_elements_that_the_node_has_kept_are_no_input(driving: str) -> None:
+    text = robot(driving, variables="variable kept: array(integer)")
+    assert "variable-type" in {rule for rule, _ in errors(text)}

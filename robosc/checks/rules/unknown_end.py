@@ -114,10 +114,19 @@ def _reasons_left(
         for reason in STILL_RUNNING[type(port.communication)] if transition in tried else ():
             here = _Situation(known, instance, state, reason)
             earlier = tried[: tried.index(transition)]
-            taken = any(here.holds(guard_of(other)) is True for other in earlier)
+            taken = any(here.holds(guard_of(other)) is True and not _may_be_unreadable(other) for other in earlier)
             if not taken and here.holds(transition.guard) is not False:
                 found.setdefault(state, []).append(reason)
     return found
+
+
+def _may_be_unreadable(transition: rsc.Transition) -> bool:
+    """Whether the guard of a transition reads an element of an array: it is false where the element is missing."""
+    return any(
+        isinstance(segment, rsc.IndexSegment)
+        for access in accesses(guard_of(transition))
+        for segment in access.segments
+    )
 
 
 def _misleads(transition: rsc.ResultTransition, before: _Situation, condition: CommandCondition) -> bool:
