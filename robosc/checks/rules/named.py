@@ -103,8 +103,8 @@ def arguments(base: rsc.Base) -> Iterator[Finding]:
 def _reason(comparison: ex.Equation | ex.Inequation) -> Iterator[Finding]:
     """A comparison of `error` with a reason for which the service or action can't fail."""
     for read, other in ((comparison.left, comparison.right), (comparison.right, comparison.left)):
-        item = other.item if isinstance(other, rsc.Access) else None
-        if not isinstance(read, rsc.ErrorReason) or not isinstance(item, rsc.EnumValue):
+        item = constant_value(other) if isinstance(read, rsc.ErrorReason) else None
+        if not isinstance(item, rsc.EnumValue) or other is None:
             continue
         communication = _failing(read)
         possible = reasons(communication)
