@@ -26,6 +26,7 @@ from robosc_faudes.automata import faudes_states  # noqa: E402
 import robosc  # noqa: E402
 from benchmarks.families import FAMILIES  # noqa: E402
 from robosc.analysis.supervise import diagnose  # noqa: E402
+from robosc.diagnostics import has_errors  # noqa: E402
 from robosc.language import reading  # noqa: E402
 from robosc.synthesis import Phase, Statistics  # noqa: E402
 from tests.synthesis.oracle import Oracle  # noqa: E402
@@ -103,7 +104,7 @@ def _robosc(path: Path, found: dict[str, Any]) -> None:
 def _transform(path: Path, costs: Costs, found: dict[str, Any]) -> None:
     robot = _robot(path, costs)
     with costs.during("check"):
-        assert not robosc.check(robot, INTERFACES)
+        assert not has_errors(robosc.check(robot, INTERFACES))
     with costs.during("m2m"):
         models = robosc.Models(robosc.to_sct(robot), robosc.to_rosgraph(robot, INTERFACES), robot)
     synthesis = diagnose(models.sct, statistics=costs)

@@ -181,6 +181,11 @@ class WorldPort:
         del part
         return Sent(json.loads(json.dumps(DEFAULTS.get(interface.type, {}))))
 
+    def unset(self, interface, part, path):
+        """An object of which nothing is known yet."""
+        del path
+        return self.create(interface, part)
+
     def stamp(self, message, frame):
         """Headers need no time here."""
 

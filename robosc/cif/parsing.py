@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 #: After so many faults of one text the rest is not looked at.
 _MOST = 20
 _BLANK = re.compile(r"//[^\n]*|/\*.*?\*/|\s+", re.DOTALL)
-_TOKEN = re.compile(r'"(?:[^\\"\n]|\\.)*"|[$]?\w+(?:\.\w+)*|<=>|:=|=>|<=|>=|!=|\.\.|.', re.DOTALL)
+_TOKEN = re.compile(r'"(?:[^\\"\n]|\\.)*+"?|[$]?\w+(?:\.\w+)*|<=>|:=|=>|<=|>=|!=|\.\.|.', re.DOTALL)
 #: Where a statement ends, or the head of one with a body.
 _END = re.compile(r'"(?:[^\\"\n]|\\.)*+"?|//[^\n]*|/\*.*?(?:\*/|\Z)|;|:(?!=)|\bend\b', re.DOTALL)
 _RULES = {

@@ -169,7 +169,7 @@ def test_the_same_call_gives_the_same_test(case: Case) -> None:
 
 @pytest.mark.slow
 def test_a_tour_with_other_settings_is_another_one() -> None:
-    graph, configuration = robot_of("line_follower")
+    graph, configuration = robot_of("porter")
     slower = configuration.control_loop.model_copy(update={"period_ms": 350})
     other = configuration.model_copy(update={"control_loop": slower})
     with remembered():

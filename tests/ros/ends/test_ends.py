@@ -189,6 +189,7 @@ def test_the_node_ends_while_it_goes_on(base: Base) -> None:
         drive.press()
         why = REFUSED
         drive.until_asked()
+        base.until(lambda: REFUSED in base.output, "the node says so")
     os.kill(base.node.pid, signal.SIGINT)
     assert base.node.wait(PATIENCE) == 0
     ends = "layer" if base.layer else "node"
