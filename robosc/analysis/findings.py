@@ -323,7 +323,7 @@ class _Findings:
 
 
 def _likewise(second: str, others: Sequence[sct.Plant]) -> str:
-    """What else a message says of a command that also meets others than the one of its finding."""
+    """The rest of a message on a command that also meets others than the one of its finding."""
     if not others:
         return ""
     shown = [f"`{name(plant)}`" for plant in others[:_NAMED]]

@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 
 
 def names_failures(file: File) -> bool:
-    """Whether a file names the enum or reads the reason of an error, so that it needs the predefined library."""
+    """Whether a file needs the predefined library: it, or a library it imports from, names the enum or a reason."""
+    if any(library is not None and library.predefined is not None for library in file.libraries.values()):
+        return True
     return any(
         isinstance(element, rsc.ErrorReason) or any(name.text == FAILURE for name in names.values())
         for element, names in file.references.items()

@@ -678,7 +678,7 @@ class Linker:
     def _elsewhere(
         self, name: Name, having_it: Callable[[rsc.Component], Names | None] | None = None
     ) -> Repair | str | None:
-        """What to write for a bare name that some component has: as a variable or a state, or by `having_it`."""
+        """The text for a bare name that some component has: as a variable or a state, or by `having_it`."""
         members = having_it or self.scope.members
         having = [
             f"{written(component.name)}.{written(name.text)}"

@@ -204,7 +204,7 @@ def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dic
 
 
 def _read_by_error(response: rosgraph.Reception, data: NodeData) -> Iterator[tuple[Path, messages.Read]]:
-    """What the error of an action reads of a result: one that can't be read as a response is an error."""
+    """Data that the error of an action reads of a result: one that can't be read as a response is an error."""
     client = response.eContainer()
     if isinstance(client, rosgraph.ActionClient) and client.response is response:
         values = [assigned.value for assigned in client.error.inputs]

@@ -146,7 +146,7 @@ def path_of(access: rosgraph.WireAccess) -> Path:
 
 
 def whole(value: ex.Expression) -> ex.Expression:
-    """What a value is where all that it reads is there."""
+    """Return a value without the one that takes its place where something is missing."""
     return value.value if isinstance(value, rosgraph.IfReadable) else value
 
 

@@ -31,7 +31,7 @@ class StepError(ValueError):
 
 @dataclass(frozen=True)
 class StepInWords:
-    """What comes from the robot. `event` is as `explain` takes it, such as `scan`, `dock.error` or `dock.canceled`.
+    """An event that comes from the robot. `event` is as `explain` takes it: `scan`, `dock.error` or `dock.canceled`.
 
     `reason`: of an error, None where the text names none. `data` is that of the event as the event log has it, None
     where the text has none; `is_message`: all fields of what ROS brings. `is_refusal`: it is no event, but the answer

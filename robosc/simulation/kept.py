@@ -115,7 +115,10 @@ class Kept:
         return self._reached(data, reference, *given)
 
     def _reached(self, data: Any, reference: ex.Expression, *given: Any) -> Any:
-        """What a reference reads of data. A log leaves out what could not be read of an end that happens anyway."""
+        """Return the value that a reference reads of data.
+
+        The log of an end that happens anyway leaves out what could not be read: an element there is `UnreadableError`.
+        """
         try:
             return read(data, reference, *given)
         except UnknownError:

@@ -64,7 +64,7 @@ class Happened:
 
 
 def refusal(engine: Engine, action: str) -> Blocked | None:
-    """What keeps a server from refusing to cancel the goal of an action: that it is not being canceled."""
+    """The reason why a server cannot refuse to cancel the goal of an action: it is not being canceled."""
     ends = (event for event in _plant(engine, action).events if event.kind == sct.EventKind.canceled)
     return engine.blocked_by(event_name(next(ends)))
 

@@ -196,7 +196,7 @@ def failing(type: str = "Failure", guard: str = "true", condition: str = "true")
 
 
 def test_reasons_are_proposed_where_the_text_expects_one(project: Project) -> None:
-    """Those of the service's kind; elsewhere none."""
+    """Completion offers the reasons of the service, and none elsewhere."""
     assert "Failure" in complete(project, failing(type="|"))
     for guard in ("error = |", "why != |", "lost = error and error = |"):
         found = complete(project, failing(guard=guard))

@@ -26,7 +26,7 @@ PATIENCE = 0.4
 
 
 def play(name: str, *lines: str, button: bool = True) -> list[list[str]]:
-    """What the controller asks for after each line of a script and the tick that follows it, once each.
+    """The commands of the controller after each line of a script and the tick that follows it, once each.
 
     The robot has been set going. While a line waits, the `button` repeats whether it is pressed.
     """

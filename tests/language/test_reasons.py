@@ -239,3 +239,26 @@ def test_an_error_that_is_forbidden_for_a_reason_must_not_come(others: int) -> N
 def test_elements_that_the_node_has_kept_are_no_input(driving: str) -> None:
     text = robot(driving, variables="variable kept: array(integer)")
     assert "variable-type" in {rule for rule, _ in errors(text)}
+
+
+def test_a_reason_is_bare_beside_a_variable_of_a_library(tmp_path: Path) -> None:
+    """The robot's own text names neither the enum nor an error."""
+    (tmp_path / "base.rscd").write_text("""library BaseLibrary {
+  component Drive {
+    service go with request: none, response: none
+    behaviour {
+      variable why: Failure
+      initial marked state here { on request to go goto there }
+      state there { on response from go goto here on error from go do why := error goto here }
+    }
+  }
+}""")
+    found = reading(
+        tmp_path,
+        """robot R {
+  component Base from BaseLibrary import Drive
+  component Hatch { incoming message open with type: none }
+  requirement open needs Base.why != timeout
+}""",
+    )
+    assert found.findings == []

@@ -164,7 +164,7 @@ class _Changed(NamedTuple):
 
 
 class _Situation(NamedTuple):
-    """What is known of one component: its state, the reason of its error, and the values of some variables."""
+    """Known facts of one component: its state, the reason of its error, and the values of some variables."""
 
     known: Instances
     instance: Instance
