@@ -17,6 +17,7 @@ from robosc.language.recovery import parse_file
 from robosc.language.text import Documents, decode
 from robosc.metamodel import robosc as rsc
 from robosc.ros_types import RosTypes
+from robosc.semantics.failures import PREDEFINED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
     from robosc.language.building import Name
     from robosc.language.scopes import File
     from robosc.semantics.instances import Resolved
+
+#: The library that every model knows.
+_PREDEFINED = "stdlib/predefined/predefined.rscd"
 
 
 @dataclass(frozen=True)
@@ -135,6 +139,8 @@ class _Reader:
         Of two files with one name the one that is read later gets as many of the folders around it as tell them apart.
         """
         whole = path.parent.resolve() / path.name
+        if whole == locate(_PREDEFINED).resolve():
+            return PREDEFINED
         shipped = locate("stdlib") in whole.parents
         name = (
             path.name
@@ -149,7 +155,7 @@ class _Reader:
 
     def _predefined(self) -> File:
         """The library that every model knows."""
-        path = locate("stdlib/predefined/predefined.rscd")
+        path = locate(_PREDEFINED)
         identity = path.resolve()
         return self._files[identity] if identity in self._files else self._open(path, str(path))
 

@@ -23,7 +23,7 @@ from robosc.runtime.core.json_text import json_text
 from robosc.runtime.core.port import CancelAnswer, Failure, Outcome
 from robosc.scenario_tests.reading import Allowed, Holds, Incoming, Refusal, Sent, Wait
 from robosc.semantics.evaluation import evaluate
-from robosc.semantics.failures import possible_reasons
+from robosc.semantics.failures import brings_data, possible_reasons
 from robosc.semantics.messages import holds_objects
 from robosc.semantics.roles import event_name, plant_of
 
@@ -71,11 +71,6 @@ class _Controller(DrivenController):
         return may_happen
 
 
-#: The reasons of errors that bring no answer and no result.
-_WITHOUT_DATA = {
-    sct.PlantKind.service: ("unavailable", "timeout", "failed"),
-    sct.PlantKind.action: ("unavailable", "rejected", "lost"),
-}
 #: The kinds of events that a step may name.
 _FROM_THE_ROBOT = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.canceled)
 
@@ -108,7 +103,7 @@ def _impossible(line: Incoming, event: sct.Event) -> Iterator[Diagnostic]:
     elif line.reason is not None and line.reason not in possible:
         hint = f"possible is {listed([f'`{reason}`' for reason in sorted(possible)])}"
         yield line.fault(f"the {words(event)} can't have the reason `{line.reason}`", hint)
-    elif possible and line.data is not None and line.reason in _WITHOUT_DATA[plant_of(event).kind]:
+    elif possible and line.data is not None and not brings_data(event, line.reason):
         yield line.fault(f"an error with the reason `{line.reason}` brings no data", "leave out `with …`")
 
 

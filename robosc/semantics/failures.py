@@ -28,6 +28,11 @@ STILL_RUNNING: Mapping[type[robosc.CommunicationType], tuple[str, ...]] = {
     robosc.Service: ("timeout", "failed"),
     robosc.Action: ("lost",),
 }
+#: The reasons of errors that bring no answer and no result.
+_WITHOUT_DATA: Mapping[sct.PlantKind, tuple[str, ...]] = {
+    sct.PlantKind.service: ("unavailable", "timeout", "failed"),
+    sct.PlantKind.action: ("unavailable", "rejected", "lost"),
+}
 #: The reason where a text names none.
 USUAL: Mapping[type[robosc.CommunicationType], str] = {robosc.Service: "failed", robosc.Action: "aborted"}
 _KINDS: Mapping[sct.PlantKind, type[robosc.CommunicationType]] = {
@@ -50,6 +55,11 @@ def possible_reasons(event: sct.Event) -> tuple[str, ...]:
     return (usual, *(reason for reason in REASONS[communication] if reason != usual))
 
 
+def brings_data(event: sct.Event, reason: str | None) -> bool:
+    """Whether an error with a reason brings an answer or a result; True where no reason is given."""
+    return reason not in _WITHOUT_DATA.get(plant_of(event).kind, ())
+
+
 def is_reason(given: sct.Input) -> bool:
     """Whether an input has the reason of an error."""
     return given.text == REASON
@@ -64,8 +74,8 @@ def is_failure(enum: object) -> bool:
 
 def is_predefined(base: object) -> bool:
     """Whether a library is the one that every model knows."""
-    return isinstance(base, robosc.Library) and base.name == PREDEFINED and base.file == f"{PREDEFINED.lower()}.rscd"
+    return isinstance(base, robosc.Library) and base.name == base.file == PREDEFINED
 
 
-#: The name of the library that every model knows.
+#: The name of the library that every model knows. Models call its file so, too: a user's file has a suffix.
 PREDEFINED = "Predefined"

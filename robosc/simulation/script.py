@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from robosc.analysis.explain import NamingError, event_named
 from robosc.diagnostics import Diagnostic, Severity, Span
 from robosc.files.json_reading import JsonError, json_lines, json_value
+from robosc.semantics.failures import brings_data
 from robosc.semantics.roles import event_name, plant_of
 from robosc.semantics.steps import FIRST_WORDS, StepError, step_in_words
 from robosc.simulation.data import DataError
@@ -23,6 +24,8 @@ RULE = "script"
 WAIT = "wait"
 #: A server does not cancel a goal.
 REFUSE = "refuse cancel"
+#: The keys of the data of an event.
+_OF_DATA = ("reason", "value", "where")
 #: 100 days: what is longer is a mistake.
 _LONGEST_WAIT = 8_640_000
 #: A clock that tells more seconds is broken.
@@ -93,6 +96,8 @@ def spoken(model: sct.SupervisoryControlModel, text: str) -> tuple[str, dict[str
     event = event_named(model, step.event)
     if step.is_refusal:
         return REFUSE, {"of": plant_of(event).name}
+    if step.data is not None and not brings_data(event, step.reason):
+        raise StepError(f"an error with the reason `{step.reason}` brings no data", 0, "leave out `with …`")
     data = {} if step.data is None else {"value": step.data}
     return event_name(event), data if step.reason is None else {**data, "reason": step.reason}
 
@@ -126,6 +131,8 @@ class _Line:
             if not isinstance(name, str) or not isinstance(data, dict):
                 self._fault(self._start, 'expected an object like {"event": "...", "data": {"value": ...}}')
                 return None
+            for key in (key for key in _OF_DATA if key in logged):
+                self._fault(self._line.find(f'"{key}"'), f"`{key}` is part of the data", 'write it inside of `"data"`')
             known = self._known(name, self._line.find(name))
             return (
                 self._wait(str(data.get("seconds", "")))

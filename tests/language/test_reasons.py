@@ -262,3 +262,18 @@ def test_a_reason_is_bare_beside_a_variable_of_a_library(tmp_path: Path) -> None
 }""",
     )
     assert found.findings == []
+
+
+def test_a_library_of_the_user_can_have_the_name_of_the_predefined_one(tmp_path: Path) -> None:
+    """Its own `Failure` hides the predefined one, and the reasons of errors stay what they are."""
+    (tmp_path / "predefined.rscd").write_text("""library Predefined {
+  datatype enum Failure from string to { value = "big" -> big default -> small }
+  component Gauge { outgoing message size with type: Failure }
+}""")
+    base = "component Gauge from Predefined import Gauge component Base { service go with request: none, response: none"
+    text = (
+        f"robot R {{ {base} behaviour {{ variable size: Failure = small initial marked state here {{"
+        " on request to go goto there } state there { on response from go goto here"
+        " on error from go if error = timeout do size := big goto here on error from go goto here } } } }"
+    )
+    assert reading(tmp_path, text).findings == []

@@ -63,7 +63,7 @@ CALLED = (PRESSED, "service_lift.c_trigger")
         ("error from go", "low", "aborted"),
         ("error from Base.go because canceled", "low", "canceled"),
         ('error from go because aborted with {"code": 8}', "low", "aborted"),
-        ('error from go because lost with message {"rest": 2.0}', "unknown", "lost"),
+        ("error from go because lost", "unknown", "lost"),
     ],
 )
 def test_the_reason_of_a_goal(line: str, state: str, why: str) -> None:
@@ -119,6 +119,10 @@ def test_a_reason_that_an_event_cannot_have(line: str, possible: tuple[str, ...]
         ("refuse cancel of lift", "there is no event `lift.canceled`"),
         ("error from go with message 3", "a message is an object with fields"),
         ("go", "there is no event `go`"),
+        ('error from go because lost with {"rest": 2.0}', "an error with the reason `lost` brings no data"),
+        ('error from lift because timeout with {"heights": []}', "an error with the reason `timeout` brings no data"),
+        ('{"event": "action_go.u_error", "reason": "lost"}', "`reason` is part of the data"),
+        ('{"event": "action_go.u_error", "data": {"reason": "lost"}, "value": {"rest": 2.0}}', "`value` is part of"),
     ],
 )
 def test_steps_that_cannot_be_read(line: str, fault: str) -> None:

@@ -102,20 +102,35 @@ def arguments(base: rsc.Base) -> Iterator[Finding]:
 
 def _reason(comparison: ex.Equation | ex.Inequation) -> Iterator[Finding]:
     """A comparison of `error` with a reason for which the service or action can't fail."""
+    for other, communication in _beside_reason(comparison):
+        fault = _impossible_reason(constant_value(other), communication)
+        if fault is not None:
+            ways = tuple(Replacement(f"write `{name}`", name, other) for name in reasons(communication))
+            yield Finding(other, fault, Choice(_possible(communication), ways))
+
+
+def _beside_reason(
+    comparison: ex.Equation | ex.Inequation,
+) -> Iterator[tuple[ex.Expression, rsc.CommunicationType | None]]:
+    """The operand that stands beside `error`, and the service or action that has failed."""
     for read, other in ((comparison.left, comparison.right), (comparison.right, comparison.left)):
-        item = constant_value(other) if isinstance(read, rsc.ErrorReason) else None
-        if not isinstance(item, rsc.EnumValue) or other is None:
-            continue
-        communication = _failing(read)
-        possible = reasons(communication)
-        if is_failure(item.eContainer().eContainer()) and possible and item.name not in possible:
-            kind = type(communication).__name__.lower()
-            ways = tuple(Replacement(f"write `{name}`", name, other) for name in possible)
-            yield Finding(
-                other,
-                f"no {kind} fails because `{item.name}`, expected a reason that {kind}s have",
-                Choice(f"write one of {enumeration(f'`{name}`' for name in possible)}", ways),
-            )
+        if isinstance(read, rsc.ErrorReason) and other is not None:
+            yield other, _failing(read)
+
+
+def _impossible_reason(value: object, communication: rsc.CommunicationType | None) -> str | None:
+    """The fault of a value beside `error`; None where the service or action can fail for it."""
+    possible = reasons(communication)
+    if not isinstance(value, rsc.EnumValue) or not possible or value.name in possible:
+        return None
+    if not is_failure(value.eContainer().eContainer()):
+        return None
+    kind = type(communication).__name__.lower()
+    return f"no {kind} fails because `{value.name}`, expected a reason that {kind}s have"
+
+
+def _possible(communication: rsc.CommunicationType | None) -> str:
+    return f"write one of {enumeration(f'`{name}`' for name in reasons(communication))}"
 
 
 def _failing(element: ex.Located) -> rsc.CommunicationType | None:
@@ -327,8 +342,14 @@ def _built_in(element: ex.FunctionCall) -> Iterator[Finding]:
 
 
 def _made(meaning: Meaning) -> Iterator[Finding]:
-    """The divisors of built-in functions, with the arguments of a template."""
+    """The divisors of built-in functions and the reasons beside `error`, with the arguments of a template."""
     assert meaning.made is not None
+    for _, part in tree(meaning.made.local):
+        for other, communication in _beside_reason(part) if isinstance(part, ex.Equation | ex.Inequation) else ():
+            (value,) = meaning.values(other) if _reads_parameter(other) else (None,)
+            fault = _impossible_reason(value, communication)
+            if fault is not None:
+                yield meaning.finding(other, fault, _possible(communication))
     for row, position, divisor in _divisors(meaning.made.local):
         (value,) = meaning.values(divisor)
         if type(value) is int and value < 1:
