@@ -18,13 +18,14 @@ from robosc.node_tests.trace_player import Incoming as Reader
 from robosc.node_tests.trace_player import Line as TraceLine
 from robosc.node_tests.trace_player import TraceError, merged, same
 from robosc.node_tests.trace_test import described
+from robosc.ros_types.unknown_fields import unknown_field
 from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.json_text import json_text
 from robosc.runtime.core.port import CancelAnswer, Failure, Outcome
 from robosc.scenario_tests.reading import Allowed, Holds, Incoming, Refusal, Sent, Wait
 from robosc.semantics.evaluation import evaluate
 from robosc.semantics.failures import brings_data, possible_reasons
-from robosc.semantics.messages import holds_objects
+from robosc.semantics.messages import holds_objects, sections
 from robosc.semantics.roles import event_name, plant_of
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from robosc.configuration import Configuration
     from robosc.diagnostics import Diagnostic
     from robosc.metamodel import expression as ex
-    from robosc.ros_types import RosDistribution
+    from robosc.ros_types import RosDistribution, RosTypes
     from robosc.runtime.core.json_text import Json
     from robosc.runtime.core.port import Client
     from robosc.scenario_tests.operations import Operations
@@ -90,6 +91,17 @@ def unknown_events(model: sct.SupervisoryControlModel, scenarios: Iterable[Scena
             continue
         if isinstance(line, Incoming):
             yield from _impossible(line, event)
+
+
+def unknown_fields(graph: rosgraph.RosGraph, types: RosTypes, scenarios: Iterable[Scenario]) -> Iterator[Diagnostic]:
+    """A finding for each line whose data has a field that its ROS type does not have. Each line names an event."""
+    known = sections(graph)
+    for line in (line for scenario in scenarios for line in scenario.steps):
+        section = known.get(event_name(event_named(graph.model, line.event))) if isinstance(line, Incoming) else None
+        if isinstance(line, Incoming) and section is not None:
+            unknown = unknown_field(types.distributions, *section, line.data)
+            if unknown is not None:
+                yield line.fault(unknown[0], f"did you mean `{unknown[1]}`?" if unknown[1] else None)
 
 
 def _impossible(line: Incoming, event: sct.Event) -> Iterator[Diagnostic]:

@@ -16,6 +16,7 @@ from robosc.metamodel.reflection import contents, tree
 from robosc.ros_types import Section
 from robosc.semantics.evaluation import Value, saturate
 from robosc.semantics.operators import operator_of
+from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -63,6 +64,20 @@ def received(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Interface, Sec
         yield action.interface, Section.FEEDBACK, [action.feedback]
         for end in (action.response, action.error, action.canceled):
             yield action.interface, Section.RESULT, [end]
+
+
+def sections(graph: rosgraph.RosGraph) -> dict[str, tuple[str, str, Section]]:
+    """Package, type and section of the data of each event that brings some, by the name of the event.
+
+    The error of a service has the data of an answer that cannot be read.
+    """
+    known = {
+        event_name(reception.event): (interface.package, interface.type, section)
+        for interface, section, several in received(graph)
+        for reception in several
+    }
+    answers = {event_name(client.error.event): event_name(client.response.event) for client in graph.serviceClients}
+    return {**{error: known[answer] for error, answer in answers.items()}, **known}
 
 
 def reads_elements(expression: ex.Expression) -> bool:

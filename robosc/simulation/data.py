@@ -13,13 +13,14 @@ from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.reflection import tree
 from robosc.ros_types import RosTypes, WireType
 from robosc.ros_types import wire as wire_types
+from robosc.ros_types.unknown_fields import unknown_field
 from robosc.ros_types.wire import Basic
 from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.node_data import NodeData
 from robosc.semantics.communication import happens_anyway
 from robosc.semantics.evaluation import as_double
 from robosc.semantics.failures import UNREADABLE, is_reason, possible_reasons
-from robosc.semantics.messages import is_structured, received, receptions
+from robosc.semantics.messages import is_structured, receptions, sections
 from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name, plant_of
 from robosc.semantics.walks import operands
@@ -167,6 +168,9 @@ class EventData:
         if event not in self._events:
             return
         self.inputs(event, data)
+        unknown = None if self._defaults is None else self._defaults.unknown_field(event, data.get("value"))
+        if unknown is not None:
+            raise DataError(unknown)
         if event in self._errors:
             self.inputs(self._errors[event], self.of_unreadable(data))
 
@@ -226,11 +230,15 @@ class _Defaults:
 
     def __init__(self, graph: rosgraph.RosGraph, types: RosTypes | None) -> None:
         self._types = types
-        self._sections = {
-            event_name(reception.event): (interface.package, interface.type, section)
-            for interface, section, several in received(graph)
-            for reception in several
-        }
+        self._sections = sections(graph)
+
+    def unknown_field(self, event: str, value: Any) -> str | None:
+        """The fault of a name in the data of an event that is no field there; None where all are."""
+        if event not in self._sections or not isinstance(value, dict):
+            return None
+        self._types = self._types or RosTypes()
+        unknown = unknown_field(self._types.distributions, *self._sections[event], value)
+        return None if unknown is None else unknown[0] + (f"; did you mean `{unknown[1]}`?" if unknown[1] else "")
 
     def wire_type(self, event: str, path: tuple[str, ...]) -> WireType | None:
         """The type of a field, as ROS 2 or else ROS 1 defines it; None where it is unknown."""

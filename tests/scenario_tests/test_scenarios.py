@@ -114,6 +114,14 @@ def test_other_data() -> None:
     assert (line, message) == (9, "the request to `Lamp.lamp` was sent with other data")
 
 
+def test_a_misspelt_field(folder: Path) -> None:
+    (folder / "line.scenarios").write_text('scenario "one"\n  scan with {"range": [0.2]}\n  expect correction not sent\n')
+    answer = played_files(str(EXAMPLE / "line_follower.rscd"), "line.scenarios")
+    assert answer.exit_code == 1
+    assert "line.scenarios:2:3: error: sensor_msgs/LaserScan has no field `range`" in answer.stdout
+    assert "hint: did you mean `ranges`?" in answer.stdout
+
+
 def test_what_can_not_come() -> None:
     """Nothing that follows it is tried; other scenarios are."""
     failing = "  error from dock\n  error from dock\n  expect Dock.docked\n"

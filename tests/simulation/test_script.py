@@ -145,6 +145,24 @@ def test_data_that_tells_no_literal(value: object, complaint: str) -> None:
     assert found.endswith(f" expected one of full, partly, or the data to tell it from: {complaint} [script]")
 
 
+@pytest.mark.parametrize(
+    ("value", "fault"),
+    [
+        ({"range": [1.0]}, "sensor_msgs/LaserScan has no field `range`; did you mean `ranges`?"),
+        ({"header": {"id": "a"}, "ranges": {"0": 1.0}}, "std_msgs/Header has no field `id` "),
+        ({"header": {"stamp": {"nsec": 3}}}, None),
+        ({"header": {"stamp": {"sec": 3}}, "ranges": [1.0]}, None),
+    ],
+)
+def test_a_misspelt_field(value: object, fault: str | None) -> None:
+    """What one of the two ROS has is a field."""
+    model = MODEL.parents[2] / "examples/line_follower/line_follower.rscd"
+    event = json.dumps({"event": "message_scan.u_response", "data": {"value": value}})
+    done = simulate("--script", "-", lines=event, model=model)
+    assert done.exit_code == (fault is not None), done.stderr
+    assert fault is None or fault in done.stderr
+
+
 def test_data_of_an_enum_that_reads_none(tmp_path: Path) -> None:
     model = tmp_path / "gauge.rscd"
     text = MODEL.read_text().replace('    value = "#f00" -> red\n', "").replace("default -> other", "default -> red")
