@@ -84,24 +84,9 @@ memory = click.option(
 )
 
 
-def ros_version(text: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Gives a command --ros1 and --ros2, which it gets as `version`: None, 1 or 2.
-
-    `text` says what they are for, with `{}` where the number of ROS is.
-    """
-
-    def decorator(command: Callable[..., None]) -> Callable[..., None]:
-        @click.option("--ros1", is_flag=True, help=text.format(1))
-        @click.option("--ros2", is_flag=True, help=text.format(2))
-        @wraps(command)
-        def with_version(*, ros1: bool, ros2: bool, **options: Any) -> None:
-            if ros1 and ros2:
-                raise click.UsageError("--ros1 and --ros2 exclude each other")
-            command(version=1 if ros1 else 2 if ros2 else None, **options)
-
-        return with_version
-
-    return decorator
+def over_ros(text: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Return a decorator that gives a command the flag `--ros2`, which it receives as `live`. `text` is its help."""
+    return click.option("--ros2", "live", is_flag=True, help=text)
 
 
 _SYNTHESIZER = "robosc.synthesizer"

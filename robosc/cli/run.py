@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from robosc.cli import CallError, interruption
-from robosc.cli.options import Paths, configuration, findings_format, model, paths, ros_version, synthesizer
+from robosc.cli.options import Paths, configuration, findings_format, model, over_ros, paths, synthesizer
 from robosc.cli.parameters import parameters, set_parameters
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @click.command("run", context_settings={"ignore_unknown_options": True})
 @model
-@ros_version("Be a node of ROS {}.")
+@over_ros("Be a node of ROS 2, as without this flag.")
 @click.option("--layer", is_flag=True, help="Be the supervisory layer between an existing controller and the robot.")
 @configuration
 @findings_format
@@ -33,13 +33,13 @@ if TYPE_CHECKING:
 @click.argument("arguments", nargs=-1, type=click.UNPROCESSED, metavar="[ROS ARGUMENTS]")
 def command(
     model: str,
-    version: int | None,
     layer: bool,
     chosen: str | None,
     form: str,
     given: Sequence[str],
     paths: Paths,
     arguments: Sequence[str],
+    live: bool,  # noqa: ARG001  # there is no other ROS
 ) -> None:
     """Be a robot's controller: the node that `transform` would generate, straight from the model.
 
@@ -51,13 +51,12 @@ def command(
     Examples:
       robosc run line_follower.rscd --ros2
       robosc run line_follower.rscd --ros2 --ros-args -p period_ms:=50 -r /cmd_vel:=/robot/cmd_vel
-      robosc run line_follower.rscd --ros1 _period_ms:=50 /cmd_vel:=/robot/cmd_vel
       robosc run supervised_line_follower.rscd --ros2 --layer
 
     Exit status: 0 interrupted, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
-    if version is None:
-        raise CallError("say which ROS the node is for: --ros1 or --ros2")
+    if "--ros1" in arguments:
+        raise CallError("`run` is a node of ROS 2: for ROS 1 generate one with `transform --to ros1`")
     with Report(form) as report:
         models = read_models(model, paths, report)
         if models.rosgraph is None:
@@ -65,13 +64,13 @@ def command(
         set_parameters(models.rosgraph, given)
         settings = read_configuration(model, chosen, report)
         supervise_models(models, report)
-        target = TARGETS[f"ros{version}-layer" if layer else f"ros{version}"]
+        target = TARGETS["ros2-layer" if layer else "ros2"]
         report.add(target.findings(models, settings))
         report.stop_on_errors()
-    _run(models, settings, version, arguments, layer=layer)
+    _run(models, settings, arguments, layer=layer)
 
 
-def _run(models: Models, configuration: Configuration, version: int, arguments: Sequence[str], *, layer: bool) -> None:
+def _run(models: Models, configuration: Configuration, arguments: Sequence[str], *, layer: bool) -> None:
     from robosc.runtime.core.node import StartError
     from robosc.runtime.core.settings import SafeMessages
     from robosc.runtime.node import run_controller, run_layer
@@ -93,8 +92,8 @@ def _run(models: Models, configuration: Configuration, version: int, arguments: 
     gc.set_threshold(700, 10, 10)
     try:
         if layer:
-            run_layer(graph, configuration, version, arguments, safe)
+            run_layer(graph, configuration, arguments, safe)
         else:
-            run_controller(graph, configuration, version, arguments, safe)
+            run_controller(graph, configuration, arguments, safe)
     except StartError as error:
         raise CallError(f"{error}\n  {error.hint}" if error.hint else str(error)) from error

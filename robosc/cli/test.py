@@ -21,8 +21,8 @@ from robosc.cli.options import (
     configuration,
     findings_format,
     model,
+    over_ros,
     paths,
-    ros_version,
     synthesizer,
 )
 from robosc.cli.progress import progress
@@ -56,11 +56,11 @@ if TYPE_CHECKING:
 @model
 @click.argument("scenarios", nargs=-1, required=True, type=FILE, metavar="FILE...")
 @click.option("--engine", type=click.Choice(["python", "c"]), default="python", show_default=True, help="What plays.")
-@ros_version("Play with a node of ROS {}, too.")
+@over_ros("Play with a node of ROS 2, too.")
 @click.option(
     "--node",
     metavar="COMMAND",
-    help="With --ros1, --ros2: what starts the node, such as a compiled one; else `robosc run` is.",
+    help="With --ros2: what starts the node, such as a compiled one; else `robosc run` is.",
 )
 @click.option("--traces", type=click.Path(file_okay=False), help="Write the event log of each scenario to FOLDER, too.")
 @configuration
@@ -71,7 +71,7 @@ def command(
     model: str,
     scenarios: Sequence[str],
     engine: str,
-    version: int | None,
+    live: bool,
     node: str | None,
     traces: str | None,
     chosen: str | None,
@@ -82,7 +82,7 @@ def command(
 
     MODEL is a .rscd file with a robot. docs/scenarios.md says what stands in a FILE. They are played with the robot's
     controller in Python; with `--engine c` its control loop is also compared with that of the generated C, compiled, in
-    every step. With `--ros1` or `--ros2` a node plays them, too: it is started for each of them, in simulated time, and
+    every step. With `--ros2` a node plays them, too: it is started for each of them, in simulated time, and
     has to do the same with the same data. Nothing else is to be on these topics, least of all a robot.
 
     \b
@@ -90,15 +90,15 @@ def command(
       robosc test line_follower.rscd line_follower.scenarios
       robosc test line_follower.rscd *.scenarios --engine c
       robosc test line_follower.rscd *.scenarios --ros2
-      robosc test porter.rscd *.scenarios --ros1 --node "rosrun porter_controller porter_controller"
+      robosc test porter.rscd *.scenarios --ros2 --node "ros2 run porter_controller porter_controller"
       robosc test line_follower.rscd line_follower.scenarios --traces ros2/line_follower_controller/test/traces
 
     Exit status: 0 all is as expected, 1 something is not, or errors, 2 a wrong call, 3 no supervisor exists.
     """
     if not model.endswith(".rscd"):
         raise CallError(f"{model} is no text: scenarios speak of a robot in a .rscd file")
-    if node is not None and version is None:
-        raise click.UsageError("--node needs --ros1 or --ros2")
+    if node is not None and not live:
+        raise click.UsageError("--node needs --ros2")
     with Report(form, aside=form != "text") as report:
         models, expressions, played = _read(model, scenarios, paths, report)
         settings = read_configuration(model, chosen, report)
@@ -109,13 +109,13 @@ def command(
         types = RosTypes(paths.interfaces)
         report.add(unknown_fields(models.rosgraph, types, played))
         report.stop_on_errors()
-        distribution = types.distribution(version or 2)
+        distribution = types.distribution(2)
         player = Player(models.rosgraph, settings, distribution, expressions)
-        live: LiveNode | None = None
-        if version is not None:
-            report.add(TARGETS[f"ros{version}"].findings(models, settings))
+        started: LiveNode | None = None
+        if live:
+            report.add(TARGETS["ros2"].findings(models, settings))
             report.stop_on_errors()
-            live = _live(models, settings, player, version, node)
+            started = _live(models, settings, player, node)
         logs: dict[str, str] = {}
         with progress("playing"):
             failed = 0
@@ -123,8 +123,8 @@ def command(
             for number, scenario in enumerate(played, 1):
                 operations = Operations()
                 found = player.play(scenario, operations)
-                if live is not None and not found:
-                    found = _followed(live, scenario, player)
+                if started is not None and not found:
+                    found = _followed(started, scenario, player)
                 runs.append(operations)
                 failed += bool(found)
                 report.add(found)
@@ -174,16 +174,16 @@ def _meant(
     return Models(model, robosc.to_rosgraph(robot, paths.interfaces), robot), meant
 
 
-def _live(models: Models, settings: Configuration, player: Player, version: int, node: str | None) -> LiveNode:
+def _live(models: Models, settings: Configuration, player: Player, node: str | None) -> LiveNode:
     """The node that plays scenarios: the one that a command starts, else the model run as it is here."""
     assert models.rosgraph is not None
     files = player_files(models.rosgraph, settings, player.parameters, player.incoming)
-    generated = TARGETS[f"ros{version}"].files(models, settings, TraceTest(player.parameters, files, "", ()))
+    generated = TARGETS["ros2"].files(models, settings, TraceTest(player.parameters, files, "", ()))
     tests = {name.removeprefix("test/"): text for name, text in generated.items() if name.startswith("test/")}
-    return LiveNode(version, _command(version) if node is None else shlex.split(node), player.parameters, tests)
+    return LiveNode(_command() if node is None else shlex.split(node), player.parameters, tests)
 
 
-def _command(version: int) -> list[str]:
+def _command() -> list[str]:
     """What runs the model as a node, found and configured as for this call."""
     given = click.get_current_context().params
     options = [word for folder in given["library_paths"] for word in ("-I", folder)]
@@ -191,7 +191,7 @@ def _command(version: int) -> list[str]:
     options += ["--config", given["chosen"]] if given["chosen"] else []
     synthesizer = chosen_synthesizer()
     options += ["--synthesizer", synthesizer.name] if synthesizer else []
-    return [sys.executable, "-m", "robosc", "run", given["model"], f"--ros{version}", *options]
+    return [sys.executable, "-m", "robosc", "run", given["model"], "--ros2", *options]
 
 
 def _followed(live: LiveNode, scenario: Scenario, player: Player) -> list[Diagnostic]:

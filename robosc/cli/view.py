@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from robosc.cli import CallError, put, say
-from robosc.cli.options import FILE, Paths, paths, ros_version, synthesizer
+from robosc.cli.options import FILE, Paths, over_ros, paths, synthesizer
 from robosc.cli.parameters import parameters, set_parameters
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 @click.command("view")
 @click.argument("models", metavar="MODEL...", nargs=-1, required=True, type=FILE)
-@ros_version("Show a robot of ROS {} that runs.")
+@over_ros("Show a robot of ROS 2 that runs.")
 @click.option("--node", help="Of this node, such as /robot/line_follower_controller; without it, by its usual name.")
 @click.option("--log", type=click.Path(), help="Show an event log, a script, or a recording: a bag, MCAP.")
 @click.option("--trace", "refuted", metavar="PROPERTY", help="Show a counterexample of `verify`; `any`: the first.")
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 @paths
 def command(
     models: Sequence[str],
-    version: int | None,
+    live: bool,
     node: str | None,
     log: str | None,
     refuted: str | None,
@@ -61,7 +61,7 @@ def command(
 
     MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote. The robot is
     simulated: a click lets an event happen. --log and --trace show a run that has been, and from any moment of it one
-    goes on in simulation. --ros1 and --ros2 show a robot that runs, by what its node tells on ~/state. Of several
+    goes on in simulation. --ros2 shows a robot that runs, by what its node reports on ~/state. Of several
     models the page shows the one that is chosen there.
 
     \b
@@ -76,9 +76,9 @@ def command(
 
     Exit status: 0 done, 1 errors in the model or log, 2 a wrong call, 3 no supervisor exists.
     """
-    if sum(source is not None for source in (version, log, refuted)) > 1:
-        raise click.UsageError("--ros1, --ros2, --log and --trace exclude each other")
-    if version is not None and folder is not None:
+    if sum([live, log is not None, refuted is not None]) > 1:
+        raise click.UsageError("--ros2, --log and --trace exclude each other")
+    if live and folder is not None:
         raise click.UsageError("a robot that runs can't be exported: record it, and export the recording with --log")
     if len(models) > 1 and {node, log, refuted, folder} != {None}:
         raise click.UsageError("--node, --log, --trace and --export are for one model")
@@ -95,7 +95,7 @@ def command(
             settings = read_configuration(model, None, report)
             supervise_models(robot, report)
             simulation = Simulation(robot.sct, robot.rosgraph, robot.ros_types)
-            if version is None:
+            if not live:
                 record: Moments = _record(simulation, robot.rosgraph, log, node, refuted, seed, report)
             else:
                 if robot.rosgraph is None:
@@ -112,7 +112,7 @@ def command(
             write({Path(folder): view.export(description, record.moments)})
             say(f"written: {Path(folder) / 'index.html'}")
         else:
-            begin = None if version is None else _listening(version, heard)
+            begin = _listening(heard) if live else None
             _serve(shown, address, port, opens=opens, begin=begin)
     except view.PageError as error:
         raise CallError(str(error)) from None
@@ -123,7 +123,7 @@ def _nodes(graph: rosgraph.RosGraph, settings: Configuration) -> list[str]:
     return list(dict.fromkeys(f"/{name}" for name in (settings.package_name(graph), settings.layer_name(graph))))
 
 
-def _listening(version: int, heard: Sequence[tuple[Sequence[str], Live]]) -> Callable[[], Callable[[], None]]:
+def _listening(heard: Sequence[tuple[Sequence[str], Live]]) -> Callable[[], Callable[[], None]]:
     """What lets the page hear what nodes tell, to be called once it is served; it gives what ends that."""
 
     def begin() -> Callable[[], None]:
@@ -132,7 +132,7 @@ def _listening(version: int, heard: Sequence[tuple[Sequence[str], Live]]) -> Cal
         from robosc.view.relay import Relay
 
         try:
-            return listen(version, [(nodes, Relay(live)) for nodes, live in heard]).close
+            return listen([(nodes, Relay(live)) for nodes, live in heard]).close
         except StartError as error:
             raise CallError(f"{error}\n  {error.hint}" if error.hint else str(error)) from error
 

@@ -145,7 +145,6 @@ TARGETS = {
         Target("supervisor", "the supervisor and its control loop in C99", "supervisor"),
         Target("ros1", "a controller node for ROS 1", "ros1", "controller", 1, "ros1_controller_node_location"),
         Target("ros2", "a controller node for ROS 2", "ros2", "controller", 2, "ros2_controller_node_location"),
-        Target("ros1-layer", "a supervisory layer before a controller for ROS 1", "ros1", "layer", 1),
         Target(
             "ros2-layer",
             "a supervisory layer before a controller for ROS 2",

@@ -10,17 +10,13 @@ if TYPE_CHECKING:
     from robosc.runtime.core.listening import Listener, ReportSubscriber
 
 
-def listen(version: int, heard: Sequence[tuple[Sequence[str], Listener]]) -> ReportSubscriber:
-    """Listens to `~/state` and `~/definition` of nodes whenever they are there, as one node of ROS `version`.
+def listen(heard: Sequence[tuple[Sequence[str], Listener]]) -> ReportSubscriber:
+    """Listen to `~/state` and `~/definition` of nodes whenever they are there, as one node of ROS 2.
 
-    `heard`: the full names of nodes, and who is called with what these tell. Raises StartError where there is no ROS.
+    `heard`: the full names of nodes, each with the listener that is called with their reports. Raises StartError where
+    there is no ROS.
     """
-    if version == 1:
-        import robosc.runtime.ros1.node  # noqa: PLC0415  # says what is missing, and where it comes from
-        from robosc.runtime.ros1.listening import Ros1Subscriber  # noqa: PLC0415
-
-        return Ros1Subscriber(heard)
-    import robosc.runtime.ros2.node  # noqa: F401, PLC0415
+    import robosc.runtime.ros2.node  # noqa: F401, PLC0415  # says what is missing
     from robosc.runtime.ros2.listening import Ros2Subscriber  # noqa: PLC0415
 
     return Ros2Subscriber(heard)

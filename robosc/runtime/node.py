@@ -21,14 +21,12 @@ if TYPE_CHECKING:
 def run_controller(
     graph: rosgraph.RosGraph,
     configuration: Configuration,
-    version: int,
     arguments: Sequence[str],
     safe: SafeMessages,
 ) -> None:
     """Runs the controller of a graph whose model has a supervisor, until the user interrupts it.
 
-    `version` is that of ROS, `arguments` are its own.
-    Raises StartError where it can't start.
+    `arguments` are those of ROS. Raises StartError where it can't start.
     """
 
     def make(node: Node, log: str) -> tuple[Controller, Settings]:
@@ -36,13 +34,12 @@ def run_controller(
         return Controller(graph, settings, node, node.event_loop, safe), settings
 
     name = configuration.package_name(graph)
-    _run(_node(version, name, graph, configuration, arguments), name, graph, configuration, make)
+    _run(_node(name, graph, configuration, arguments), name, graph, configuration, make)
 
 
 def run_layer(
     graph: rosgraph.RosGraph,
     configuration: Configuration,
-    version: int,
     arguments: Sequence[str],
     safe: SafeMessages,
 ) -> None:
@@ -56,7 +53,7 @@ def run_layer(
         return Layer(graph, settings, node, node.event_loop, safe), settings
 
     name = configuration.layer_name(graph)
-    _run(_node(version, name, graph, configuration, arguments), name, graph, configuration, make)
+    _run(_node(name, graph, configuration, arguments), name, graph, configuration, make)
 
 
 def _run(
@@ -84,14 +81,8 @@ def _run(
     node.spin(handler)
 
 
-def _node(
-    version: int, name: str, graph: rosgraph.RosGraph, configuration: Configuration, arguments: Sequence[str]
-) -> Node:
-    if version == 1:
-        from robosc.runtime.ros1.node import Ros1Node  # noqa: PLC0415  # only one of the two is there
-
-        return Ros1Node(name, graph, arguments)
-    from robosc.runtime.ros2.node import Ros2Node  # noqa: PLC0415
+def _node(name: str, graph: rosgraph.RosGraph, configuration: Configuration, arguments: Sequence[str]) -> Node:
+    from robosc.runtime.ros2.node import Ros2Node  # noqa: PLC0415  # says what is missing where there is no ROS
 
     return Ros2Node(name, graph, configuration, arguments)
 

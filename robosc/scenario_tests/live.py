@@ -10,11 +10,9 @@ import subprocess
 import sys
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from typing import IO, TYPE_CHECKING, cast
-from xmlrpc.client import Fault, ServerProxy
+from typing import IO, TYPE_CHECKING
 
 from robosc.files.writing import temporary_folder
-from robosc.runtime.ros1 import DEBIAN
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -30,7 +28,6 @@ _DIFFERENCE = re.compile(r"line (\d+)( can't be played)?: (.*)")
 _MISSING = re.compile(r"(?:ModuleNotFound|Import)Error: (.*)")
 #: So much of what a program wrote is shown.
 _SHOWN = 1500
-_MASTER = "http://localhost:11311"
 
 
 class LiveError(Exception):
@@ -42,10 +39,9 @@ class LiveNode:
     """A node that is started anew for each scenario, in simulated time.
 
     `command` starts it; parameters and the place of its event log are added. `files` are those of the folder `test` of
-    the package that would be generated for its model and this ROS.
+    the package that would be generated for its model.
     """
 
-    ros: int
     command: Sequence[str]
     parameters: Mapping[str, bool | int]
     files: Mapping[str, str]
@@ -56,7 +52,7 @@ class LiveNode:
         `lines` are those of the scenario that brought about the lines of the log. Raises LiveError where there is no
         ROS, or the node does not start.
         """
-        with temporary_folder() as folder, self._simulated_time():
+        with temporary_folder() as folder:
             for name, text in self.files.items():
                 (folder / name).parent.mkdir(parents=True, exist_ok=True)
                 (folder / name).write_text(text, encoding="utf-8")
@@ -68,7 +64,7 @@ class LiveNode:
                 if status is None:
                     raise LiveError(f"the node has ended before the scenario did:\n{_end(told)}")
                 if missing is not None:
-                    raise LiveError(f"ROS {self.ros} is not there for this Python: {missing[1]}")
+                    raise LiveError(f"ROS 2 is not there for this Python: {missing[1]}")
                 if not status:
                     return None
                 found = _DIFFERENCE.search(said)
@@ -80,37 +76,11 @@ class LiveNode:
         return line.fault(f"{verdict}: {found[3].strip()}")
 
     @contextmanager
-    def _simulated_time(self) -> Iterator[None]:
-        """In ROS 1 the master says that time is simulated, as long as this lasts."""
-        if self.ros != 1:
-            yield
-            return
-        address = os.environ.get("ROS_MASTER_URI") or _MASTER
-        master = ServerProxy(address)
-        try:
-            # A code, 1 where it has a value, what it is about, and the value.
-            found, _, value = cast("tuple[int, str, bool]", master.getParam("/robosc", "/use_sim_time"))
-            master.setParam("/robosc", "/use_sim_time", True)
-        except (OSError, Fault) as error:
-            raise LiveError(f"there is no master of ROS 1 at {address}: start roscore ({error})") from None
-        try:
-            yield
-        finally:
-            with suppress(OSError, Fault):
-                if found == 1:
-                    master.setParam("/robosc", "/use_sim_time", value)
-                else:
-                    master.deleteParam("/robosc", "/use_sim_time")
-
-    @contextmanager
     def _started(self, log: Path, told: IO[bytes]) -> Iterator[subprocess.Popen[bytes]]:
         given = {"event_log": str(log), **self.parameters}
         values = {name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in given.items()}
-        if self.ros == 1:
-            arguments = [f"_{name}:={value}" for name, value in values.items()]
-        else:
-            values["use_sim_time"] = "true"
-            arguments = ["--ros-args", *(word for name in values for word in ("-p", f"{name}:={values[name]}"))]
+        values["use_sim_time"] = "true"
+        arguments = ["--ros-args", *(word for name in values for word in ("-p", f"{name}:={values[name]}"))]
         try:
             node = subprocess.Popen(  # noqa: S603  # the user says what starts the node
                 [*self.command, *arguments],
@@ -133,7 +103,6 @@ class LiveNode:
             player = subprocess.Popen(  # noqa: S603  # this Python, and a program that was just written
                 command,
                 cwd=folder,
-                env=self._environment(),
                 stdin=subprocess.DEVNULL,
                 stdout=told,
                 stderr=subprocess.STDOUT,
@@ -149,13 +118,6 @@ class LiveNode:
                 _ended(player)
             told.seek(0)
             return player.returncode, told.read().decode(errors="replace")
-
-    def _environment(self) -> dict[str, str]:
-        """That of the player, which finds ROS where `robosc run` does."""
-        environment = dict(os.environ)
-        if self.ros == 1:
-            environment["PYTHONPATH"] = os.pathsep.join(filter(None, (environment.get("PYTHONPATH"), DEBIAN)))
-        return environment
 
 
 def _end(told: IO[bytes]) -> str:

@@ -1,4 +1,4 @@
-"""ROS packages: controllers and supervisory layers, for ROS 1 and ROS 2.
+"""ROS packages: controllers for ROS 1 and ROS 2, supervisory layers for ROS 2.
 
 `include` holds real C++ headers, the same in every package: `robosc` needs no middleware, `robosc_ros1` and
 `robosc_ros2` put it on one. `templates` prints what the model decides; `ros1` and `ros2` are what differs. This
@@ -17,6 +17,5 @@ __all__ = ["TARGETS"]
 TARGETS = {
     "ros1": RosTarget("controller", Ros1()),
     "ros2": RosTarget("controller", Ros2()),
-    "ros1-layer": RosTarget("layer", Ros1()),
-    "ros2-layer": RosTarget("layer", Ros2()),
+    "ros2-layer": RosTarget("layer", Ros2(), Ros2().layer),
 }

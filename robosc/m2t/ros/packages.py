@@ -21,7 +21,7 @@ from robosc.metamodel import rosgraph
 from robosc.semantics.definition import definition_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence, Set
+    from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 
     from robosc.configuration import Configuration
     from robosc.configuration.parameters import Parameter
@@ -65,7 +65,6 @@ _HEADERS = {
     "robosc_ros{ros}/parameters": set(),
     "robosc_ros{ros}/report": {"reports"},
     "robosc_ros{ros}/run_controller": {"controller", "ros1"},
-    "robosc_ros{ros}/run_layer": {"layer", "ros1"},
     "robosc_ros{ros}/service_client": {"controller", "services"},
     "robosc_ros{ros}/service_proxy": {"layer", "services"},
     "robosc_ros{ros}/shutdown_hook": {"layer", "actions", "ros2"},
@@ -99,9 +98,6 @@ class Middleware(Protocol):
     def controller(self, node: Node, configuration: Configuration, used: Used, *, tests: bool) -> Values:
         """Values for the templates of a controller alone."""
 
-    def layer(self, layer: LayerNode, configuration: Configuration, used: Used) -> Values:
-        """Values for the templates of a layer alone."""
-
 
 @dataclass(frozen=True)
 class RosTarget:
@@ -109,6 +105,8 @@ class RosTarget:
 
     kind: Literal["controller", "layer"]
     ros: Middleware
+    #: Values for the templates of a layer alone.
+    layer: Callable[[LayerNode, Configuration, Used], Values] | None = None
 
     def preconditions(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
         """Return errors that keep these models from becoming such a node, and warnings on settings without effect."""
@@ -239,8 +237,8 @@ class RosTarget:
             "frame": lambda topic: configuration.frame_id.get(topic.removeprefix("/"), ""),
             "controller": configuration.supervisor.controller,
             **(
-                ros.layer(layer, configuration, used)
-                if layer
+                self.layer(layer, configuration, used)
+                if layer and self.layer
                 else ros.controller(node, configuration, used, tests=tests is not None)
             ),
         }

@@ -72,7 +72,7 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
         *_shared_topics(graph),
         *_unsendable(graph, configuration, "onBlocked", configuration.on_blocked),
         *_swallowed(graph, models.engine, configuration),
-        *_controller(configuration, ros),
+        *_controller(configuration),
         *_unused(configuration),
     ]
 
@@ -301,7 +301,7 @@ def _shared_topics(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
         yield _error(message, text, "give each a topic of its own, or make one of them", LAYER_RULE)
 
 
-def _controller(configuration: Configuration, ros: int) -> Iterator[Diagnostic]:
+def _controller(configuration: Configuration) -> Iterator[Diagnostic]:
     """What stands in the launch file as it is."""
     controller = configuration.supervisor.controller
     run, launch = controller.run, controller.launch
@@ -322,9 +322,6 @@ def _controller(configuration: Configuration, ros: int) -> Iterator[Diagnostic]:
         if value is not None and not pattern.fullmatch(value):
             message = f'"{".".join((*key, form, name))}" is no name that a launch file could use'
             yield configuration.error((*key, form, name), message)
-    if launch and ros == 1 and launch.file.endswith((".py", ".yaml")):
-        message = f'"{launch.file}" is no launch file of ROS 1'
-        yield configuration.error((*key, "launch", "file"), message, 'name one in XML, or the node itself with "run"')
 
 
 def _unused(configuration: Configuration) -> Iterator[Diagnostic]:

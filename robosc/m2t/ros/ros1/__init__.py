@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from robosc.m2t.ros.packages import controller_package, launch_path
 from robosc.metamodel import rosgraph
-from robosc.semantics.naming import below_layer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from robosc.configuration import Configuration
-    from robosc.m2t.ros.layer import LayerNode
     from robosc.m2t.ros.node import Node
     from robosc.m2t.ros.packages import Used
 
@@ -45,21 +41,6 @@ class Ros1:
             **_build({*libraries, *used.types}, set(), ["rosgraph_msgs", "rospy", "rostest"] if tests else []),
             "threads": True,
             "names": list(_names(node)),
-        }
-
-    def layer(self, layer: LayerNode, configuration: Configuration, used: Used) -> dict[str, Any]:
-        """Values for the templates of a layer alone; see `Middleware`."""
-        dependencies = {"rosconsole", "roscpp", *used.types, *(["actionlib_msgs"] if layer.node.actions else [])}
-        run = configuration.supervisor.controller.run
-        return {
-            "headers": self._headers(layer.node, used.reports),
-            **_build(dependencies, controller_package(configuration) - dependencies),
-            "threads": bool(layer.node.services),
-            "names": [(name, below_layer(name)) for name in layer.remapped(_ACTION)],
-            "launch_path": launch_path(configuration),
-            # ROS 1 wants a name for the controller's node: the one in the configuration, else the executable's.
-            "controller_node": run and (run.name or re.sub(r"\W", "_", run.executable.partition(".")[0])),
-            "controller_side": lambda name: f"/{below_layer(name)}",
         }
 
     def _headers(self, node: Node, reports: Sequence[rosgraph.Interface]) -> list[str]:
