@@ -68,12 +68,9 @@ SHARED = {
 
 LIBRARIES = {
     "action_msgs": {"runtime"},
-    "actionlib": {"runtime"},
-    "actionlib_msgs": {"runtime"},
     "arpeggio": {"language", "cif"},
     "click": {"cli"},
     "diagnostic_msgs": {"runtime"},
-    "genpy": {"runtime"},
     "lsprotocol": {"editor"},
     "lz4": {"recordings"},
     "mcap": {"recordings"},
@@ -88,9 +85,6 @@ LIBRARIES = {
     "rclpy": {"runtime"},
     "rich": {"cli", "diagnostics"},
     "rosbags": {"ros_types", "recordings"},
-    "rosgraph": {"runtime"},
-    "rosgraph_msgs": {"runtime"},
-    "rospy": {"runtime"},
     "starlette": {"view"},
     "std_msgs": {"runtime"},
     # What the wheels of ROS 2 generate modules with.

@@ -39,16 +39,6 @@ def test_what_is_called_off_is_not_done() -> None:
     event_loop.run_pending()
 
 
-def test_of_one_topic_the_oldest_gives_way_and_never_an_answer() -> None:
-    event_loop, done = EventLoop(Clock()), []
-    event_loop.post(lambda: done.append("answer"))
-    for number in range(5):
-        event_loop.post(lambda number=number: done.append(number), "scan", depth=2)
-        event_loop.post(lambda number=number: done.append(f"other {number}"), "odom", depth=10)
-    event_loop.run_pending()
-    assert done == ["answer", "other 0", "other 1", "other 2", 3, "other 3", 4, "other 4"]
-
-
 def test_what_posts_itself_lets_others_have_their_turn() -> None:
     event_loop, done = EventLoop(Clock()), []
 

@@ -22,11 +22,11 @@ class GoalTimes:
     """Seconds that a goal may take, but for its work.
 
     `timeout` bounds the search for a server together with the wait for acceptance, the wait for the answer to a cancel,
-    and the wait for the result of a goal that has ended. A refused cancel is repeated after `retry`, or never (None).
+    and the wait for the result of a goal that has ended. A refused cancel is repeated after `retry`.
     """
 
     timeout: float
-    retry: float | None
+    retry: float
 
     @property
     def within(self) -> str:

@@ -267,7 +267,6 @@ class ActionClient:
             accepted=lambda: later(self._accept),
             rejected=lambda: last(lambda: self._fail(Failure.REJECTED, "rejected")),
             feedback=lambda feedback: later(lambda: self._feedback(feedback)),
-            over=lambda: later(self._await_result),
             ended=lambda outcome, result, text: last(lambda: self._finish(outcome, result, text)),
             cancel_answered=lambda answer: later(lambda: self._cancel_answered(answer)),
         )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import heapq
-import threading
 from collections import deque
 from itertools import count
 from typing import TYPE_CHECKING
@@ -33,36 +32,21 @@ class EventLoop:
     """Makes calls one at a time, in the thread that calls `run_pending`.
 
     `clock` gives the time in seconds; one that `starts_late` stands at 0 until it is told the time, as the clock of a
-    simulation does. `wake`, if given, is called from any thread when something was posted.
+    simulation does.
     """
 
-    def __init__(
-        self, clock: Callable[[], float], wake: Callable[[], None] | None = None, *, starts_late: bool = False
-    ) -> None:
+    def __init__(self, clock: Callable[[], float], *, starts_late: bool = False) -> None:
         self.clock = clock
-        self._wake = wake
-        self._posted: deque[tuple[str | None, Callable[[], None]]] = deque()
-        self._changed = threading.Condition()
+        self._posted: deque[Callable[[], None]] = deque()
         self._timers: list[tuple[float, int, Timer]] = []
         self._numbers = count()
         self._last = clock()
         self._started = self._last != 0 or not starts_late
         self._at_start: deque[Callable[[], None]] = deque()
 
-    def post(self, action: Callable[[], None], topic: str | None = None, depth: int = 10) -> None:
-        """Makes a call after all that were posted before; from any thread.
-
-        Of one `topic` at most `depth` calls wait: the oldest gives way.
-        """
-        with self._changed:
-            if topic is not None:
-                waiting = [call for call in self._posted if call[0] == topic]
-                if len(waiting) >= depth:
-                    self._posted.remove(waiting[0])
-            self._posted.append((topic, action))
-            self._changed.notify()
-        if self._wake is not None:
-            self._wake()
+    def post(self, action: Callable[[], None]) -> None:
+        """Makes a call after all that were posted before; from any thread."""
+        self._posted.append(action)
 
     def call_later(self, seconds: float, action: Callable[[], None]) -> Timer:
         """Makes a call so many seconds from now; only from the loop's own thread."""
@@ -81,11 +65,7 @@ class EventLoop:
         What is posted meanwhile is done too, once: a call that posts itself does not keep others from their turn.
         """
         for _ in range(len(self._posted)):
-            with self._changed:
-                if not self._posted:
-                    break
-                _, action = self._posted.popleft()
-            action()
+            self._posted.popleft()()
         now = self._time()
         while self._started and self._at_start:
             self._at_start.popleft()()
@@ -104,14 +84,3 @@ class EventLoop:
         self._last = now
         self._started = self._started or now != 0
         return now
-
-    def wait(self, seconds: float) -> None:
-        """Waits until something is posted, or the clock has changed, at most so long."""
-        with self._changed:
-            if not self._posted:
-                self._changed.wait(seconds)
-
-    def notify_time(self) -> None:
-        """Ends a wait, as the clock has changed; from any thread."""
-        with self._changed:
-            self._changed.notify()

@@ -1,10 +1,8 @@
-"""The common part of the nodes of ROS 1 and ROS 2, and the error of a node that can't start."""
+"""A ROS node without its middleware, and the error of a node that can't start."""
 
 from __future__ import annotations
 
-import math
 import signal
-import time
 from abc import ABC, abstractmethod
 from functools import partial
 from importlib import import_module
@@ -27,7 +25,7 @@ if TYPE_CHECKING:
     from robosc.runtime.core.event_handler import EventHandler
     from robosc.runtime.core.event_loop import EventLoop
     from robosc.runtime.core.port import Client, ComponentStatus, Message
-    from robosc.runtime.core.proxies import ActionProxy, Answer
+    from robosc.runtime.core.proxies import ActionProxy
     from robosc.runtime.core.settings import Settings
 
 #: Seconds that a node waits at most before it looks whether it was interrupted, and for what it sent at its end.
@@ -46,16 +44,14 @@ class StartError(Exception):
 
 
 class Node(ControllerPort, ABC):
-    """A running node of some ROS, for a controller or a layer. Raises StartError for a type that is not there.
+    """A running node, for a controller or a layer. Raises StartError for a type that is not there.
 
-    A subclass says how its middleware makes publishers, subscriptions and clients.
+    The subclass makes publishers, subscriptions and clients with its middleware.
     """
 
     #: What to do where a ROS type is not there, and what is raised where ROS refuses a name or value.
     type_hint: ClassVar[str]
     refusals: ClassVar[tuple[type[Exception], ...]]
-    #: Seconds that the node's end may take.
-    longest_end: ClassVar[float] = math.inf
     event_loop: EventLoop
     #: Whether the clock is that of a simulation.
     simulated: bool
@@ -82,12 +78,12 @@ class Node(ControllerPort, ABC):
                 made = getattr(made, name)
         return made
 
-    def _load_type(self, interface: rosgraph.Interface, suffix: str = "") -> Any:
-        """The Python class of a ROS type, its name with a suffix. Raises StartError where there is none."""
-        folder = "msg" if suffix else FOLDERS[interface.kind.name]
+    def _load_type(self, interface: rosgraph.Interface) -> Any:
+        """The Python class of a ROS type. Raises StartError where there is none."""
+        folder = FOLDERS[interface.kind.name]
         package = interface.package
         try:
-            return getattr(import_module(f"{package}.{folder}"), interface.type + suffix)
+            return getattr(import_module(f"{package}.{folder}"), interface.type)
         except ImportError as error:
             missing = f"{package}.{folder}" if error.name in {package, f"{package}.{folder}"} else error
             why = f"{package}/{interface.type}: the ROS package {package} is not built for Python here ({missing})"
@@ -123,9 +119,6 @@ class Node(ControllerPort, ABC):
             raise StartError(str(error)) from None
         self._follow_parameters(handler)
 
-    def _follow_parameters(self, handler: EventHandler) -> None:
-        """Has the handler told of parameters that change while the node runs, between batches; in ROS 1 none does."""
-
     def _connect_controller(self, controller: Controller) -> None:
         for publisher in self._graph.publishers:
             self._publishers[publisher] = self._publisher(publisher)
@@ -148,7 +141,7 @@ class Node(ControllerPort, ABC):
         for service in self._graph.serviceClients:
             self._clients[service] = self._service_client(service)
             proxy = ServiceProxy(self, self.event_loop, service, layer, settings.seconds("service_timeout_ms"))
-            self._serve(self._types[service.interface], self.inside(service.identifier), proxy.call)
+            self.serve(self._types[service.interface], self.inside(service.identifier), proxy.call)
         for action in self._graph.actionClients:
             layer.goals[action.cancel] = self._proxy(action, layer, settings.seconds("action_timeout_ms"))
 
@@ -158,7 +151,6 @@ class Node(ControllerPort, ABC):
 
         def interrupt(number: int, _: object) -> None:
             interrupted.append(number)
-            self.event_loop.post(lambda: None)
 
         # A hangup is ignored under nohup.
         hangup = [signal.SIGHUP] if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN else []
@@ -168,14 +160,17 @@ class Node(ControllerPort, ABC):
         while not interrupted and self._is_up():
             self._spin_once()
         handler.stop()
-        until = time.monotonic() + self.longest_end
-        while handler.busy and time.monotonic() < until:
+        while handler.busy:
             self._spin_once()
         handler.close()
         self._take_leave()
         self.close()
 
-    # What a node of some ROS does
+    # What the middleware does
+
+    @abstractmethod
+    def _follow_parameters(self, handler: EventHandler) -> None:
+        """Reports parameters that change while the node runs to the handler, between batches."""
 
     @property
     @abstractmethod
@@ -204,7 +199,7 @@ class Node(ControllerPort, ABC):
 
     @abstractmethod
     def _is_up(self) -> bool:
-        """Whether ROS wants the node to go on."""
+        """Whether ROS runs: the node may go on."""
 
     @abstractmethod
     def _spin_once(self) -> None:
@@ -241,8 +236,11 @@ class Node(ControllerPort, ABC):
         """Forwards messages from one topic to another where `passes` says so; what it returns publishes there, too."""
 
     @abstractmethod
-    def _serve(self, kind: Any, name: str, called: Callable[[Message, Answer], None]) -> None:
-        """A service whose calls are answered later; `called` is called in the event loop's thread."""
+    def serve(self, kind: Any, name: str, called: Callable[[Message, Any], None]) -> None:
+        """A service whose calls are answered later.
+
+        `called` is called in the event loop's thread, with the request and its `Answer`.
+        """
 
     @abstractmethod
     def _proxy(self, action: rosgraph.ActionClient, layer: Layer, timeout: float) -> ActionProxy[Any]:
@@ -252,10 +250,7 @@ class Node(ControllerPort, ABC):
     def _stamp_now(self) -> Any:
         """The node's time, as ROS has it in headers."""
 
-    # What is the same on every ROS
-
-    def hear(self) -> None:
-        """Do nothing: messages that have arrived stand in the event loop before planned work."""
+    # What needs no middleware
 
     def stamp(self, message: Message, frame: str) -> None:
         """Gives a header the node's time and a frame."""

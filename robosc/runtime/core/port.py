@@ -64,14 +64,12 @@ class CallHandlers:
 class GoalHandlers:
     """Callbacks for the fate of a goal, called from any thread.
 
-    `over`: it has ended, and its result may be yet to come; `ended` gets the result, None where none came, and the
-    server's own text.
+    `ended` gets the result, None where none came, and the server's own text.
     """
 
     accepted: Callable[[], None]
     rejected: Callable[[], None]
     feedback: Callable[[Message], None]
-    over: Callable[[], None]
     ended: Callable[[Outcome, Message, str], None]
     cancel_answered: Callable[[CancelAnswer], None]
 
@@ -80,7 +78,7 @@ class Goal(Protocol):
     """A goal that was sent."""
 
     def cancel(self) -> None:
-        """Asks the server to cancel it; a server that does not know it yet may take no notice (ROS 2)."""
+        """Asks the server to cancel it; a server that does not know it yet may take no notice."""
 
     def is_canceling(self) -> bool:
         """Whether the server says that the goal is being canceled."""
@@ -130,7 +128,7 @@ class Port(Protocol):
         """Handles what has arrived already: it is not to wait behind a time that is up."""
 
     def create(self, interface: rosgraph.Interface, section: Section) -> Message:
-        """Data with every field at its ROS default; a ROS 1 quaternion is one of length 1."""
+        """Data with every field at its ROS default."""
 
     def unset(self, interface: rosgraph.Interface, section: Section, path: Sequence[str]) -> Message:
         """The object at a path in such data, as `create` makes it; a step `0` is an element of an array."""
@@ -161,10 +159,10 @@ class ControllerPort(Port, Protocol):
         """Sends a goal; the handlers are not called before this returns."""
 
     def other_servers(self, client: Client) -> Mapping[str, str]:
-        """The nodes that serve the name of a service or action with another type, and this type; none in ROS 1."""
+        """The nodes that serve the name of a service or action with another type, and this type."""
 
     def endpoints(self) -> Mapping[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
-        """The other publishers on the node's topics; in ROS 2 the subscriptions to what it publishes, too."""
+        """The other publishers on the node's topics, and the subscriptions to what it publishes."""
 
 
 @dataclass(frozen=True)

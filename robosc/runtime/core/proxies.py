@@ -18,13 +18,10 @@ if TYPE_CHECKING:
 
 
 class Answer(Protocol):
-    """The answer that a caller of the layer waits for; exactly one of these is called."""
+    """The answer that a caller of the layer waits for."""
 
-    def give(self, response: Message) -> None:
-        """The response."""
-
-    def fail(self, why: str) -> None:
-        """There is none: an error in ROS 1, in ROS 2, which knows none, the response that nothing was set in."""
+    def give(self, response: Message = None) -> None:
+        """Answers, once; without a response, the one in which nothing was set: services of ROS 2 have no errors."""
 
 
 class ServiceProxy:
@@ -42,9 +39,9 @@ class ServiceProxy:
         """A call of the controller's, which is forwarded where the layer lets it pass."""
         if self._waiting is not None:
             self._layer.reject(self._service.request)
-            answer.fail("blocked: another call waits")
+            answer.give()
         elif not self._layer.passes(self._service.request):
-            answer.fail("blocked by the supervisor")
+            answer.give()
         else:
             self._waiting = answer
             self._client.call(request)
@@ -59,7 +56,7 @@ class ServiceProxy:
         self._layer.fail(self._service, reason, why)
         waiting, self._waiting = self._waiting, None
         if waiting is not None:
-            waiting.fail(why)
+            waiting.give()
 
 
 @dataclass(eq=False)
@@ -131,8 +128,8 @@ class ActionProxy(ABC, Generic[_Goal]):
         """Whether the robot says that the goal is being canceled."""
 
     @abstractmethod
-    def _end(self, goal: _Goal, why: str) -> None:
-        """Tells the controller of the end of a goal that the robot says nothing of; one that was sent is canceled."""
+    def _end(self, goal: _Goal) -> None:
+        """Tells the controller of the end of a goal that the robot says nothing of."""
 
     # What the layer does
 
@@ -174,7 +171,7 @@ class ActionProxy(ABC, Generic[_Goal]):
         """A goal of the controller's, which is forwarded where the layer lets it pass."""
         if self._goal is not None:
             self._layer.reject(self._action.request)
-            self._end(goal, "blocked: another goal has not ended")
+            self._end(goal)
             return
         self._goal = goal
         self._requests = self._new_requests()
@@ -183,7 +180,7 @@ class ActionProxy(ABC, Generic[_Goal]):
             self._poll(goal)
         else:
             self._goal = None
-            self._end(goal, "blocked by the supervisor")
+            self._end(goal)
 
     def _at_hand(self, identifier: Any) -> _Goal | None:
         """The goal at hand, if it is the one with this identifier."""
@@ -250,7 +247,7 @@ class ActionProxy(ABC, Generic[_Goal]):
             self._layer.end_canceled(self._action, reason, why)
         else:
             self._layer.fail(self._action, reason, why)
-        self._end(goal, why)
+        self._end(goal)
 
     def _forget(self) -> None:
         self._goal = None

@@ -107,15 +107,10 @@ class LateAnswer:
         self._given = False
 
     def give(self, response: Message = None) -> None:
-        """Answers; with nothing, the response that nothing was set in."""
+        """Answers; without a response, the one in which nothing was set."""
         self.response, self._given = response or self.response, True
         if self._send is not None:
             self._send(self.response)
-
-    def fail(self, why: str) -> None:
-        """Services of ROS 2 have no errors."""
-        del why
-        self.give()
 
     def send_with(self, send: Callable[[Message], None]) -> None:
         """The caller is known from now on."""
@@ -257,8 +252,7 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
     ) -> bool:
         return bool(self._ask(self._cancels, request, answered, self._times.timeout, late))
 
-    def _end(self, goal: _Goal, why: str) -> None:
-        del why
+    def _end(self, goal: _Goal) -> None:
         assert goal.answer is not None
         if not goal.accepted:
             goal.answer.give()

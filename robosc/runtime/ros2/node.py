@@ -63,7 +63,7 @@ if TYPE_CHECKING:
     from robosc.runtime.core.event_handler import EventHandler
     from robosc.runtime.core.layer import Layer
     from robosc.runtime.core.port import Client, Goal, Message
-    from robosc.runtime.core.proxies import ActionProxy, Answer
+    from robosc.runtime.core.proxies import ActionProxy
 
 #: What parameters may set of the quality of a subscription that gets what was kept.
 _KEPT_POLICIES = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH)
@@ -105,8 +105,8 @@ class Ros2Node(Node):
         #: How many messages came on each topic, for those that `_take` took.
         self._heard: Counter[str] = Counter()
 
-    def _load_type(self, interface: rosgraph.Interface, suffix: str = "") -> Any:
-        found = super()._load_type(interface, suffix)
+    def _load_type(self, interface: rosgraph.Interface) -> Any:
+        found = super()._load_type(interface)
         try:
             check_for_type_support(found)
         except (NoTypeSupportImportedException, ImportError) as error:
@@ -366,9 +366,6 @@ class Ros2Node(Node):
             connected.remove_pending_request(self._pending[client])
         self._pending[client] = connected.call_async(request)
         self._pending[client].add_done_callback(partial(settle, handlers.answered, handlers.failed))
-
-    def _serve(self, kind: Any, name: str, called: Callable[[Message, Answer], None]) -> None:
-        self.serve(kind, name, called)
 
     def serve(self, kind: Any, name: str, called: Callable[[Message, LateAnswer], None]) -> None:
         """A service whose calls are answered later; rclpy by itself answers as soon as `called` returns."""

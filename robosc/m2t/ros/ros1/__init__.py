@@ -38,8 +38,7 @@ class Ros1:
         libraries = {"rosconsole", "roscpp", "xmlrpcpp", *(["actionlib"] if node.actions else [])}
         return {
             "headers": self._headers(node, used.reports),
-            **_build({*libraries, *used.types}, set(), ["rosgraph_msgs", "rospy", "rostest"] if tests else []),
-            "threads": True,
+            **_build({*libraries, *used.types}, ["rosgraph_msgs", "rospy", "rostest"] if tests else []),
             "names": list(_names(node)),
         }
 
@@ -47,10 +46,10 @@ class Ros1:
         return sorted({self.header(interface) for interface in [*node.interfaces, *reports]} | {"ros/ros.h"})
 
 
-def _build(dependencies: set[str], started: set[str], tested: Sequence[str] = ()) -> dict[str, Any]:
-    """What the build files read: the packages that a node is built with, that it is started with, of its tests."""
+def _build(dependencies: set[str], tested: Sequence[str]) -> dict[str, Any]:
+    """Values for the build files: the packages that a node is built and started with, and those of its tests."""
     built = sorted(dependencies)
-    depends = [("build_", built), ("exec_", [*built, *sorted(started)]), ("test_", tested)]
+    depends = [("build_", built), ("exec_", built), ("test_", tested)]
     return {"build_tool": "catkin", "dependencies": built, "package_depends": depends}
 
 

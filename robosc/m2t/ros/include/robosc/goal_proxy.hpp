@@ -57,8 +57,8 @@ class GoalProxy {
   }
 
  protected:
-  /// `timeout`: for acceptance, for the answer to a cancel, which is repeated after `retry`, or never where that is 0,
-  /// for a server that is missing, and for the result of a goal that has ended. `place`: what a countdown begins with.
+  /// `timeout`: for acceptance, for the answer to a cancel, which is repeated after `retry`, for a server that is
+  /// missing, and for the result of a goal that has ended. `place`: what a countdown begins with.
   template <typename... Place>
   GoalProxy(std::chrono::milliseconds timeout, std::chrono::milliseconds retry, Handlers handlers, Place&... place)
       : handlers_(std::move(handlers)),
@@ -82,8 +82,8 @@ class GoalProxy {
   virtual void restart(std::chrono::milliseconds more = std::chrono::milliseconds(0)) = 0;
   /// Whether that time is over.
   virtual bool is_over() = 0;
-  /// Nobody waits for the goal any more: the controller is told, and a robot that has it.
-  virtual void abandon(const std::string& why) = 0;
+  /// Tells the controller that the goal has ended without a result.
+  virtual void abandon() = 0;
 
   // What the controller and the robot do.
 
@@ -107,10 +107,9 @@ class GoalProxy {
   void look() {
     if (!running_) return;
     if (canceling_ && !sent_) {
-      const std::string why = "canceled before it was sent";
       finish();
-      handlers_.canceled(Failure::canceled, why, Result());
-      return abandon(why);
+      handlers_.canceled(Failure::canceled, "canceled before it was sent", Result());
+      return abandon();
     }
     const bool served = is_served();
     if (!sent_ && served) {
@@ -149,13 +148,6 @@ class GoalProxy {
     restart();
   }
 
-  /// It has not ended after all.
-  void resume() {
-    if (!std::exchange(over_, false)) return;
-    requests_.reset();
-    if (canceling_) requests_.ask();
-  }
-
   void hear(const Feedback& feedback) { handlers_.feedback(feedback); }
 
   // The robot's goal has ended; `finish` comes before.
@@ -165,13 +157,12 @@ class GoalProxy {
     handlers_.canceled(late_ ? Failure::timeout : Failure::canceled, "canceled", result);
   }
   void abort(const Result& result) { handlers_.error(late_ ? Failure::timeout : Failure::aborted, "aborted", result); }
-  void reject(const Result& result) { handlers_.error(Failure::rejected, "rejected", result); }
 
   /// It has ended without a result, or nobody knows what becomes of it.
   void fail(Failure reason, const std::string& why) {
     finish();
     handlers_.error(reason, why, Result());
-    abandon(why);
+    abandon();
   }
 
   /// The goal is over.
@@ -181,9 +172,7 @@ class GoalProxy {
   }
 
   bool running() const { return running_; }
-  bool sent() const { return sent_; }
   bool accepted() const { return accepted_; }
-  bool over() const { return over_; }
 
  private:
   void expire() {

@@ -45,9 +45,6 @@ class Timer {
     steady_.stop();
   }
 
-  /// The time of the clock that timers count, in seconds.
-  static double now() { return ros::Time::isSimTime() ? ros::Time::now().toSec() : ros::SteadyTime::now().toSec(); }
-
  private:
   std::function<void()> function_;
   ros::Timer simulated_;

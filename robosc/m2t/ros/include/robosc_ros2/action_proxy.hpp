@@ -215,7 +215,7 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
   }
   bool is_over() override { return clock_->now() >= deadline_; }
 
-  void abandon(const std::string&) override {
+  void abandon() override {
     if (!this->accepted()) answer_goal(caller_, typename SendGoal::Response());
     typename GetResult::Response response;
     response.status = Status::STATUS_ABORTED;
