@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.ros.installations import find_ros1
-from tests.ros.running import Runner, run_ros1, run_ros2, runner
+from tests.ros.running import Runner, run_ros2
 from tests.ros.workspaces import Workspace, middleware, ros1_build, ros1_workspace, ros2_workspace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from contextlib import AbstractContextManager
 
-__all__ = ["ros1_build", "ros1_workspace", "ros2_workspace", "run_ros1", "run_ros2", "runner"]
+__all__ = ["ros1_build", "ros1_workspace", "ros2_workspace", "run_ros2"]
 
 HERE = Path(__file__).parent
 #: Fixtures that run nodes for several tests, and the parameters that say of which kind they are.
@@ -36,7 +36,9 @@ RUNS = (
     "model_workspace",
     "base",
 )
-KINDS = ("nodes", "controller", "kind", "name")
+KINDS = ("nodes", "layers", "controller", "kind", "name")
+#: Compiled nodes of each ROS, and those of ROS 2 that run straight from their models.
+NODES = ("ros1", "ros2", "run-ros2")
 SIMULATOR = HERE.parents[1] / "examples" / "simulator"
 
 
@@ -82,8 +84,9 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "workspace" in metafunc.fixturenames:
         metafunc.parametrize("workspace", ["ros1", "ros2"], indirect=True, scope="session")
     if "nodes" in metafunc.fixturenames:
-        kinds = ["ros1", "ros2", "run-ros1", "run-ros2"]
-        metafunc.parametrize("nodes", kinds, indirect=True, scope="session")
+        metafunc.parametrize("nodes", NODES, indirect=True, scope="session")
+    if "layers" in metafunc.fixturenames:
+        metafunc.parametrize("layers", [kind for kind in NODES if kind != "ros1"], indirect=True, scope="session")
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -95,16 +98,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             groups.setdefault(group(item), len(groups))
             item.add_marker(pytest.mark.xdist_group(group(item)))
             item.add_marker(pytest.mark.ros)
-            if runs_from_model_over_ros1(item):
-                item.add_marker(pytest.mark.matrix)
             if needs_ros1_workspace(item) or "model_workspace" in getattr(item, "fixturenames", ()):
                 item.add_marker(pytest.mark.build)
     items.sort(key=lambda item: groups.get(group(item), 0))
-
-
-def runs_from_model_over_ros1(item: pytest.Item) -> bool:
-    """Whether a test looks at what the compiled node does, too. The drive of the line follower stays in all runs."""
-    return "run-ros1" in parameters(item).values() and "drive" not in getattr(item, "fixturenames", ())
 
 
 @cache
@@ -191,9 +187,18 @@ def workspace(request: pytest.FixtureRequest) -> Workspace:
 @pytest.fixture(scope="session")
 def nodes(request: pytest.FixtureRequest) -> Workspace | Runner:
     """Nodes of every kind, to be started by their packages' names: compiled, and run straight from their models."""
-    kind: str = request.param
-    made: Workspace | Runner
-    made = request.getfixturevalue(kind.replace("-", "_") if kind.startswith("run") else f"{kind}_workspace")
+    return nodes_of(request, request.param)
+
+
+@pytest.fixture(scope="session")
+def layers(request: pytest.FixtureRequest) -> Workspace | Runner:
+    """The kinds of nodes that layers can be: those of ROS 2."""
+    return nodes_of(request, request.param)
+
+
+def nodes_of(request: pytest.FixtureRequest, kind: str) -> Workspace | Runner:
+    """Return the nodes of one of the kinds `NODES`."""
+    made: Workspace | Runner = request.getfixturevalue("run_ros2" if kind == "run-ros2" else f"{kind}_workspace")
     return made
 
 

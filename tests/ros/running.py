@@ -1,4 +1,4 @@
-"""`robosc run` over a real ROS, and the Python modules of the interfaces that no registry has."""
+"""`robosc run` over ROS 2, and the Python modules of the interfaces that no registry has."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.ros.installations import Found, Ros, find_ros1
+from tests.ros.installations import Found, Ros
+from tests.ros.workspaces import found_or_skipped
 from tests.sharing import made_once
 
 if TYPE_CHECKING:
@@ -27,8 +28,6 @@ MODELS = {
     "patience_controller": HERE / "times" / "patience.rscd",
     "keeper_controller": HERE / "kept" / "keeper.rscd",
 }
-#: What the packages of `interfaces/ros1` depend on.
-KNOWN = ("actionlib_msgs", "geometry_msgs", "std_msgs")
 
 
 @dataclass(frozen=True)
@@ -36,7 +35,6 @@ class Runner:
     """Runs models as nodes. `interfaces` is a folder with Python modules of ROS packages, for everybody there."""
 
     ros: Ros
-    robosc: str
     interfaces: Path
 
     def command(
@@ -50,12 +48,9 @@ class Runner:
         """The command that runs a model with parameters (`name:=value`) and remappings (`/from:=/to`)."""
         options = ["--layer"] if layer else []
         options += ["--config", str(configuration)] if configuration else []
-        if self.ros.version == 1:
-            arguments = [*(f"_{parameter}" for parameter in parameters), *remappings]
-        else:
-            arguments = ["--ros-args", *(word for parameter in parameters for word in ("-p", parameter))]
-            arguments += [word for remapping in remappings for word in ("-r", remapping)]
-        return [self.robosc, "-m", "robosc", "run", str(model), f"--ros{self.ros.version}", *options, *arguments]
+        arguments = ["--ros-args", *(word for parameter in parameters for word in ("-p", parameter))]
+        arguments += [word for remapping in remappings for word in ("-r", remapping)]
+        return [self.ros.python, "-m", "robosc", "run", str(model), *options, *arguments]
 
     def node(self, package: str, *parameters: str) -> list[str]:
         """The command that starts what a generated package of `MODELS` would be."""
@@ -87,74 +82,19 @@ def find_rclpy() -> Found:
     return found
 
 
-def ros1_modules(ros: Ros, folder: Path) -> str:
-    """The Python modules of `interfaces/ros1`, made in a folder: where they are."""
-    for package in sorted((HERE / "interfaces" / "ros1").iterdir()):
-        _generate_ros1(ros, package, folder)
-    return str(folder / "modules")
-
-
 def ros2_modules(ros: Ros, folder: Path) -> str:
     """The Python modules of `interfaces/ros2`, made in a folder if they are not there: where they are."""
     modules = folder / "modules"
     if not modules.exists():
-        _done(ros, [ros.python, "-m", "robosc", "interfaces", "build", HERE / "interfaces" / "ros2", "-o", modules])
+        command = [ros.python, "-m", "robosc", "interfaces", "build", HERE / "interfaces" / "ros2", "-o", modules]
+        done = subprocess.run(command, env=ros.environment, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-4000:]
     return str(modules)
 
 
 @pytest.fixture(scope="session")
-def run_ros1(shared_folder: Path) -> Runner:
-    """`robosc run --ros1`, with the interfaces of `interfaces/ros1`."""
-    ros, folder = _found_or_skipped("ros1", find_ros1()), shared_folder / "interfaces-ros1"
-    return Runner(ros, sys.executable, Path(made_once(shared_folder, "run-ros1", lambda: ros1_modules(ros, folder))))
-
-
-@pytest.fixture(scope="session")
 def run_ros2(shared_folder: Path) -> Runner:
-    """`robosc run --ros2`, with the interfaces of `interfaces/ros2`."""
-    ros = _found_or_skipped("ros2-run", find_rclpy())
+    """`robosc run`, with the interfaces of `interfaces/ros2`."""
+    ros = found_or_skipped("ros2-run", find_rclpy())
     folder = Path(os.environ.get("ROBOSC_ROS2_INTERFACES") or shared_folder / "interfaces-ros2")
-    return Runner(ros, ros.python, Path(made_once(shared_folder, "run-ros2", lambda: ros2_modules(ros, folder))))
-
-
-@pytest.fixture(scope="session", params=["ros1", "ros2"])
-def runner(request: pytest.FixtureRequest) -> Runner:
-    """`robosc run` over each ROS."""
-    made: Runner = request.getfixturevalue(f"run_{request.param}")
-    return made
-
-
-def _found_or_skipped(name: str, found: Found) -> Ros:
-    if found.ros is None:
-        reason = f"{name}: {', '.join(found.missing)}"
-        if name in os.environ.get("ROBOSC_REQUIRE", "").split(","):
-            pytest.fail(reason)
-        pytest.skip(reason)
-    return found.ros
-
-
-def _generate_ros1(ros: Ros, package: Path, folder: Path) -> None:
-    """The Python modules of one package, by the generators that catkin calls."""
-    name, messages = package.name, folder / "messages" / package.name
-    for action in sorted(package.glob("action/*.action")):
-        _done(ros, [ros.python, "/usr/lib/actionlib_msgs/genaction.py", action, "-o", messages])
-    known = [f"-I{known_package}:/usr/share/{known_package}/msg" for known_package in KNOWN] + [
-        f"-I{name}:{messages}",
-        f"-I{name}:{package}/msg",
-    ]
-    for kind, files in {
-        "msg": [*sorted(package.glob("msg/*.msg")), *sorted(messages.glob("*.msg"))],
-        "srv": sorted(package.glob("srv/*.srv")),
-    }.items():
-        out = folder / "modules" / name / kind
-        if files:
-            out.mkdir(parents=True)
-            generator = f"/usr/lib/genpy/gen{kind}_py.py"
-            _done(ros, [ros.python, generator, *known, "-p", name, "-o", out, *files])
-            _done(ros, [ros.python, generator, "--initpy", "-p", name, "-o", out])
-    (folder / "modules" / name / "__init__.py").touch()
-
-
-def _done(ros: Ros, command: Sequence[str | Path]) -> None:
-    done = subprocess.run(command, env=ros.environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-4000:]
+    return Runner(ros, Path(made_once(shared_folder, "run-ros2", lambda: ros2_modules(ros, folder))))

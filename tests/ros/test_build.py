@@ -11,8 +11,8 @@ import pytest
 if TYPE_CHECKING:
     from tests.ros.workspaces import Workspace
 
-#: With services, actions and a watchdog; with times, parameters and a typed state; with proxies.
-LARGEST = ("scout_controller", "porter_controller", "usher_layer")
+#: With services, actions and a watchdog; with times, parameters and a typed state.
+LARGEST = ("scout_controller", "porter_controller")
 
 
 def test_builds_without_warnings(workspace: Workspace) -> None:

@@ -1,7 +1,7 @@
 """The supervisory layer between an unmodified controller and a robot, on a live graph.
 
-The model is `tests/m2t/layer/usher.rscd`, the controller `usher_driver/driver.py`, started by the generated launch file
-or with its remappings; the robot and the steps are those of `usher_trial.py`.
+The model is `tests/m2t/layer/usher.rscd`, the controller `usher_driver.py`, started with the remappings of the
+generated launch file; the robot and the steps are those of `usher_trial.py`.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
-from xml.etree import ElementTree
 
 import pytest
 from jsonschema import Draft202012Validator
@@ -25,14 +24,12 @@ if TYPE_CHECKING:
 
 REFUSED = "the server refuses to cancel the goal"
 UNANSWERED = "the server does not answer the request to cancel the goal within 2000 ms"
-FAILED = {"ros1": "failed", "ros2": False}
 
 
 @dataclass(frozen=True)
 class Trial:
     """What reached whom in each step, what was blocked, and in which states the layer was; what it told and printed."""
 
-    ros: str
     steps: dict[str, Any]
     log: list[dict[str, Any]]
     reports: list[dict[str, Any]]
@@ -53,23 +50,19 @@ class Trial:
         return [(entry["name"], entry["reason"], entry["because"]) for entry in self.steps[step]["blocked"]]
 
 
-@pytest.fixture(scope="module", params=["ros1", "ros2", "run-ros1", "run-ros2"])
-def trial(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Trial:
+@pytest.fixture(scope="module")
+def trial(layers: Workspace | Runner, tmp_path_factory: pytest.TempPathFactory) -> Trial:
     """The trial, once, of the compiled layer and of the one run straight from its model."""
-    kind: str = request.param
-    nodes: Workspace | Runner
-    nodes = request.getfixturevalue(kind.replace("-", "_") if kind.startswith("run") else f"{kind}_workspace")
     folder = tmp_path_factory.mktemp("layer") / "run"
     results, log, reports = folder / "results.json", folder / "events.jsonl", folder / "reports.jsonl"
-    version, python = nodes.ros.version, nodes.ros.python
-    with middleware(nodes, folder) as processes:
-        listener = [python, HERE / "reports.py", str(version), "usher_layer", reports]
+    python = layers.ros.python
+    with middleware(layers, folder) as processes:
+        listener = [python, HERE / "reports.py", "2", "usher_layer", reports]
         listening = processes.start("reports", listener)
         processes.wait_until(reports.exists, "somebody listens to the layer's reports")
-        layer = processes.start("layer", command(nodes, f"event_log:={log}"))
-        if kind != "ros1":  # whose launch file has started it
-            processes.start("driver", [python, DRIVER / "driver.py", *remapped(version)])
-        script = processes.start("trial", [python, HERE / "usher_trial.py", str(version), results])
+        layer = processes.start("layer", command(layers, f"event_log:={log}"))
+        processes.start("driver", [python, DRIVER, *remapped()])
+        script = processes.start("trial", [python, HERE / "usher_trial.py", results])
         processes.wait_until(lambda: script.poll() is not None, "all steps are done", seconds=900)
         assert script.returncode == 0, processes.logs()
         assert processes.stop(layer) == 0
@@ -77,26 +70,19 @@ def trial(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     lines, told = (
         [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()] for file in (log, reports)
     )
-    return Trial(f"ros{version}", json.loads(results.read_text()), lines, told, (folder / "layer.log").read_text())
+    return Trial(json.loads(results.read_text()), lines, told, (folder / "layer.log").read_text())
 
 
-def command(nodes: Workspace | Runner, *parameters: str) -> Sequence[str | Path]:
+def command(layers: Workspace | Runner, *parameters: str) -> Sequence[str | Path]:
     """What starts the layer."""
-    if isinstance(nodes, Runner):
+    if isinstance(layers, Runner):
         settings = USHER / "controller-config.json"
-        return nodes.command(USHER / "usher.rscd", *parameters, layer=True, configuration=settings)
-    return nodes.node("usher_layer", *parameters)
+        return layers.command(USHER / "usher.rscd", *parameters, layer=True, configuration=settings)
+    return layers.node("usher_layer", *parameters)
 
 
-def remapped(version: int) -> list[str]:
+def remapped() -> list[str]:
     """The arguments with which the launch file starts the controller."""
-    if version == 1:
-        launch = ElementTree.parse(USHER / "ros1-layer" / "launch" / "usher_layer.launch")  # noqa: S314  # our own text
-        given = {"/$(arg namespace)": "", "$(arg name)": "usher_layer"}
-        remaps = [(str(remap.get("from")), str(remap.get("to"))) for remap in launch.iter("remap")]
-        for argument, value in given.items():
-            remaps = [(name, other.replace(argument, value)) for name, other in remaps]
-        return [f"{name}:={other}" for name, other in remaps]
     text = (USHER / "ros2-layer" / "launch" / "usher_layer.launch.py").read_text()
     remaps = launched(text).of("Node")[1].named["remappings"]
     return ["--ros-args", *(word for name, other in remaps for word in ("-r", f"{name}:={other}"))]
@@ -145,9 +131,7 @@ def test_a_second_call_is_busy(trial: Trial) -> None:
     assert trial.robot("two calls") == [["light", True]]
     assert trial.blocked("two calls") == [("Lamp.light", "busy", [])]
     # Both calls wait for their answers, and no order is promised.
-    assert sorted(trial.controller("two calls"), key=str) == sorted(
-        [["light", FAILED[trial.ros]], ["light", True]], key=str
-    )
+    assert sorted(trial.controller("two calls")) == [["light", False], ["light", True]]
 
 
 def test_a_blocked_call_fails_and_a_blocked_goal_is_rejected(trial: Trial) -> None:
@@ -157,7 +141,7 @@ def test_a_blocked_call_fails_and_a_blocked_goal_is_rejected(trial: Trial) -> No
         ("Navigation.go_to", "requirement", ["requirement go_to needs Guard.clear"]),
     ]
     answers = [answer for answer in trial.controller("forbidden") if answer[0] in ("light", "go_to")]
-    assert sorted(answers) == [["go_to", "REJECTED"], ["light", FAILED[trial.ros]]]
+    assert sorted(answers) == [["go_to", "REJECTED"], ["light", False]]
 
 
 def test_a_goal_runs_to_its_end(trial: Trial) -> None:
@@ -198,14 +182,6 @@ def test_a_goal_that_is_cancelled_before_there_is_a_server_is_never_sent(trial: 
     assert sorted(happened[2:]) == ["action_go_to.u_canceled", "message_resume.u_response"]
 
 
-def test_the_controller_may_cancel_before_there_is_a_server(trial: Trial) -> None:
-    if trial.ros != "ros1":
-        pytest.skip("in ROS 2 a goal without a server is not accepted, and can't be cancelled")
-    # The goal and the request to cancel it come on two topics: a server may hear of the request first.
-    told = trial.controller("cancelled by the controller before there is a server")
-    assert told in ([["go_to", "CANCELED"]], [["go_to", "RECALLED"]])
-
-
 def test_a_goal_that_is_accepted_too_late_is_cancelled(trial: Trial) -> None:
     assert trial.robot("accepted too late") == [["go_to", 10.0], ["cancel", True]]
     assert trial.controller("accepted too late") == [["go_to", "CANCELED"]]
@@ -215,26 +191,14 @@ def test_a_goal_that_is_accepted_too_late_is_cancelled(trial: Trial) -> None:
 
 def test_a_cancel_that_the_robot_refuses_is_told(trial: Trial) -> None:
     step = "a cancel that the robot refuses"
-    # In ROS 2 the layer asks again.
+    # The layer asks again.
     assert trial.robot(step)[:2] == [["go_to", 11.0], ["cancel", True]]
     assert ["go_to", "SUCCEEDED"] in trial.controller(step)
     assert "action_go_to.u_response" in events(trial, step)
-    said = REFUSED if trial.ros == "ros2" else UNANSWERED
-    assert f"/go_to: {said}" in trial.output
-
-
-def test_a_goal_whose_result_is_lost_ends_all_the_same(trial: Trial) -> None:
-    if trial.ros != "ros1":
-        pytest.skip("in ROS 2 the layer asks for the result")
-    assert trial.robot("a result that is lost") == [["go_to", 12.0]]
-    assert trial.controller("a result that is lost") == [["go_to", "ABORTED"]]
-    assert "action_go_to.u_error" in events(trial, "a result that is lost")
-    assert "/go_to: the goal has ended, but its result did not come within 2000 ms" in trial.output
+    assert f"/go_to: {REFUSED}" in trial.output
 
 
 def test_nobody_waits_for_a_robot_that_does_not_answer_a_cancel(trial: Trial) -> None:
-    if trial.ros != "ros2":
-        pytest.skip("ROS 1 does not answer requests to cancel")
     step = "cancels that the robot does not answer"
     assert trial.robot(step)[:3] == [["go_to", 12.0], ["cancel", True], ["cancel", True]]
     assert sorted(trial.controller(step)) == [
@@ -247,7 +211,7 @@ def test_nobody_waits_for_a_robot_that_does_not_answer_a_cancel(trial: Trial) ->
 
 
 def test_a_late_answer_is_none(trial: Trial) -> None:
-    assert trial.controller("late") == [["light", FAILED[trial.ros]]]
+    assert trial.controller("late") == [["light", False]]
     assert "/lamp/light: no answer within 2000 ms" in trial.output
     assert (trial.robot("the next call"), trial.controller("the next call")) == ([["light", False]], [["light", True]])
 
@@ -257,8 +221,6 @@ def test_what_lasts_still_lasts(trial: Trial) -> None:
 
 
 def test_what_goes_on_is_reliable_however_it_was_heard(trial: Trial) -> None:
-    if trial.ros != "ros2":
-        pytest.skip("ROS 1 has no qualities of service")
     assert trial.steps["qualities"] == {"hears": 3 * ["BEST_EFFORT"], "sends": 3 * ["RELIABLE"]}
 
 

@@ -17,17 +17,17 @@ INSIDE = "/hoist_layer/controller"
 
 
 def test_the_robot_hears_one_stop_in_the_place_of_those_that_are_blocked(
-    nodes: Workspace | Runner, tmp_path: Path
+    layers: Workspace | Runner, tmp_path: Path
 ) -> None:
     folder, log = tmp_path / "run", tmp_path / "events.jsonl"
-    with middleware(nodes, folder) as processes:
-        if isinstance(nodes, Runner):
+    with middleware(layers, folder) as processes:
+        if isinstance(layers, Runner):
             settings = BLOCKED / "controller-config.json"
-            command = nodes.command(BLOCKED / "hoist.rscd", f"event_log:={log}", layer=True, configuration=settings)
+            command = layers.command(BLOCKED / "hoist.rscd", f"event_log:={log}", layer=True, configuration=settings)
             layer = processes.start("layer", command)
         else:
-            layer = processes.start("layer", nodes.node("hoist_layer", f"event_log:={log}"))
-        world = Peer(processes, nodes.ros.python, nodes.ros.version, "world")
+            layer = processes.start("layer", layers.node("hoist_layer", f"event_log:={log}"))
+        world = Peer(processes, layers.ros.python, layers.ros.version, "world")
 
         def speeds() -> list[float]:
             heard = [entry for entry in world.all("heard") if entry["heard"] == "/cmd_vel"]

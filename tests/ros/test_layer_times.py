@@ -7,7 +7,6 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from tests.ros.faults.partners import Peer
-from tests.ros.reactions import one_process
 from tests.ros.running import Runner
 from tests.ros.workspaces import HERE, middleware
 
@@ -21,18 +20,18 @@ SCAN, BLIND, ROTATING = "message_scan.u_response", "component_Base.u_after1", "c
 MOVE = "message_move.c_trigger"
 
 
-def test_times_let_pass_and_block(nodes: Workspace | Runner, tmp_path: Path) -> None:
+def test_times_let_pass_and_block(layers: Workspace | Runner, tmp_path: Path) -> None:
     """`after 1.0 s goto rotating` lets moves pass, `after 500 ms without scan goto blind` blocks them."""
     folder, log = tmp_path / "run", tmp_path / "events.jsonl"
     parameter = f"event_log:={log}"
-    with middleware(nodes, folder) as processes:
+    with middleware(layers, folder) as processes:
         layer = processes.start(
             "layer",
-            nodes.command(GUARD, parameter, layer=True)
-            if isinstance(nodes, Runner)
-            else one_process(nodes, LAYER, parameter),
+            layers.command(GUARD, parameter, layer=True)
+            if isinstance(layers, Runner)
+            else layers.node(LAYER, parameter),
         )
-        sides = [Peer(processes, nodes.ros.python, nodes.ros.version, name) for name in ("robot", "controller")]
+        sides = [Peer(processes, layers.ros.python, layers.ros.version, name) for name in ("robot", "controller")]
         robot, controller = sides
         moves = f"/{LAYER}/controller/move"
         for peer, topic in ((robot, "/scan"), (controller, moves)):

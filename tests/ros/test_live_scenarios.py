@@ -1,4 +1,4 @@
-"""`robosc test` with a node: scenarios of users over a real ROS, on nodes run from models and on a compiled one."""
+"""`robosc test` with a node: scenarios of users over ROS 2, on nodes run from models and on a compiled one."""
 
 from __future__ import annotations
 
@@ -62,8 +62,6 @@ scenario "a call that fails, a pause, and another call"
   response from fill
   expect Pump.full
 """
-#: A compiled node plays scenarios over ROS 1 in any case.
-OVER_ROS = pytest.mark.parametrize("runner", [pytest.param("ros1", marks=pytest.mark.matrix), "ros2"], indirect=True)
 
 
 def played(
@@ -72,7 +70,7 @@ def played(
     """The exit status of `robosc test`, and what it said."""
     scenarios = folder / "own.scenarios"
     scenarios.write_text(text, encoding="utf-8")
-    command = [python, "-m", "robosc", "test", str(model), str(scenarios), f"--ros{nodes.ros.version}", *options]
+    command = [python, "-m", "robosc", "test", str(model), str(scenarios), "--ros2", *options]
     with middleware(nodes, folder / "run") as processes:
         environment = {**processes.environment, "PYTHONPATH": _path(processes.environment)}
         done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=600, check=False)
@@ -83,17 +81,15 @@ def _path(environment: dict[str, str]) -> str:
     return ":".join(filter(None, (str(PROJECT), environment.get("PYTHONPATH"))))
 
 
-@OVER_ROS
-def test_a_node_plays_scenarios(runner: Runner, tmp_path: Path) -> None:
-    status, said = played(runner, runner.robosc, tmp_path, STOPS)
+def test_a_node_plays_scenarios(run_ros2: Runner, tmp_path: Path) -> None:
+    status, said = played(run_ros2, run_ros2.ros.python, tmp_path, STOPS)
     assert (status, "1 scenario, 0 failed" in said) == (0, True), said
 
 
-@OVER_ROS
-def test_a_call_that_fails_and_times(runner: Runner, tmp_path: Path) -> None:
+def test_a_call_that_fails_and_times(run_ros2: Runner, tmp_path: Path) -> None:
     model = tmp_path / "plant.rscd"
     model.write_text(PUMP, encoding="utf-8")
-    status, said = played(runner, runner.robosc, tmp_path, FILLS, model=model)
+    status, said = played(run_ros2, run_ros2.ros.python, tmp_path, FILLS, model=model)
     assert (status, "1 scenario, 0 failed" in said) == (0, True), said
 
 
@@ -195,29 +191,27 @@ scenario "lost"
 """
 
 
-@OVER_ROS
-def test_reasons_of_errors(runner: Runner, tmp_path: Path) -> None:
-    """Where no test server can bring about a reason, that is told at the line. In ROS 2 no call fails at once."""
+def test_reasons_of_errors(run_ros2: Runner, tmp_path: Path) -> None:
+    """Where no test server can bring about a reason, that is told at the line; no call fails at once."""
     model = tmp_path / "carrier.rscd"
     model.write_text(CARRIER, encoding="utf-8")
-    status, said = played(runner, runner.robosc, tmp_path, FAILS, model=model)
+    status, said = played(run_ros2, run_ros2.ros.python, tmp_path, FAILS, model=model)
     number = FAILS.splitlines().index("  error from go because lost") + 1
     fault = "error: this can't be played over ROS: no test server lets"
     assert status == 1, said
     assert f"own.scenarios:{number}:3: {fault} /go fail because lost" in said
     failed = FAILS.splitlines().index("  error from lift") + 1
-    assert (f"own.scenarios:{failed}:3: {fault} /lift fail because failed" in said) == (runner.ros.version == 2), said
-    assert f"6 scenarios, {runner.ros.version} failed" in said
+    assert f"own.scenarios:{failed}:3: {fault} /lift fail because failed" in said
+    assert "6 scenarios, 2 failed" in said
 
 
-@OVER_ROS
-def test_a_node_that_does_something_else_is_told_at_the_line(runner: Runner, tmp_path: Path) -> None:
+def test_a_node_that_does_something_else_is_told_at_the_line(run_ros2: Runner, tmp_path: Path) -> None:
     """It has forgotten its stop button."""
     shutil.copytree(LINE_FOLLOWER.parent, tmp_path / "careless")
     model = tmp_path / "careless" / LINE_FOLLOWER.name
     text = model.read_text(encoding="utf-8")
     model.write_text(text.replace(" and EmergencyStop.in_service", "").replace(" or EmergencyStop.stopped", ""))
-    status, said = played(runner, runner.robosc, tmp_path, STOPS, "--node", shlex.join(runner.command(model)))
+    status, said = played(run_ros2, run_ros2.ros.python, tmp_path, STOPS, "--node", shlex.join(run_ros2.command(model)))
     assert (status, "1 scenario, 1 failed" in said) == (1, True), said
     assert "own.scenarios:7:3: error: the node does something else: the trace says out message_halt.c_trigger" in said
 
@@ -229,16 +223,14 @@ def test_a_node_that_does_something_else_is_told_at_the_line(runner: Runner, tmp
         ("none-such-program", "`none-such-program` does not start: No such file"),
     ],
 )
-def test_a_node_that_does_not_start(run_ros1: Runner, tmp_path: Path, command: str, told: str) -> None:
-    status, said = played(run_ros1, run_ros1.robosc, tmp_path, STOPS, "--node", command)
+def test_a_node_that_does_not_start(run_ros2: Runner, tmp_path: Path, command: str, told: str) -> None:
+    status, said = played(run_ros2, run_ros2.ros.python, tmp_path, STOPS, "--node", command)
     assert (status, told in said) == (2, True), said
 
 
-def test_a_compiled_node_plays_scenarios(workspace: Workspace, request: pytest.FixtureRequest, tmp_path: Path) -> None:
-    package, version = "line_follower_controller", workspace.ros.version
-    runs: Runner = request.getfixturevalue(f"run_ros{version}")
-    nodes = {1: workspace.folder / f"devel/lib/{package}/{package}", 2: workspace.node(package)[0]}
-    status, said = played(workspace, runs.robosc, tmp_path, STOPS, "--node", str(nodes[version]))
+def test_a_compiled_node_plays_scenarios(ros2_workspace: Workspace, run_ros2: Runner, tmp_path: Path) -> None:
+    node = str(ros2_workspace.node("line_follower_controller")[0])
+    status, said = played(ros2_workspace, run_ros2.ros.python, tmp_path, STOPS, "--node", node)
     assert (status, "1 scenario, 0 failed" in said) == (0, True), said
 
 

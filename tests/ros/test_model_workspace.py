@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.cmake.building import blocks, built_again, no_work_is_done, touched_later
+from tests.ros.installations import find_ros1, find_ros2
 from tests.ros.workspaces import EXAMPLES, Workspace, found_or_skipped, middleware
 from tests.scenarios.rules.books import BOOKS
 from tests.scenarios.runs import moved_while_stopped, poses
@@ -53,7 +54,7 @@ ONLOOKER = {1: "devel/lib/downstream/downstream_onlooker", 2: "install/downstrea
 @pytest.fixture(scope="session", params=[1, 2], ids=["ros1", "ros2"])
 def model_workspace(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Workspace:
     """`examples/workspace`, word for word as the page says, and a package that uses what the model exports."""
-    ros = with_robosc(found_or_skipped(request.param))
+    ros = with_robosc(found_or_skipped(f"ros{request.param}", {1: find_ros1, 2: find_ros2}[request.param]()))
     home = tmp_path_factory.mktemp("home")
     folder = home / {1: "catkin_ws", 2: "ros2_ws"}[ros.version]
     shutil.copytree(HERE / "downstream", folder / "src" / "downstream")

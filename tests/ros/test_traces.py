@@ -96,7 +96,7 @@ def test_catkin_knows_the_tests(ros1_workspace: Workspace) -> None:
 def test_the_node_run_over_ros_2_follows_its_trace(run_ros2: Runner, package: str, tmp_path: Path) -> None:
     model, configuration = MODELS[package]
     settings = ["--config", str(configuration)] if configuration else []
-    robosc = [run_ros2.robosc, "-m", "robosc", "transform", str(model), "--to", "ros2", "--with-tests", *settings]
+    robosc = [run_ros2.ros.python, "-m", "robosc", "transform", str(model), "--to", "ros2", "--with-tests", *settings]
     subprocess.run([*robosc, "-o", tmp_path], check=True, capture_output=True, env=run_ros2.environment())
     test = tmp_path / "ros2" / package / "test"
     play(run_ros2, run_ros2.command(model, *parameters(test, tmp_path), configuration=configuration), test, tmp_path)

@@ -1,17 +1,21 @@
 """The robot behind the supervisory layer of `tests/m2t/layer/usher.rscd`, and what it asks of the controller.
 
-Run as `usher_trial.py VERSION RESULTS`, beside the layer and its controller. After each step it writes down what
+Run as `usher_trial.py RESULTS`, beside the layer and its controller. After each step it writes down what
 reached the robot, what reached the controller, what was blocked and in which states the layer was.
 """
-# ruff: noqa: PLC0415  # which ROS is there is known when it runs
 
 import json
 import sys
 import threading
 import time
 from pathlib import Path
-from types import SimpleNamespace
 
+import rclpy
+from nav2_msgs.action import NavigateToPose
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from std_srvs.srv import SetBool
 from topics import connect
 
 LAYER = "/usher_layer"
@@ -28,11 +32,19 @@ class Robot:
         self.answering = threading.Event()
         self.answering.set()
         self.accepts = True
-        self.deciding = threading.Event()  # whether it accepts a goal, or in ROS 2 a request to cancel it
+        self.deciding = threading.Event()  # whether it accepts a goal, or a request to cancel it
         self.deciding.set()
         self.deaf = False  # whether it goes on with a goal that it shall cancel
         self.ending = None  # how the goal at hand ends; None: not yet
         self.lock = threading.Lock()
+        self.node = rclpy.create_node("robot")
+        self.group = ReentrantCallbackGroup()
+        self.node.create_service(SetBool, "/lamp/light", self.on_call, callback_group=self.group)
+        self.goal = None
+        self.serve()
+        self.executor = MultiThreadedExecutor(8)
+        self.executor.add_node(self.node)
+        threading.Thread(target=self.executor.spin, daemon=True).start()
 
     def note(self, what, value):
         with self.lock:
@@ -43,94 +55,10 @@ class Robot:
         self.answering.wait(PATIENCE)
         return self.answers
 
-
-class Ros1Robot(Robot):
-    def __init__(self):
-        super().__init__()
-        import actionlib
-        import rospy
-        from nav2_msgs.msg import NavigateToPoseAction, NavigateToPoseFeedback
-        from std_srvs.srv import SetBool, SetBoolResponse
-
-        self.feedback_type = NavigateToPoseFeedback
-        self.service = rospy.Service("/lamp/light", SetBool, lambda call: SetBoolResponse(self.light(call.data), ""))
-        self.goal = None
-        self.action = actionlib.ActionServer("/go_to", NavigateToPoseAction, self.on_goal, self.on_cancel, False)
-        hear_goal, hear_cancel = self.action.internal_goal_callback, self.action.internal_cancel_callback
-        self.action.internal_goal_callback = lambda goal: self.once_heard(lambda: hear_goal(goal))
-        self.action.internal_cancel_callback = lambda goal: (
-            self.note("cancel", True) if self.deaf else self.once_heard(lambda: hear_cancel(goal))
-        )
-        self.serve()
-
-    def once_heard(self, hear):
-        """rospy tells a listener that it is connected before it publishes to it: a result could be lost in between."""
-        until = time.monotonic() + PATIENCE
-        while not self.action.result_pub.get_num_connections() and time.monotonic() < until:
-            time.sleep(0.01)
-        hear()
-
     def serve(self):
-        self.action.start()
-
-    def leave(self):
-        self.action.stop()
-
-    def on_goal(self, goal):
-        self.note("go_to", goal.get_goal().pose.pose.position.x)
-        self.deciding.wait(PATIENCE)
-        if not self.accepts:
-            goal.set_rejected()
-            return
-        goal.set_accepted()
-        self.goal = goal
-
-    def on_cancel(self, goal):
-        self.note("cancel", True)
-        goal.set_canceled()
-
-    def say(self, distance):
-        feedback = self.feedback_type()
-        feedback.distance_remaining = distance
-        self.goal.publish_feedback(feedback)
-
-    def end(self, how):
-        {"SUCCEEDED": self.goal.set_succeeded, "ABORTED": self.goal.set_aborted}[how]()
-
-    def lose_result(self):
-        """The goal at hand succeeds, and its result reaches nobody."""
-        publisher = self.action.result_pub
-        self.action.result_pub = SimpleNamespace(publish=lambda _: None, get_num_connections=lambda: 1)
-        self.end("SUCCEEDED")
-        self.action.result_pub = publisher
-
-
-class Ros2Robot(Robot):
-    def __init__(self):
-        super().__init__()
-        import rclpy
-        from nav2_msgs.action import NavigateToPose
-        from rclpy.action import ActionServer, CancelResponse, GoalResponse
-        from rclpy.callback_groups import ReentrantCallbackGroup
-        from rclpy.executors import MultiThreadedExecutor
-        from std_srvs.srv import SetBool
-
-        self.type, self.accept, self.reject = NavigateToPose, GoalResponse.ACCEPT, GoalResponse.REJECT
-        self.cancel, self.refuse = CancelResponse.ACCEPT, CancelResponse.REJECT
-        self.server = ActionServer
-        self.node = rclpy.create_node("robot")
-        self.group = ReentrantCallbackGroup()
-        self.node.create_service(SetBool, "/lamp/light", self.on_call, callback_group=self.group)
-        self.goal = None
-        self.serve()
-        self.executor = MultiThreadedExecutor(8)
-        self.executor.add_node(self.node)
-        threading.Thread(target=self.executor.spin, daemon=True).start()
-
-    def serve(self):
-        self.action = self.server(
+        self.action = ActionServer(
             self.node,
-            self.type,
+            NavigateToPose,
             "/go_to",
             self.execute,
             callback_group=self.group,
@@ -149,12 +77,12 @@ class Ros2Robot(Robot):
     def on_goal(self, goal):
         self.note("go_to", goal.pose.pose.position.x)
         self.deciding.wait(PATIENCE)
-        return self.accept if self.accepts else self.reject
+        return GoalResponse.ACCEPT if self.accepts else GoalResponse.REJECT
 
     def on_cancel(self, goal):  # noqa: ARG002
         self.note("cancel", True)
         self.deciding.wait(PATIENCE)
-        return self.refuse if self.deaf else self.cancel
+        return CancelResponse.REJECT if self.deaf else CancelResponse.ACCEPT
 
     def execute(self, goal):
         self.ending, self.goal = None, goal
@@ -166,19 +94,19 @@ class Ros2Robot(Robot):
             goal.succeed()
         else:
             goal.abort()
-        return self.type.Result()
+        return NavigateToPose.Result()
 
     def say(self, distance):
-        self.goal.publish_feedback(self.type.Feedback(distance_remaining=distance))
+        self.goal.publish_feedback(NavigateToPose.Feedback(distance_remaining=distance))
 
     def end(self, how):
         self.ending = how
 
 
 class Trial:
-    def __init__(self, version, results):
-        self.ros = connect(version, "trial")
-        self.robot = Ros1Robot() if version == "1" else Ros2Robot()
+    def __init__(self, results):
+        self.ros = connect("2", "trial")
+        self.robot = Robot()
         self.results, self.steps = results, {}
         self.told, self.blocked, self.states = [], [], []
         self.labels = []
@@ -271,13 +199,11 @@ class Trial:
             self.cancels,
             self.failures,
             self.late_servers,
-            self.lost_result,
         ):
             step()
         self.wait(lambda: self.labels, "what was sent before anyone listened")
         self.steps["labels"] = self.labels
-        if isinstance(self.robot, Ros2Robot):
-            self.steps["qualities"] = self.qualities()
+        self.steps["qualities"] = self.qualities()
         Path(self.results).write_text(json.dumps(self.steps))
 
     def qualities(self):
@@ -393,7 +319,7 @@ class Trial:
         self.robot.answering.clear()
         self.ask("light")
         self.got("light", True)
-        self.wait(lambda: ["light", False] in self.told or ["light", "failed"] in self.told, "the call fails")
+        self.wait(lambda: ["light", False] in self.told, "the call fails")
         self.step("late")
         self.robot.answering.set()
         self.ask("light", False)
@@ -411,13 +337,6 @@ class Trial:
         self.ended()
         self.ros.receive(1.0)
         self.step("cancelled before there is a server")
-        if isinstance(self.robot, Ros1Robot):  # in ROS 2 only what was accepted can be cancelled
-            self.leave_with(9.0)
-            self.ask("cancel")
-            self.ros.receive(0.2)
-            self.robot.serve()
-            self.ended()
-            self.step("cancelled by the controller before there is a server")
         self.robot.deciding.clear()
         self.ask("go_to", 10.0)
         self.ros.receive(3.0)
@@ -432,32 +351,21 @@ class Trial:
         self.was_blocked("Drive.speed")
         self.resume()
         self.heard("resume", True)
-        if isinstance(self.robot, Ros1Robot):
-            self.ros.receive(2.5)  # in ROS 1 requests to cancel have no answer
         self.robot.end("SUCCEEDED")
         self.ended()
         self.step("a cancel that the robot refuses")
-        if isinstance(self.robot, Ros2Robot):
-            self.start(12.0)
-            self.robot.deciding.clear()
-            self.stop()
-            self.happened("action_go_to.c_cancel")
-            self.ask("cancel")
-            self.heard("cancel", "REJECTED")
-            self.resume()
-            self.heard("resume", True)
-            self.robot.deciding.set()
-            self.robot.end("SUCCEEDED")
-            self.ended()
-            self.step("cancels that the robot does not answer")
-
-    def lost_result(self):
-        if isinstance(self.robot, Ros1Robot):
-            self.robot.deaf = False
-            self.start(12.0)
-            self.robot.lose_result()
-            self.ended()
-            self.step("a result that is lost")
+        self.start(12.0)
+        self.robot.deciding.clear()
+        self.stop()
+        self.happened("action_go_to.c_cancel")
+        self.ask("cancel")
+        self.heard("cancel", "REJECTED")
+        self.resume()
+        self.heard("resume", True)
+        self.robot.deciding.set()
+        self.robot.end("SUCCEEDED")
+        self.ended()
+        self.step("cancels that the robot does not answer")
 
     def leave_with(self, place):
         """The robot's action server goes, and then the controller sends a goal."""

@@ -15,7 +15,7 @@ from xmlrpc.client import ServerProxy
 
 import pytest
 
-from tests.ros.installations import Ros, find_ros1, find_ros2, free_port
+from tests.ros.installations import Found, Ros, find_ros1, find_ros2, free_port
 from tests.ros.processes import Processes
 from tests.sharing import made_once, own_domain
 
@@ -24,8 +24,10 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent
 EXAMPLES = HERE.parents[1] / "examples"
-#: A robot behind a supervisory layer, and the package of its controller.
-USHER, DRIVER = HERE.parent / "m2t" / "layer", HERE / "usher_driver"
+#: A line follower behind a supervisory layer.
+SUPERVISED = EXAMPLES / "supervised_line_follower"
+#: A robot behind a supervisory layer, and its controller.
+USHER, DRIVER = HERE.parent / "m2t" / "layer", HERE / "usher_driver.py"
 #: Two generated controllers in one process.
 TWO_IN_ONE = HERE / "faults" / "two_in_one"
 #: A base behind a layer that sends a stop in the place of blocked ones.
@@ -56,7 +58,7 @@ class Package:
 
 
 def _packages(target: str) -> list[Package]:
-    """The controllers of the examples and of the models of the tests, and layers, for one ROS."""
+    """The controllers of the examples and of the models of the tests, for one ROS."""
     examples = (
         "line_follower",
         "maze_solver",
@@ -69,28 +71,21 @@ def _packages(target: str) -> list[Package]:
         "supervised_line_follower",
         "warehouse_robot",
     )
-    supervised = EXAMPLES / "supervised_line_follower"
     return [
         *(
             Package(f"{name}_controller", EXAMPLES / name / f"{name}.rscd", target, with_tests=name == "line_follower")
             for name in examples
         ),
-        Package("supervised_line_follower_layer", supervised / "supervised_line_follower.rscd", f"{target}-layer"),
-        Package("line_stepper_controller", supervised / "controller" / "line_stepper.rscd", target),
         Package("courier_controller", CPP / "courier.rscd", target, typed=True),
         Package(
             "porter_controller", CPP / "porter.rscd", target, CPP / "porter-config.json", with_tests=True, typed=True
         ),
         Package("scout_controller", HERE / "faults" / "scout.rscd", target),
         Package("carrier_controller", HERE / "ends" / "carrier.rscd", target),
-        Package("carrier_layer", HERE / "ends" / "carrier.rscd", f"{target}-layer"),
         Package("cruise_controller", HERE.parent / "runtime" / "cruise.rscd", target),
         Package("patience_controller", HERE / "times" / "patience.rscd", target),
         Package("keeper_controller", HERE / "kept" / "keeper.rscd", target),
-        Package("usher_layer", USHER / "usher.rscd", f"{target}-layer", USHER / "controller-config.json"),
-        Package("hoist_layer", BLOCKED / "hoist.rscd", f"{target}-layer", BLOCKED / "controller-config.json"),
         Package("latch_controller", LATCHED / "latch.rscd", target, LATCHED / "controller-config.json"),
-        Package("guard_layer", HERE.parent / "runtime" / "guard.rscd", f"{target}-layer"),
     ]
 
 
@@ -115,6 +110,12 @@ ROS1_PACKAGES = [
 ]
 ROS2_PACKAGES = [
     *_packages("ros2"),
+    Package("supervised_line_follower_layer", SUPERVISED / "supervised_line_follower.rscd", "ros2-layer"),
+    Package("line_stepper_controller", SUPERVISED / "controller" / "line_stepper.rscd", "ros2"),
+    Package("carrier_layer", HERE / "ends" / "carrier.rscd", "ros2-layer"),
+    Package("usher_layer", USHER / "usher.rscd", "ros2-layer", USHER / "controller-config.json"),
+    Package("hoist_layer", BLOCKED / "hoist.rscd", "ros2-layer", BLOCKED / "controller-config.json"),
+    Package("guard_layer", HERE.parent / "runtime" / "guard.rscd", "ros2-layer"),
     Package("careless_controller", HERE / "ends" / "careless.rscd", "ros2"),
     Package("managed_carrier", HERE / "ends" / "carrier.rscd", "ros2", HERE / "ends" / "managed-config.json"),
     Package("managed_porter", CPP / "porter.rscd", "ros2", CPP / "managed-porter-config.json", with_tests=True),
@@ -171,9 +172,9 @@ class Workspace:
 @pytest.fixture(scope="session")
 def ros1_build(shared_folder: Path) -> Iterator[Future[Workspace]]:
     """`ros1_workspace`, built while the tests before its own run: they leave a core idle, and it takes minutes."""
-    others = [*sorted((HERE / "interfaces" / "ros1").iterdir()), DRIVER, TWO_IN_ONE]
+    others = [*sorted((HERE / "interfaces" / "ros1").iterdir()), TWO_IN_ONE]
     with ThreadPoolExecutor(1) as executor:
-        yield executor.submit(_workspace, shared_folder, found_or_skipped(1), ROS1_PACKAGES, others)
+        yield executor.submit(_workspace, shared_folder, found_or_skipped("ros1", find_ros1()), ROS1_PACKAGES, others)
 
 
 @pytest.fixture(scope="session")
@@ -190,7 +191,7 @@ def ros1_workspace(request: pytest.FixtureRequest) -> Workspace:
 def ros2_workspace(shared_folder: Path) -> Workspace:
     """The packages of `ROS2_PACKAGES` and `interfaces/ros2`; `ROBOSC_ROS2_WORKSPACE` likewise."""
     others = [*sorted((HERE / "interfaces" / "ros2").iterdir()), LATE, QUEUED]
-    return _workspace(shared_folder, found_or_skipped(2), ROS2_PACKAGES, others)
+    return _workspace(shared_folder, found_or_skipped("ros2", find_ros2()), ROS2_PACKAGES, others)
 
 
 def _workspace(shared: Path, ros: Ros, packages: Sequence[Package], others: Sequence[Path]) -> Workspace:
@@ -200,12 +201,11 @@ def _workspace(shared: Path, ros: Ros, packages: Sequence[Package], others: Sequ
     return Workspace(ros, folder, made_once(shared, name, lambda: build(ros, folder, packages, others)))
 
 
-def found_or_skipped(version: int) -> Ros:
+def found_or_skipped(name: str, found: Found) -> Ros:
     """The installation; without one the test is skipped, or fails where `ROBOSC_REQUIRE` asks for it."""
-    found = find_ros1() if version == 1 else find_ros2()
     if found.ros is None:
-        reason = f"ros{version}: {', '.join(found.missing)}"
-        if f"ros{version}" in os.environ.get("ROBOSC_REQUIRE", "").split(","):
+        reason = f"{name}: {', '.join(found.missing)}"
+        if name in os.environ.get("ROBOSC_REQUIRE", "").split(","):
             pytest.fail(reason)
         pytest.skip(reason)
     return found.ros

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import signal
-import sys
 import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from robosc.semantics.naming import below_layer
 from tests.ros.faults.partners import LEASE, Peer
+from tests.ros.reactions import one_process
 from tests.ros.running import Runner
 from tests.ros.workspaces import Workspace, middleware
 
@@ -26,10 +26,7 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parent
 CARRIER, CARELESS = HERE / "carrier.rscd", HERE / "careless.rscd"
 TOPICS, SERVICE, ACTION = ("/pressed", "/wanted"), "/raise", "/navigate"
-PARTS = {
-    1: ("goal", "cancel", "status", "feedback", "result"),
-    2: tuple(f"_action/{part}" for part in ("send_goal", "cancel_goal", "get_result", "feedback", "status")),
-}
+PARTS = tuple(f"_action/{part}" for part in ("send_goal", "cancel_goal", "get_result", "feedback", "status"))
 DIAGNOSTICS = "/diagnostics"
 TRIGGER, CANCEL, FEEDBACK, CANCELED, RESPONSE, ERROR = (
     f"action_navigate.{event}"
@@ -99,22 +96,16 @@ class Base:
         )
         if isinstance(self.nodes, Runner):
             return [*self.nodes.command(CARRIER, *parameters, layer=self.layer, configuration=settings)]
-        if self.version == 2:
-            return self.nodes.node(self.name, *parameters)
-        executable, own = (
-            self.nodes.folder / f"devel/lib/{self.name}/{self.name}",
-            [f"_{parameter}" for parameter in parameters],
-        )
-        return [executable, f"__name:={self.name}", *own]
+        return one_process(self.nodes, self.name, *parameters)
 
     def _careless(self) -> list[str | Path]:
-        """What starts the controller behind the layer: compiled beside compiled nodes of ROS 2, else from its model."""
-        names = [*TOPICS, SERVICE, *(f"{ACTION}/{part}" for part in PARTS[self.version])]
+        """What starts the controller behind the layer: compiled or from its model, as the layer."""
+        names = [*TOPICS, SERVICE, *(f"{ACTION}/{part}" for part in PARTS)]
         remappings = [f"{name}:=/{self.name}/{below_layer(name)}" for name in names]
-        if isinstance(self.nodes, Workspace) and self.version == 2:
+        if isinstance(self.nodes, Workspace):
             return [*self.nodes.node("careless_controller"), *(word for name in remappings for word in ("-r", name))]
-        runner = self.nodes if isinstance(self.nodes, Runner) else Runner(self.nodes.ros, sys.executable, HERE)
-        return [*runner.command(CARELESS, configuration=HERE / "controller-config.json", remappings=remappings)]
+        settings = HERE / "controller-config.json"
+        return [*self.nodes.command(CARELESS, configuration=settings, remappings=remappings)]
 
     @property
     def log(self) -> Path:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from tests.ros.conftest import nodes_of
 from tests.ros.ends.base import CANCELED, ERROR, LATE, RESPONSE, TRIGGER, WAIT_MS, Base, Drive, under_way
 from tests.ros.processes import PATIENCE
 
@@ -22,10 +23,17 @@ REFUSED = "the server refuses to cancel the goal"
 UNANSWERED = f"the server does not answer the request to cancel the goal within {WAIT_MS} ms"
 #: Seconds longer than the node waits for an answer.
 LONG = WAIT_MS / 1000 + 0.5
-KINDS = ["ros1", pytest.param("run-ros1", marks=pytest.mark.matrix), "run-ros2", "ros2"]
+#: The node: compiled, or run from its model; over which ROS; whether it is a layer.
+NODES = [
+    pytest.param(kind, layer, id=f"{kind}-{'layer' if layer else 'controller'}")
+    for kind in ("ros1", "run-ros2", "ros2")
+    for layer in (False, True)
+    if not (kind == "ros1" and layer)
+]
+pytestmark = pytest.mark.parametrize(("kind", "base"), NODES, indirect=["base"])
 
 
-@pytest.fixture(params=[False, True], ids=["controller", "layer"])
+@pytest.fixture
 def base(
     kind: str,
     request: pytest.FixtureRequest,
@@ -33,7 +41,7 @@ def base(
     tmp_path_factory: pytest.TempPathFactory,
 ) -> Iterator[Base]:
     """A base at rest; what a test that fails has left behind is nothing for the next."""
-    nodes = request.getfixturevalue(kind.replace("-", "_") if kind.startswith("run") else f"{kind}_workspace")
+    nodes = nodes_of(request, kind)
     layer = request.param
     folder = tmp_path_factory.mktemp("ends") / "run"
     made = kept(f"{kind} {layer}", lambda: under_way(nodes, folder, layer=layer))
@@ -47,12 +55,6 @@ def base(
         made.serve()
     if made.node.poll() is None:
         made.rest()
-
-
-@pytest.fixture(params=KINDS)
-def kind(request: pytest.FixtureRequest) -> str:
-    """The node: compiled, or run from its model; over which ROS."""
-    return request.param
 
 
 @pytest.mark.parametrize(("how", "event"), [("cancelled", CANCELED), ("succeeded", RESPONSE)])

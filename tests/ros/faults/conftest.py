@@ -1,4 +1,4 @@
-"""Nodes of `scout.rscd`, compiled or run from the model, over ROS 1 or 2; the world and the server that they meet."""
+"""Nodes of `scout.rscd`, compiled for ROS 1 or 2 or run from the model; the world and the server that they meet."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.ros import running, workspaces
+from tests.ros.conftest import NODES, nodes_of
 from tests.ros.faults.partners import Peer, Scout
 
 if TYPE_CHECKING:
@@ -53,15 +54,10 @@ class Running:
 Controller = Compiled | Running
 
 
-@pytest.fixture(scope="session", params=["ros1", "run-ros1", "run-ros2", "ros2"])
+@pytest.fixture(scope="session", params=NODES)
 def controller(request: pytest.FixtureRequest) -> Controller:
-    match request.param:
-        case "ros1":
-            return Compiled(request.getfixturevalue("ros1_workspace"))
-        case "ros2":
-            return Compiled(request.getfixturevalue("ros2_workspace"))
-        case _:
-            return Running(request.getfixturevalue(request.param.replace("-", "_")))
+    nodes = nodes_of(request, request.param)
+    return Running(nodes) if isinstance(nodes, running.Runner) else Compiled(nodes)
 
 
 @contextmanager
