@@ -202,8 +202,7 @@ def test_the_c_supervisor_has_no_parameter_but_durations(tmp_path: Path) -> None
 # `send: change` has no part in the layer
 
 
-@pytest.mark.parametrize("target", ["ros1-layer", "ros2-layer"])
-def test_send_change_has_no_part_in_the_layer(tmp_path: Path, target: str) -> None:
+def test_send_change_has_no_part_in_the_layer(tmp_path: Path) -> None:
     """With it and without it, a layer is the same; a controller is not."""
     path = written(
         tmp_path,
@@ -215,7 +214,7 @@ def test_send_change_has_no_part_in_the_layer(tmp_path: Path, target: str) -> No
         robot = robosc.load(path)
         models = Models(robosc.to_sct(robot), robosc.to_rosgraph(robot), robot)
         robosc.synthesize(models.sct)
-        made.append({name: robosc.generate(name, models) for name in (target, target.removesuffix("-layer"))})
+        made.append({name: robosc.generate(name, models) for name in ("ros2-layer", "ros2")})
     layers, controllers = ([files[name] for files in made] for name in made[0])
     assert layers[0] == layers[1]
     assert controllers[0] != controllers[1]

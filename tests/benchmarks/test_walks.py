@@ -175,7 +175,7 @@ def test_generating(family, tmp_path):
 @pytest.mark.parametrize(
     ("family", "ros"),
     [
-        ("components", ("ros1", "ros2", "ros1-layer", "ros2-layer")),
+        ("components", ("ros1", "ros2", "ros2-layer")),
         ("reactions", ("ros2",)),
         ("states", ("ros1", "ros2-layer")),
         ("topics", ("ros1", "ros2")),

@@ -92,13 +92,6 @@ def test_a_wrong_call(run: Run, door: Path, call: tuple[str, ...]) -> None:  # n
     assert run(*call).exit_code == 2
 
 
-@pytest.mark.parametrize("call", [("run", "door.rscd"), ("view", "door.rscd"), ("test", "door.rscd", "door.rscd")])
-def test_a_node_is_of_one_ros(run: Run, door: Path, call: tuple[str, ...]) -> None:  # noqa: ARG001
-    done = run(*call, "--ros1", "--ros2")
-    assert done.exit_code == 2
-    assert "--ros1 and --ros2 exclude each other" in done.output
-
-
 @pytest.mark.parametrize("command", [("check",), ("synthesize",), ("transform", "--to", "xmi")])
 def test_a_file_that_is_not_there(run: Run, command: tuple[str, ...]) -> None:
     answer = run(*command, "missing.rscd")

@@ -35,7 +35,6 @@ def test_all_targets_have_their_place(run: Run, door: Path) -> None:
         "Door.rosgraph.xmi",
         "Door.sct.xmi",
         "ros1/door_controller",
-        "ros1/door_layer",
         "ros2/door_controller",
         "ros2/door_layer",
         "supervisor/CMakeLists.txt",
@@ -111,7 +110,7 @@ def test_nothing_is_written_where_something_is_wrong(
 def test_unknown_targets(run: Run, door: Path, targets: str) -> None:
     answer = run("transform", door, "--to", targets)
     assert answer.exit_code == 2
-    assert "is none of cif, supervisor, ros1, ros2, ros1-layer, ros2-layer, xmi" in answer.stderr
+    assert "is none of cif, supervisor, ros1, ros2, ros2-layer, xmi" in answer.stderr
 
 
 def test_targets_one_by_one(run: Run, door: Path) -> None:
@@ -131,9 +130,9 @@ def test_targets_together_and_each_alone(run: Run, door: Path) -> None:
 
 def test_a_name_for_a_controller_and_its_layer(run: Run, door: Path) -> None:
     Path("named.json").write_text('{"package": {"name": "gate"}}')
-    answer = run("transform", door, "--to", "ros1,ros1-layer", "--config", "named.json")
+    answer = run("transform", door, "--to", "ros2,ros2-layer", "--config", "named.json")
     assert answer.exit_code == 2
-    assert 'ros1 and ros1-layer would both be ros1/gate: "package.name" names both' in answer.stderr
+    assert 'ros2 and ros2-layer would both be ros2/gate: "package.name" names both' in answer.stderr
     assert run("transform", door, "--to", "ros1,ros2-layer", "--config", "named.json").exit_code == 0
 
 

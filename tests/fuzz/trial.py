@@ -141,7 +141,7 @@ _ASKED = (
     "simulate MODEL --random 20",
     "transform MODEL --to cif,supervisor,xmi -o OUT",
     "transform MODEL --to ros1,ros2 --with-tests -o OUT",
-    "transform MODEL --to ros1-layer,ros2-layer -o OUT",
+    "transform MODEL --to ros2-layer -o OUT",
 )
 
 

@@ -77,9 +77,8 @@ def test_generated_code_says_it_in_comments(porter: rosgraph.RosGraph, target: s
     assert text.count(flowing(f"synthesis prevents this: {WHY}")) == 1
 
 
-@pytest.mark.parametrize("target", ["ros1-layer", "ros2-layer"])
-def test_a_generated_layer_says_it_when_it_blocks(porter: rosgraph.RosGraph, target: str) -> None:
-    text = robosc.generate(target, Models(porter.model, porter))["src/porter_layer_node.cpp"]
+def test_a_generated_layer_says_it_when_it_blocks(porter: rosgraph.RosGraph) -> None:
+    text = robosc.generate("ros2-layer", Models(porter.model, porter))["src/porter_layer_node.cpp"]
     [literal] = [line.strip() for line in text.splitlines() if "add_consequence" in line]
     assert literal == f'reasons.add_consequence("{WHY}");'
     entering = text.partition("bool pass_enter()")[2].partition("\n  }\n\n")[0]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
@@ -23,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 HERE = Path(__file__).parent
-LAYERS = ("ros1-layer", "ros2-layer")
+TARGET = "ros2-layer"
 
 
 @pytest.fixture(scope="module")
@@ -43,105 +41,61 @@ def models_of(path: Path) -> robosc.Models:
     return robosc.Models(model, robosc.to_rosgraph(robot), robot)
 
 
-@pytest.mark.parametrize("target", LAYERS)
 def test_every_file(
-    target: str,
-    usher: robosc.Models,
-    settings: Configuration,
-    golden_package: Callable[[Path, dict[str, str]], None],
+    usher: robosc.Models, settings: Configuration, golden_package: Callable[[Path, dict[str, str]], None]
 ) -> None:
-    files = robosc.generate(target, usher, settings)
+    files = robosc.generate(TARGET, usher, settings)
     for path, text in files.items():
         assert text.endswith("\n"), path
         assert not any(line != line.rstrip() for line in text.split("\n")), path
-    golden_package(HERE / target, files)
-    assert robosc.generate(target, usher, settings) == files
-
-
-def behind(file: str) -> config.Supervisor:
-    launch = config.Launch(package_name="drive", file=file)
-    return config.Supervisor(controller=config.ExistingController(launch=launch))
+    golden_package(HERE / TARGET, files)
+    assert robosc.generate(TARGET, usher, settings) == files
 
 
 @pytest.mark.parametrize("logs", [False, True])
 def test_parameters_of_the_model_have_a_file(logs: bool) -> None:
     """Declared in parameter YAML and launch file; a layer whose model has none needs no file."""
     models = models_of(HERE.parents[1] / "runtime" / "cruise.rscd")
-    ros1, ros2 = (
-        robosc.generate(target, models, Configuration(write_events_to_log=logs, supervisor=behind(launched_behind)))
-        for target, launched_behind in zip(LAYERS, ("drive.launch", "drive.launch.py"), strict=True)
-    )
+    behind = config.ExistingController(launch=config.Launch(package_name="drive", file="drive.launch.py"))
+    settings = Configuration(write_events_to_log=logs, supervisor=config.Supervisor(controller=behind))
+    files = robosc.generate(TARGET, models, settings)
     kept = {"period_ms": 100, "diagnostics_ms": 1000}
     own = {"speed": 0.2, "reach": 0.5, "least": 3, "greeting": "hello", "doubled": False}
     in_components = {"Base": {"factor": -1.0}, "Lamp": {"pause": 60.0}}
     read = YAML(typ="safe").load
-    assert read(ros1["config/cruise_layer.yaml"]) == kept | own | in_components
-    assert read(ros2["config/cruise_layer.yaml"]) == {"/**": {"ros__parameters": kept | own | in_components}}
-    assert '<rosparam command="load" file="$(arg parameters)"/>' in ros1["launch/cruise_layer.launch"]
-    node, *_ = launched(ros2["launch/cruise_layer.launch.py"]).of("Node")
+    assert read(files["config/cruise_layer.yaml"]) == {"/**": {"ros__parameters": kept | own | in_components}}
+    node, *_ = launched(files["launch/cruise_layer.launch.py"]).of("Node")
     file, *others = node.named["parameters"]
     assert file.positional == ("params_file",)
     assert len(others) == (not logs)
     # The controller that is launched behind it has a file of its own.
-    assert '"params_file"' in ros2["launch/cruise_layer.launch.py"].partition("hidden = [")[2].partition("]")[0]
-    for files in (ros1, ros2):
-        assert "install(DIRECTORY config launch" in files["CMakeLists.txt"]
+    assert '"params_file"' in files["launch/cruise_layer.launch.py"].partition("hidden = [")[2].partition("]")[0]
+    assert "install(DIRECTORY config launch" in files["CMakeLists.txt"]
 
 
 def test_packages_list_what_is_used(usher: robosc.Models, settings: Configuration) -> None:
     messages = {"diagnostic_msgs", "nav2_msgs", "sensor_msgs", "std_msgs", "std_srvs"}
-    ros1 = parse_package_string(robosc.generate("ros1-layer", usher, settings)["package.xml"])
-    ros1.validate()
-    assert ros1.name == "usher_layer"
-    needed = {"rosconsole", "roscpp", "actionlib_msgs", *messages}
-    assert {build_depend.name for build_depend in ros1.build_depends} == needed
-    assert {exec_depend.name for exec_depend in ros1.exec_depends} == {*needed, "usher_driver"}
-    assert "Threads::Threads" in robosc.generate("ros1-layer", usher, settings)["CMakeLists.txt"]
-    text = robosc.generate("ros2-layer", usher, settings)["package.xml"]
-    ros2 = parse_package_string(text)
-    ros2.validate()
+    text = robosc.generate(TARGET, usher, settings)["package.xml"]
+    package = parse_package_string(text)
+    package.validate()
+    assert package.name == "usher_layer"
     used = {"action_msgs", "rclcpp", "rclcpp_components", *messages}
-    assert {build_depend.name for build_depend in ros2.build_depends} == used
-    assert {exec_depend.name for exec_depend in ros2.exec_depends} == {*used, "launch", "launch_ros", "usher_driver"}
+    assert {build_depend.name for build_depend in package.build_depends} == used
+    assert {exec_depend.name for exec_depend in package.exec_depends} == {*used, "launch", "launch_ros", "usher_driver"}
     described = ElementTree.fromstring(text).findtext("description")  # noqa: S314  # our own text
     assert described == "Lets <data> & more pass: ]]> -->"
 
 
 def test_a_layer_and_its_controller_share_a_workspace(usher: robosc.Models) -> None:
-    folders = {name: TARGETS[name].folder(usher, Configuration()) for name in ("ros1", "ros2", *LAYERS)}
-    assert folders == {
-        "ros1": "ros1/usher_controller",
-        "ros2": "ros2/usher_controller",
-        "ros1-layer": "ros1/usher_layer",
-        "ros2-layer": "ros2/usher_layer",
-    }
-    assert (
-        TARGETS["ros1-layer"].folder(usher, Configuration.model_validate({"package": {"name": "gate"}})) == "ros1/gate"
-    )
+    folders = {name: TARGETS[name].folder(usher, Configuration()) for name in ("ros2", TARGET)}
+    assert folders == {"ros2": "ros2/usher_controller", TARGET: "ros2/usher_layer"}
+    assert TARGETS[TARGET].folder(usher, Configuration.model_validate({"package": {"name": "gate"}})) == "ros2/gate"
 
 
-NAMES = {
-    "ros1-layer": [f"/go_to/{part}" for part in ("goal", "cancel", "result", "feedback", "status")],
-    "ros2-layer": [
-        f"/go_to/_action/{part}" for part in ("send_goal", "cancel_goal", "get_result", "feedback", "status")
-    ],
-}
-
-
-def test_the_launch_file_of_ros1_re_maps_everything(usher: robosc.Models, settings: Configuration) -> None:
-    text = robosc.generate("ros1-layer", usher, settings)["launch/usher_layer.launch"]
-    group = ElementTree.fromstring(text).find("group")  # noqa: S314  # our own text
-    assert group is not None
-    found = {remap.get("from"): remap.get("to") for remap in group.findall("remap")}
-    names = ["/stop", "/resume", "battery", "/scan", "/speed", "label", "/lamp/light", *NAMES["ros1-layer"]]
-    assert found == {name: f"/$(arg namespace)/$(arg name)/controller/{name.lstrip('/')}" for name in names}
-    (node,) = group.findall("node")
-    assert node.attrib == {"pkg": "usher_driver", "type": "driver.py", "name": "driver", "output": "screen"}
-
-
-def test_the_launch_file_of_ros2_re_maps_everything(usher: robosc.Models, settings: Configuration) -> None:
-    text = robosc.generate("ros2-layer", usher, settings)["launch/usher_layer.launch.py"]
-    names = ["/stop", "/resume", "battery", "/scan", "/speed", "label", "/lamp/light", *NAMES["ros2-layer"]]
+def test_the_launch_file_re_maps_everything(usher: robosc.Models, settings: Configuration) -> None:
+    text = robosc.generate(TARGET, usher, settings)["launch/usher_layer.launch.py"]
+    action = [f"/go_to/_action/{part}" for part in ("send_goal", "cancel_goal", "get_result", "feedback", "status")]
+    names = ["/stop", "/resume", "battery", "/scan", "/speed", "label", "/lamp/light", *action]
     layer, driver = launched(text).of("Node")
     assert (layer.named["package"], layer.named["executable"]) == ("usher_layer", "usher_layer")
     assert (driver.named["package"], driver.named["executable"]) == ("usher_driver", "driver.py")
@@ -154,8 +108,8 @@ def test_the_launch_file_of_ros2_re_maps_everything(usher: robosc.Models, settin
         assert pushed.named["remappings"][0] == ("/stop", f"{layer}/controller/stop")
 
 
-def test_the_clock_of_the_launch_file_of_ros2(usher: robosc.Models, settings: Configuration) -> None:
-    text = robosc.generate("ros2-layer", usher, settings)["launch/usher_layer.launch.py"]
+def test_the_clock_of_the_launch_file(usher: robosc.Models, settings: Configuration) -> None:
+    text = robosc.generate(TARGET, usher, settings)["launch/usher_layer.launch.py"]
     layer, driver = launched(text).of("Node")
     assert [*layer.named["parameters"][0]] == ["event_log"]
     assert driver.named["parameters"] == [], "what is set elsewhere holds"
@@ -167,11 +121,7 @@ def test_the_clock_of_the_launch_file_of_ros2(usher: robosc.Models, settings: Co
 def test_a_controller_with_a_launch_file_of_its_own(usher: robosc.Models) -> None:
     controller = {"launch": {"packageName": "my_robot", "file": "drive.launch"}}
     settings = Configuration.model_validate({"supervisor": {"controller": controller}})
-    text = robosc.generate("ros1-layer", usher, settings)["launch/usher_layer.launch"]
-    included = ElementTree.fromstring(text).find("group/include")  # noqa: S314  # our own text
-    assert included is not None
-    assert included.get("file") == "$(find my_robot)/launch/drive.launch"
-    there = launched(robosc.generate("ros2-layer", usher, settings)["launch/usher_layer.launch.py"])
+    there = launched(robosc.generate(TARGET, usher, settings)["launch/usher_layer.launch.py"])
     remaps = there.of("SetRemap")
     assert len(remaps) == 12
     assert remaps[0].positional == ("/stop", "/usher_layer/controller/stop")
@@ -191,35 +141,26 @@ def test_a_controller_with_a_launch_file_of_its_own(usher: robosc.Models) -> Non
 
 
 def test_a_layer_alone(usher: robosc.Models) -> None:
-    assert len(launched(robosc.generate("ros2-layer", usher)["launch/usher_layer.launch.py"]).of("Node")) == 1
-    text = robosc.generate("ros1-layer", usher)["launch/usher_layer.launch"]
-    assert ElementTree.fromstring(text).find("group/node") is None  # noqa: S314  # our own text
+    assert len(launched(robosc.generate(TARGET, usher)["launch/usher_layer.launch.py"]).of("Node")) == 1
 
 
 def test_leaves_out_what_is_not_asked_for(usher: robosc.Models, tmp_path: Path) -> None:
     ear = tmp_path / "ear.rscd"
     ear.write_text("robot Ear { component One { outgoing message heard with type: none } }", encoding="utf-8")
-    for target in LAYERS:
-        silent = robosc.generate(target, usher, Configuration(publish_state_information=False, diagnostics_ms=0))
-        assert "diagnostic_msgs" not in "".join(silent.values())
-        assert "timer_" not in silent["src/usher_layer_node.cpp"]
-        assert "include/usher_layer/definition.hpp" not in silent
-        assert "state_report_" not in silent["src/usher_layer_node.cpp"]
-        files = robosc.generate(target, models_of(ear), Configuration(diagnostics_ms=0))
-        assert "Threads" not in files["CMakeLists.txt"]
-        headers = {path for path in files if path.startswith("include")}
-        ros = f"robosc_{target.removesuffix('-layer')}"
-        names = {"robosc/data", "robosc/event_log", "robosc/json", "robosc/transitions", "robosc/version"}
-        names |= {"robosc/queue_depth", f"{ros}/message_relay", f"{ros}/parameters", f"{ros}/report"}
-        own = {
-            "robosc/callback_guard",
-            "robosc/hangup",
-            f"{ros}/arrivals",
-            f"{ros}/durabilities",
-            f"{ros}/guarded_node",
-        }
-        names |= own if target == "ros2-layer" else {f"{ros}/run_layer", f"{ros}/interruption"}
-        assert headers == {f"include/{name}.hpp" for name in (*names, "ear_layer/definition")}
+    silent = robosc.generate(TARGET, usher, Configuration(publish_state_information=False, diagnostics_ms=0))
+    assert "diagnostic_msgs" not in "".join(silent.values())
+    assert "timer_" not in silent["src/usher_layer_node.cpp"]
+    assert "include/usher_layer/definition.hpp" not in silent
+    assert "state_report_" not in silent["src/usher_layer_node.cpp"]
+    files = robosc.generate(TARGET, models_of(ear), Configuration(diagnostics_ms=0))
+    headers = {path for path in files if path.startswith("include")}
+    robosc_headers = ("callback_guard", "data", "event_log", "hangup", "json", "queue_depth", "transitions", "version")
+    over_ros = ("arrivals", "durabilities", "guarded_node", "message_relay", "parameters", "report")
+    assert headers == {
+        "include/ear_layer/definition.hpp",
+        *(f"include/robosc/{name}.hpp" for name in robosc_headers),
+        *(f"include/robosc_ros2/{name}.hpp" for name in over_ros),
+    }
 
 
 def test_quality_of_service(usher: robosc.Models) -> None:
@@ -231,8 +172,8 @@ def test_quality_of_service(usher: robosc.Models) -> None:
         "go_to": {"reliability": "best_effort", "depth": 5},
     }
     settings = Configuration.model_validate({"qos": chosen})
-    assert TARGETS["ros2-layer"].findings(usher, settings) == []
-    node = " ".join(robosc.generate("ros2-layer", usher, settings)["src/usher_layer_node.cpp"].split())
+    assert TARGETS[TARGET].findings(usher, settings) == []
+    node = " ".join(robosc.generate(TARGET, usher, settings)["src/usher_layer_node.cpp"].split())
     # Received as the configuration says, handed on reliably.
     kept = "rclcpp::QoS(10){}.transient_local()".format
     speed, battery = ".keep_last(3).best_effort()", ".keep_last(7)"
@@ -244,16 +185,6 @@ def test_quality_of_service(usher: robosc.Models) -> None:
         assert given.replace(" .", ".") in node.replace(" .", ".")
     assert '"/lamp/light", rclcpp::ServicesQoS().keep_last(4).durability_volatile(), service_timeout' in node
     assert '"/go_to", rclcpp::QoS(10).keep_last(5).best_effort(), action_timeout' in node
-
-
-def test_the_platform_s_linter_is_content(usher: robosc.Models, settings: Configuration, tmp_path: Path) -> None:
-    package = tmp_path / "usher_layer"
-    for path, text in robosc.generate("ros1-layer", usher, settings).items():
-        (package / path).parent.mkdir(parents=True, exist_ok=True)
-        (package / path).write_text(text, encoding="utf-8")
-    command = [sys.executable, "-m", "catkin_lint", "-W2", "--strict", package]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stdout) == (0, ""), done.stderr
 
 
 SHARED = """
@@ -270,18 +201,17 @@ robot Cart {
 """
 
 
-@pytest.mark.parametrize("target", LAYERS)
-def test_two_communications_on_one_topic(target: str, tmp_path: Path) -> None:
+def test_two_communications_on_one_topic(tmp_path: Path) -> None:
     cart = tmp_path / "cart.rscd"
     cart.write_text(SHARED, encoding="utf-8")
     models = models_of(cart)
-    found = TARGETS[target].findings(models, Configuration())
+    found = TARGETS[TARGET].findings(models, Configuration())
     assert [(finding.rule, finding.severity.value, finding.span.line) for finding in found] == [
         ("layer-topic", "error", 5),
         ("layer-topic", "error", 9),
     ]
     assert "go and halt are both on" in found[1].message
-    assert TARGETS[target.removesuffix("-layer")].findings(models, Configuration(on_shutdown=[])) == []
+    assert TARGETS["ros2"].findings(models, Configuration(on_shutdown=[])) == []
 
 
 @pytest.mark.parametrize(
@@ -302,30 +232,21 @@ def test_a_controller_that_no_launch_file_could_start(
     controller: dict[str, object], message: str, usher: robosc.Models
 ) -> None:
     settings = Configuration.model_validate({"supervisor": {"controller": controller}})
-    for target in LAYERS:
-        (found,) = TARGETS[target].findings(usher, settings)
-        assert (found.rule, found.severity.value) == ("configuration", "error")
-        assert message in found.message
-
-
-def test_a_launch_file_of_the_wrong_ros(usher: robosc.Models) -> None:
-    controller = {"launch": {"packageName": "my_robot", "file": "drive.launch.py"}}
-    settings = Configuration.model_validate({"supervisor": {"controller": controller}})
-    assert [finding.severity.value for finding in TARGETS["ros1-layer"].findings(usher, settings)] == ["error"]
-    assert TARGETS["ros2-layer"].findings(usher, settings) == []
+    (found,) = TARGETS[TARGET].findings(usher, settings)
+    assert (found.rule, found.severity.value) == ("configuration", "error")
+    assert message in found.message
 
 
 def test_settings_that_mean_nothing_to_a_layer(usher: robosc.Models) -> None:
     settings = Configuration.model_validate({"retryMs": 5, "onShutdown": ["speed"], "watchdogMs": {"stop": 100}})
-    for target in LAYERS:
-        found = TARGETS[target].findings(usher, settings)
-        assert [finding.severity.value for finding in found] == 3 * ["warning"]
-        assert [finding.message.split()[0] for finding in found] == ['"retryMs"', '"watchdogMs"', '"onShutdown"']
+    found = TARGETS[TARGET].findings(usher, settings)
+    assert [finding.severity.value for finding in found] == 3 * ["warning"]
+    assert [finding.message.split()[0] for finding in found] == ['"retryMs"', '"watchdogMs"', '"onShutdown"']
 
 
 def test_says_what_synthesis_added_is_the_reason(usher: robosc.Models) -> None:
     # A message needs nothing: whatever blocks it is what synthesis added.
-    text = robosc.generate("ros2-layer", usher)["src/usher_layer_node.cpp"]
+    text = robosc.generate(TARGET, usher)["src/usher_layer_node.cpp"]
     label = text.partition("bool pass_message_label()")[2].partition("}\n\n")[0]
     assert "add_requirement" not in label
     assert "add_state" not in label
