@@ -19,7 +19,7 @@ sys.path.insert(0, str(ROOT))
 from benchmarks.performance_page import KINDS  # noqa: E402
 from tests.ros.expiries import DURATION, PACKAGE, expiries  # noqa: E402
 from tests.ros.installations import find_ros1, find_ros2  # noqa: E402
-from tests.ros.running import Runner, find_rclpy, ros1_modules, ros2_modules  # noqa: E402
+from tests.ros.running import Runner, find_rclpy, ros2_modules  # noqa: E402
 from tests.ros.workspaces import ROS1_PACKAGES, ROS2_PACKAGES, Workspace, build  # noqa: E402
 
 
@@ -50,13 +50,11 @@ def main() -> None:
 
 def _prepared(version: int, kind: str, folder: Path) -> Workspace | Runner | str:
     """What nodes of a kind are started with, or why there are none."""
-    found = find_rclpy() if (version, kind) == (2, "run") else {1: find_ros1, 2: find_ros2}[version]()
+    found = find_rclpy() if kind == "run" else {1: find_ros1, 2: find_ros2}[version]()
     if found.ros is None:
         return ", ".join(found.missing)
     if kind == "run":
-        modules = folder / f"run-ros{version}"
-        made = {1: ros1_modules, 2: ros2_modules}[version](found.ros, modules)
-        return Runner(found.ros, sys.executable if version == 1 else found.ros.python, Path(made))
+        return Runner(found.ros, Path(ros2_modules(found.ros, folder / "run-ros2")))
     packages = [package for package in {1: ROS1_PACKAGES, 2: ROS2_PACKAGES}[version] if package.name == PACKAGE]
     place = folder / f"compiled-ros{version}"
     return Workspace(found.ros, place, build(found.ros, place, packages, []))

@@ -2,9 +2,9 @@
 
     python benchmarks/matrix.py [arguments of pytest]
 
-They are marked `matrix`: nodes run from their models over ROS 1, where compiled ones do the same; the scenarios over
-the other ROS; the demands without which a second opinion objects; reports, tours and runs of more robots, and what
-MISRA C says of them; what clang-tidy, which nothing installs, says of nodes.
+They are marked `matrix`: the scenarios over the other ROS; the demands without which a second opinion objects;
+reports, tours and runs of more robots, and what MISRA C says of them; what clang-tidy, which nothing installs, says of
+nodes.
 """
 
 import subprocess

@@ -12,7 +12,7 @@ from pathlib import Path
 from statistics import fmean, pstdev
 from typing import TYPE_CHECKING
 
-from benchmarks.timed_packages import EXAMPLES, HERE, SCENARIOS, STEPPER, Scenario
+from benchmarks.timed_packages import EXAMPLES, HERE, STEPPER, Scenario, scenarios
 from tests.ros.reactions import one_process
 from tests.ros.running import Runner
 from tests.ros.workspaces import Workspace, middleware
@@ -49,7 +49,7 @@ def costs(nodes: Workspace | Runner, folder: Path, seconds: float) -> dict[str, 
     domain = random.randrange(1, 90)  # noqa: S311  # so that runs side by side don't meet
     with ExitStack() as stack:
         runs = []
-        for number, scenario in enumerate(SCENARIOS):
+        for number, scenario in enumerate(scenarios(nodes.ros.version)):
             place = folder / scenario.name
             processes = stack.enter_context(middleware(nodes, place))
             processes.environment |= {"ROBOSC_TICK_TIMES": str(place / "ticks.txt"), "ROS_HOME": str(place)}
@@ -133,9 +133,7 @@ def _node(nodes: Workspace | Runner, scenario: Scenario, remappings: list[str] |
         timed = [*command[:1], HERE / "timed_run.py", *command[3:]]
         return [*command] if scenario.layer else timed
     command = one_process(nodes, scenario.package)
-    for remapping in remappings or []:
-        command += [remapping] if nodes.ros.version == 1 else ["-r", remapping]
-    return command
+    return command + [word for remapping in remappings or [] for word in ("-r", remapping)]
 
 
 def summary(times: list[int]) -> dict[str, float]:

@@ -3,12 +3,12 @@
     python benchmarks/reaction.py [--ros 1] [--nodes compiled] [--parts stop obstacle costs watched] [--stops 1000]
                                   [--obstacles 200] [--seconds 300] [--rounds 9] [--keep FOLDER]
 
-Without options: compiled nodes and `robosc run`, ROS 1 and ROS 2, as far as they are there. Each of the four takes
+Without options: compiled nodes of ROS 1 and ROS 2, and `robosc run`, as far as they are there. Each of the three takes
 fourteen minutes, six of them for the costs, and what is compiled is built before. What was measured is kept in
 `benchmarks/performance.json`: what is left out this time stays on the page. `--keep` names a folder for what is built,
 so that the next call need not build it again.
 
-Compiled ROS 2 nodes need an rclcpp in AMENT_PREFIX_PATH, `run` of ROS 2 the environment that `./run-tests` makes.
+Compiled ROS 2 nodes need an rclcpp in AMENT_PREFIX_PATH, `run` the environment that `./run-tests` makes.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from benchmarks.timed_packages import timed_packages  # noqa: E402
 from benchmarks.watched import watched  # noqa: E402
 from tests.ros.installations import find_ros1, find_ros2  # noqa: E402
 from tests.ros.reactions import reactions  # noqa: E402
-from tests.ros.running import Runner, find_rclpy, ros1_modules, ros2_modules  # noqa: E402
+from tests.ros.running import Runner, find_rclpy, ros2_modules  # noqa: E402
 from tests.ros.workspaces import Workspace, build  # noqa: E402
 
 if TYPE_CHECKING:
@@ -54,6 +54,8 @@ def main() -> None:
                 _say(f"{kind.title} is left out: {nodes}")
                 continue
             for part in options.parts:
+                if part == "watched" and kind.ros == 1:
+                    continue  # `robosc view` shows nodes of ROS 2
                 began = time.monotonic()
                 _say(f"{kind.title}: {part} ...")
                 place = scratch / f"{kind.key}-{part}"
@@ -87,15 +89,12 @@ def _options() -> argparse.Namespace:
 
 def _prepared(version: int, kind: str, folder: Path) -> Workspace | Runner | str:
     """What nodes of a kind are started with, or why there are none."""
-    found = find_rclpy() if (version, kind) == (2, "run") else {1: find_ros1, 2: find_ros2}[version]()
+    found = find_rclpy() if kind == "run" else {1: find_ros1, 2: find_ros2}[version]()
     if found.ros is None:
         return ", ".join(found.missing)
     place = folder / f"{kind}-ros{version}"
     if kind == "run":
-        if version == 2:
-            return Runner(found.ros, found.ros.python, Path(ros2_modules(found.ros, place)))
-        place.mkdir(parents=True, exist_ok=True)
-        return Runner(found.ros, sys.executable, Path(ros1_modules(found.ros, Path(tempfile.mkdtemp(dir=place)))))
+        return Runner(found.ros, Path(ros2_modules(found.ros, place)))
     _say(f"building the nodes for ROS {version} ...")
     packages = timed_packages(version, place / "packages")
     said = build(found.ros, place, [], [*packages, *sorted((INTERFACES / f"ros{version}").iterdir())])
@@ -133,7 +132,7 @@ def _costs(nodes: Workspace | Runner, folder: Path, options: argparse.Namespace)
 
 def _watched(nodes: Workspace | Runner, folder: Path, options: argparse.Namespace) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as scratch:
-        runner = nodes if isinstance(nodes, Runner) else _prepared(nodes.ros.version, "run", Path(scratch))
+        runner = nodes if isinstance(nodes, Runner) else _prepared(2, "run", Path(scratch))
         assert isinstance(runner, Runner), runner
         return watched(nodes, runner, folder, options.rounds, 10.0)
 

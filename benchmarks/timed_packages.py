@@ -73,8 +73,14 @@ def timed_packages(version: int, folder: Path) -> list[Path]:
     """Generates the packages for a ROS into a folder; where they are. What has not changed is not written again."""
     with tempfile.TemporaryDirectory() as generated:
         return [
-            _timed(scenario, version, Path(generated), folder / scenario.package) for scenario in [*SCENARIOS, STEPPER]
+            _timed(scenario, version, Path(generated), folder / scenario.package)
+            for scenario in [*scenarios(version), STEPPER]
         ]
+
+
+def scenarios(version: int) -> list[Scenario]:
+    """The scenarios that run over a ROS: layers are nodes of ROS 2."""
+    return [scenario for scenario in SCENARIOS if version == 2 or not scenario.layer]
 
 
 def _timed(scenario: Scenario, version: int, generated: Path, folder: Path) -> Path:

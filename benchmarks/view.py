@@ -2,7 +2,7 @@
 
     python benchmarks/view.py [--components 100] [--flood SECONDS]
     python benchmarks/view.py --picture docs/pictures/view.png
-    python benchmarks/view.py --picture docs/pictures/view-robot.png --ros 1 --dark
+    python benchmarks/view.py --picture docs/pictures/view-robot.png --ros2 --dark
     python benchmarks/view.py --recording docs/pictures/view.gif
 
 It needs Debian's `chromium`, `playwright` and the built page. Times are medians of five, in milliseconds: from asking
@@ -12,8 +12,8 @@ machine does, and from a call that lets 1,000 random events happen until the las
 With `--flood` a node's reports come to the page, 1,000 events a second in 100 reports, for so long: the frames that the
 browser draws a second, the memory of its scripts after each tenth of that time, the processor time of page and server.
 
-`--picture` draws the page of the line follower: simulated, or with `--ros` beside `robosc run`, which drives the robot
-of the simulator over a real ROS until it halts for the obstacle. `--recording` plays its scenario in the simulator, and
+`--picture` draws the page of the line follower: simulated, or with `--ros2` beside `robosc run`, which drives the robot
+of the simulator over ROS 2 until it halts for the obstacle. `--recording` plays its scenario in the simulator, and
 films thirty seconds of its event log in the page, around the obstacle.
 """
 
@@ -205,24 +205,21 @@ def record(browser: Any, log: Path, film: Path) -> None:
     first.save(film, save_all=True, append_images=others, duration=1000 // _FRAMES, loop=0, optimize=True)
 
 
-def beside_a_robot(page: Any, version: int, folder: Path, picture: Path) -> None:
+def beside_a_robot(page: Any, folder: Path, picture: Path) -> None:
     """Draws the page beside a node that drives, when it has halted for the obstacle."""
     sys.path.insert(0, str(ROOT))
     from benchmarks.watched import page_served  # noqa: PLC0415  # only here a ROS is needed
-    from tests.ros.installations import find_ros1  # noqa: PLC0415
     from tests.ros.running import Runner, find_rclpy  # noqa: PLC0415
     from tests.ros.workspaces import middleware  # noqa: PLC0415
 
-    found = find_ros1() if version == 1 else find_rclpy()
+    found = find_rclpy()
     assert found.ros is not None, found.missing
-    runner = Runner(found.ros, sys.executable if version == 1 else found.ros.python, folder / "none")
+    runner = Runner(found.ros, folder / "none")
     with middleware(runner, folder, simulated=True) as processes, page_served(processes, runner, folder) as address:
         page.goto(address)
         page.wait_for_selector("body[data-drawn]")
-        processes.start(
-            "node", runner.node("line_follower_controller", *(["use_sim_time:=true"] if version == 2 else []))
-        )
-        options = ["--scenario", "line_follower", "--ros", str(version), "--speed", "5"]
+        processes.start("node", runner.node("line_follower_controller", "use_sim_time:=true"))
+        options = ["--scenario", "line_follower", "--ros", "2", "--speed", "5"]
         processes.start("world", [found.ros.python, ROOT / "examples" / "simulator", *options])
         command = '#commands > li[data-event="message_move.c_trigger"]'
         page.wait_for_selector(f"{command}.allowed", timeout=120_000)
@@ -235,7 +232,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--components", type=int, default=100)
     parser.add_argument("--picture", type=Path)
-    parser.add_argument("--ros", type=int, choices=[1, 2])
+    parser.add_argument("--ros2", action="store_true")
     parser.add_argument("--dark", action="store_true")
     parser.add_argument("--recording", type=Path)
     parser.add_argument("--flood", type=float, metavar="SECONDS")
@@ -245,7 +242,7 @@ def main() -> None:
         if options.picture is not None:
             size = {"width": 1280, "height": 780}
             page = browser.new_page(viewport=size, color_scheme="dark" if options.dark else "light")
-            if options.ros is None:
+            if not options.ros2:
                 with served(MODEL) as address:
                     page.goto(address)
                     page.wait_for_selector("body[data-drawn][data-moment]")
@@ -255,7 +252,7 @@ def main() -> None:
                     page.get_by_text("The shortest way there:").wait_for()
                     page.screenshot(path=options.picture)
             else:
-                beside_a_robot(page, options.ros, Path(folder) / "run", options.picture)
+                beside_a_robot(page, Path(folder) / "run", options.picture)
             return
         if options.recording is not None:
             record(browser, Path(folder) / "events.jsonl", options.recording)

@@ -28,7 +28,7 @@ MODEL = EXAMPLES / "line_follower" / "line_follower.rscd"
 #: A monitor of robots: it says when it has heard of the node.
 MONITOR = """\
 from topics import connect
-topics = connect({version!r}, "monitor")
+topics = connect("2", "monitor")
 topics.listen("/diagnostics", "diagnostic_msgs/DiagnosticArray", lambda message: print("heard", flush=True))
 while True:
     topics.receive(1.0)
@@ -44,9 +44,7 @@ def watched(nodes: Workspace | Runner, runner: Runner, folder: Path, rounds: int
     """
     with middleware(nodes, folder) as processes:
         node = processes.start("node", one_process(nodes, PACKAGE))
-        processes.start(
-            "sensors", [nodes.ros.python, TESTS / "sensors.py", str(nodes.ros.version), str(SENSORS_HZ), "--going"]
-        )
+        processes.start("sensors", [nodes.ros.python, TESTS / "sensors.py", "2", str(SENSORS_HZ), "--going"])
         time.sleep(_WARM_UP)
         who: dict[str, Callable[[], AbstractContextManager[None]]] = {
             "nobody": nullcontext,
@@ -83,7 +81,7 @@ def _processor(pid: int) -> float:
 def page_served(processes: Processes, runner: Runner, folder: Path) -> Iterator[str]:
     """The address of the page of `robosc view` beside the line follower."""
     path = os.pathsep.join(filter(None, (str(ROOT), processes.environment.get("PYTHONPATH"))))
-    command = ["env", f"PYTHONPATH={path}", runner.robosc, "-m", "robosc", "view", MODEL, f"--ros{runner.ros.version}"]
+    command = ["env", f"PYTHONPATH={path}", runner.ros.python, "-m", "robosc", "view", MODEL, "--ros2"]
     process, log = processes.start("view", command), folder / "view.log"
     processes.wait_until(lambda: "http" in log.read_text(), "the page is served")
     yield re.findall(r"^http\S+$", log.read_text(), re.MULTILINE)[-1]
@@ -102,9 +100,9 @@ def _page(processes: Processes, runner: Runner, folder: Path) -> Iterator[None]:
 
 @contextmanager
 def _monitor(processes: Processes, nodes: Workspace | Runner, folder: Path) -> Iterator[None]:
-    script, log = MONITOR.format(version=str(nodes.ros.version)), folder / "monitor.log"
+    log = folder / "monitor.log"
     path = os.pathsep.join(filter(None, (str(TESTS), processes.environment.get("PYTHONPATH"))))
-    process = processes.start("monitor", ["env", f"PYTHONPATH={path}", nodes.ros.python, "-c", script])
+    process = processes.start("monitor", ["env", f"PYTHONPATH={path}", nodes.ros.python, "-c", MONITOR])
     processes.wait_until(lambda: "heard" in log.read_text(), "the monitor hears of the node")
     yield
     processes.stop(process)
