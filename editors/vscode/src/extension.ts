@@ -7,7 +7,7 @@ import { Diagrams } from "./diagram";
 import { Tasks, definitionFor, taskFor } from "./tasks";
 import { findTool, needTool, printed, searched, setUp } from "./tool";
 
-const targets = ["ros2", "ros1", "supervisor", "cif", "ros2-layer", "ros1-layer", "xmi"];
+const targets = ["ros2", "ros1", "supervisor", "cif", "ros2-layer", "xmi"];
 
 let client: LanguageClient | undefined;
 /** The last start of the language server, which the next one waits for. */
@@ -125,10 +125,7 @@ async function transform(tool: string, file: vscode.Uri): Promise<void> {
 
 /** Runs the controller as a node, until the task is ended. */
 async function run(tool: string, file: vscode.Uri): Promise<void> {
-  const ros = await vscode.window.showQuickPick(["ROS 2", "ROS 1"], { title: "Which ROS the node is for" });
-  if (ros !== undefined) {
-    await start(tool, "run", file, [ros === "ROS 2" ? "--ros2" : "--ros1"]);
-  }
+  await start(tool, "run", file, []);
 }
 
 async function addLibraryFolder(folder: vscode.Uri): Promise<void> {
