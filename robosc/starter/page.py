@@ -37,13 +37,7 @@ python -m unittest
 ```
 
 ## On the robot
-
-Without a build, on ROS {ros}:
-
-```sh
-robosc run {stem}.rscd --ros{ros}
-```
-
+{run}
 As a package:
 
 ```sh
@@ -56,6 +50,13 @@ robosc transform {stem}.rscd --to ros{ros}
 Change the names of topics to those of your robot, add states for what your components can be in, and write a
 `requirement` for each thing that must not happen. `robosc rule` lists the rules that a model keeps, each with
 a wrong and a right model.
+"""
+_RUN = """
+Without a build, on ROS 2:
+
+```sh
+robosc run {stem}.rscd
+```
 """
 _BUILD = {
     1: """\
@@ -84,6 +85,7 @@ def page(choices: Choices) -> str:
         otherwise=f" Otherwise `{choices.stop}` does." if choices.stop else "",
         kind="topic or service" if choices.service else "topic",
         rows="\n".join(_rows(choices)),
+        run=_RUN.format(stem=choices.stem) if choices.ros == 2 else "",
         build=_BUILD[choices.ros].format(robot=choices.robot, package=choices.package),
         warned=_WARNED.format(stop=choices.stop) if choices.stop else "",
     )

@@ -62,6 +62,7 @@ def test_its_page_says_what_is_generated(run: Run, tmp_path: Path, ros: str, sto
     built = tmp_path / "build" / "MyPorter" / f"ros{ros}" / "my_porter_controller"
     assert (built / "launch" / launch).exists()
     assert f"my_porter_controller {launch}\n" in page
+    assert ("robosc run my_porter.rscd\n" in page) == (ros == "2")
 
 
 @pytest.mark.slow
