@@ -182,7 +182,7 @@ def test_what_a_node_is_generated_with_reaches_the_program(tmp_path: Path, argum
     settings.write_text('{"package": {"name": "steward"}}', encoding="utf-8")
     (project.source / "CMakeLists.txt").write_text(
         "cmake_minimum_required(VERSION 3.15)\nproject(own C)\nfind_package(robosc REQUIRED)\n"
-        f"robosc_generate(fragment ros1 own {arguments} CONFIG settings/own.json)\n"
+        f"robosc_generate(fragment ros2 own {arguments} CONFIG settings/own.json)\n"
         "message(NOTICE made=${fragment})\n",
         encoding="utf-8",
     )

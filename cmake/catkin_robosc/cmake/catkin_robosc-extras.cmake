@@ -1,11 +1,9 @@
 include(${CMAKE_CURRENT_LIST_DIR}/find-robosc.cmake)
 
-# robosc_generate_controller(<model> [CONFIG <file>] [LAYER] [LIBRARY_PATH <folder>...] [INTERFACE_PATH <folder>...]
-#                            [TESTS])
+# robosc_generate_controller(<model> [CONFIG <file>] [LIBRARY_PATH <folder>...] [INTERFACE_PATH <folder>...] [TESTS])
 #
-# Makes the node that controls the robot of a model, or with LAYER its supervisory layer, a part of this package:
-# executable, launch file, parameters. Before catkin_package(), which exports its engine, and after generate_messages()
-# of types of this package that the model uses.
+# Makes the node that controls the robot of a model a part of this package: executable, launch file, parameters. Before
+# catkin_package(), which exports its engine, and after generate_messages() of types of this package that the model uses.
 #
 # @public
 macro(robosc_generate_controller)
