@@ -91,7 +91,7 @@ compiled one of ROS 2.
 COSTS = """\
 ## Processor and memory
 
-Each node drives the robot of its [scenario](simulator.md) for {seconds} s in real time, all eight at once; a world
+Each node drives the robot of its [scenario](simulator.md) for {seconds} s in real time, all at once; a world
 that has ended begins anew. Processor time as a share of one core; the most memory in use, in MB, ROS's own included.
 """
 
