@@ -1,4 +1,4 @@
-"""CIF's real tools, where `ESCET_HOME` names a folder with them: docs/coming-from-cif.md says what that holds."""
+"""CIF's real tools, where `ESCET_HOME` names a folder with them: benchmarks/escet.md describes it."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(home() is None, reason="ESCET_HOME names no folder with CIF's tools: docs/coming-from-cif.md"),
+    pytest.mark.skipif(home() is None, reason="ESCET_HOME names no folder with CIF's tools: benchmarks/escet.md"),
 ]
 _ROOT = Path(__file__).parents[2]
 _SHIPPED = sorted([*(_ROOT / "examples").glob("*/*.rscd"), *(_ROOT / "docs" / "patterns").glob("*.rscd")])
@@ -240,7 +240,7 @@ def test_written_specifications_run_to_the_states_of_cifs_own_supervisor(tools: 
 
 
 @pytest.mark.skipif(
-    not (home() or Path()).joinpath(_OWN).is_dir(), reason=f"ESCET_HOME has no folder {_OWN}: docs/coming-from-cif.md"
+    not (home() or Path()).joinpath(_OWN).is_dir(), reason=f"ESCET_HOME has no folder {_OWN}: benchmarks/escet.md"
 )
 def test_cifs_own_tests_run_to_the_states_of_its_supervisor(tools: Tools, tmp_path: Path) -> None:
     folder = home()
