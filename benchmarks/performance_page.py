@@ -60,7 +60,7 @@ From publishing `true` on `/emergency_stop` to receiving the first zero on `/cmd
 at random moments, while another program sends scans and corrections at 30 Hz. In milliseconds.
 
 A scan that flickers between free and blocked does not delay a stop, however long the period: it uses up its own
-[count of reactions](ros.md#what-happens-when), not that of the button. Tests hold the control loop to this for any
+[count of reactions](control-loop.md), not that of the button. Tests hold the control loop to this for any
 robot.
 """
 
@@ -101,7 +101,7 @@ WATCHED = """\
 
 What it costs a node that somebody looks: the line follower on its line, with 30 scans and 30 corrections a second, in
 turn for {seconds} s with nobody, with the page of [`robosc view`](view.md) on its state, and with a monitor on
-[`/diagnostics`](ros.md#for-monitors-of-robots); the median of {rounds} rounds. *More* is the median of the differences
+[`/diagnostics`](ros-output.md#diagnostics); the median of {rounds} rounds. *More* is the median of the differences
 to nobody in the same round. Processor time of the node as a share of one core, without that of page and monitor.
 """
 
