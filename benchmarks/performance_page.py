@@ -63,7 +63,7 @@ All times are milliseconds, from the message to the node until the message of th
 
 {table}
 A scan that flickers between free and blocked does not delay a stop, however long the period. Each topic has its own
-[count of reactions](ros.md#what-happens-when).
+[count of reactions](control-loop.md).
 """
 
 #: The median and the maximum of how late `after` was, by `expiry.py`, in the order of `KINDS`.
@@ -83,7 +83,7 @@ In a compiled node, the C of the supervisor takes {engine} microseconds of a tic
 WATCHED = """\
 ## Observers
 
-The page of [`robosc view`](view.md) or a monitor on [`/diagnostics`](ros.md#for-monitors-of-robots) costs a node at
+The page of [`robosc view`](view.md) or a monitor on [`/diagnostics`](ros-output.md#diagnostics) costs a node at
 most {most} of a core (measured: {kinds}). `robosc view` and the monitor themselves run in processes of their own.
 """
 
