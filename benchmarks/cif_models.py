@@ -6,7 +6,7 @@ FOLDER holds the models that Eclipse ESCET times for synthesis (`cif/org.eclipse
 repository), which are no part of this one: its scripts `benchmark_*.tooldef` say which these are. `--more` are files
 beside them. Robots of our own families are added, as the CIF that is generated of them.
 
-Where ESCET_HOME names a folder with CIF's tools (docs/coming-from-cif.md), they take each model in the same run, one
+Where ESCET_HOME names a folder with CIF's tools (benchmarks/escet.md), they take each model in the same run, one
 tool after the other. Ends with 1 where robosc has no answer in the given seconds, or another one than CIF's tool.
 What was measured is kept in `benchmarks/cif_models.json`; `--output` writes it and the page elsewhere.
 """

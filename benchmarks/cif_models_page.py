@@ -13,6 +13,8 @@ Results = dict[str, Any]
 HEAD = """\
 # Synthesis beside CIF's tool
 
+This page compares the time and the memory of RoboSC's synthesis with those of CIF's tool, model by model.
+
 <!-- not run: the models are no part of this repository -->
 ```sh
 python benchmarks/cif_models.py FOLDER --more FILE.cif

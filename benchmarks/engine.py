@@ -82,7 +82,6 @@ def page(results: Results) -> str:
         instructions=_instructions(examples),
         bytes=_bytes(examples),
         families=_instructions(families),
-        family_bytes=_bytes(families),
     )
 
 

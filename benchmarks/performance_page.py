@@ -8,7 +8,7 @@ from statistics import median
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
 Results = dict[str, Any]
 
@@ -32,85 +32,59 @@ class Kind:
 
 
 KINDS = [Kind(1, "compiled"), Kind(2, "compiled"), Kind(2, "run")]
-#: Mean, least, most and standard deviation of the nodes that the thesis measured, in microseconds (table 6.8).
-THESIS = {
-    "Line follower": (71, 16, 868, 46),
-    "Simple navigation": (9, 4, 248, 6),
-    "Obstacle navigation": (11, 5, 906, 19),
-    "Object finder": (33, 8, 340, 37),
-    "Maze solver": (36, 8, 451, 42),
-    "Push ball": (42, 15, 528, 26),
-    "Person follower": (52, 6, 1606, 52),
-}
-
 HEAD = """\
 # Performance
 
-How soon a robot stops, and what its node costs. `python benchmarks/reaction.py` measured it on {machine} and wrote this
-page.
+This page shows how soon a robot stops and what its node costs. The numbers come from {machine}.
+Measure your computer with
 
-The world around the node is a Python program here. The times include what the middleware and the measuring program
-take. To show how much that is, an echo was measured in between: a small message to another Python node, and its answer.
+<!-- not run: it takes an hour and needs ROS -->
+```sh
+python benchmarks/reaction.py
+python benchmarks/expiry.py
+```
+
+Proofs do not bound these times: they hold for any delay.
 """
 
-STOP = """\
-## Stop
+#: The times of `after` are measured by `expiry.py`.
+REACTION = """\
+## Reaction
 
-From publishing `true` on `/emergency_stop` to receiving the first zero on `/cmd_vel`: the line follower, {times} stops
-at random moments, while another program sends scans and corrections at 30 Hz. In milliseconds.
+All times are milliseconds, from the message to the node until the message of the node.
 
-A scan that flickers between free and blocked does not delay a stop, however long the period: it uses up its own
-[count of reactions](ros.md#what-happens-when), not that of the button. Tests hold the control loop to this for any
-robot.
+- *Stop*: from the message of the emergency stop to the first zero on `/cmd_vel`. The line follower makes {stops} stops
+  while it receives scans and corrections at 30 Hz.
+- *Obstacle*: from the first scan with an obstacle to the first zero on `/cmd_vel`, {obstacles} times. The period of the
+  control loop, 100 ms, does not delay the stop.
+- *Delay of `after`*: from the end of `after 200 ms` to the message of the node, 200 times on overloaded cores. No time
+  ended early.
+- *Echo*: a message to a Python node and its answer. The other times include that much for ROS and the measurement.
+
+{table}
+A scan that flickers between free and blocked does not delay a stop, however long the period. Each topic has its own
+[count of reactions](control-loop.md).
 """
 
-OBSTACLE = """\
-## Obstacle
-
-From publishing the first scan with an obstacle to receiving the first zero on `/cmd_vel`: the line follower, {times}
-obstacles at random moments of the control loop's period of 100 ms. In milliseconds. With the tool of the thesis, which
-decides in its ticks only and runs one event in each, it was 212 in the median and 5,200 at worst.
-"""
-
-#: Measured by `expiry.py`.
-TIMES = """\
-## Times
-
-From pressing a button to the beep that a model sends 200 ms later (`after 200 ms`), with the way of two messages, while
-a sensor sends at 100 Hz: 200 times each. Milliseconds later than that; none was early. `python benchmarks/expiry.py`
-measures it. The two cores were loaded to four times their capacity, and to twelve times while the node was the
-compiled one of ROS 2.
-
-| node | median | maximum | early |
-| --- | ---: | ---: | ---: |
-| ROS 1, compiled | 1.5 | 13.1 | 0 |
-| ROS 2, compiled | 4.0 | 20.2 | 0 |
-| ROS 2, `robosc run` | 4.8 | 23.5 | 0 |
-"""
+#: The median and the maximum of how late `after` was, by `expiry.py`, in the order of `KINDS`.
+TIMES = {"compiled-ros1": "1.5, 13.1", "compiled-ros2": "4.0, 20.2", "run-ros2": "4.8, 23.5"}
 
 COSTS = """\
 ## Processor and memory
 
-Each node drives the robot of its [scenario](simulator.md) for {seconds} s in real time, all at once; a world
-that has ended begins anew. Processor time as a share of one core; the most memory in use, in MB, ROS's own included.
+Each node drives the robot of its [scenario](simulator.md) for {seconds} s in real time. The table shows the lowest and
+the highest value of the eight robots: the share of one core, the peak memory with ROS, and the mean duration of one
+tick of the control loop, including the messages that it publishes.
+
+{table}
+In a compiled node, the C of the supervisor takes {engine} microseconds of a tick on average.
 """
 
 WATCHED = """\
-## Who looks
+## Observers
 
-What it costs a node that somebody looks: the line follower on its line, with 30 scans and 30 corrections a second, in
-turn for {seconds} s with nobody, with the page of [`robosc view`](view.md) on its state, and with a monitor on
-[`/diagnostics`](ros.md#for-monitors-of-robots); the median of {rounds} rounds. *More* is the median of the differences
-to nobody in the same round. Processor time of the node as a share of one core, without that of page and monitor.
-"""
-
-TICKS = """\
-## One tick
-
-How long the control loop takes at each tick, in microseconds: table 6.8 of the thesis, whose machine was another.
-*Node* is all that happens in a tick, messages published included; *engine* the supervisor's C alone, the same tick done
-again with nobody to tell. The supervisory layer has no ticks. The cores are shared: a maximum of milliseconds is a
-moment at which the processor was somebody else's, and one such among 3,000 ticks moves a mean.
+The page of [`robosc view`](view.md) or a monitor on [`/diagnostics`](ros-output.md#diagnostics) costs a node at
+most {most} of a core (measured: {kinds}). `robosc view` and the monitor themselves run in processes of their own.
 """
 
 
@@ -123,23 +97,18 @@ def percentiles(seconds: Sequence[float]) -> dict[str, float]:
 def page(results: Results) -> str:
     """The page, in Markdown, of all that was measured."""
     parts = [HEAD.format(machine=results["machine"])]
-    for part, text in (("stop", STOP), ("obstacle", OBSTACLE)):
-        if found := _of(results, part):
-            parts.append(text.format(times=_span(f"{measured['times']:,}" for measured in found.values())))
-            parts.append(_reactions(found))
-    parts.append(TIMES)
-    if found := _of(results, "costs"):
-        parts += [
-            COSTS.format(seconds=_span(f"{measured['seconds']:.0f}" for measured in found.values())),
-            _costs(found),
-        ]
-    if found := _of(results, "watched"):
-        rounds, seconds = (
-            _span(f"{measured[measure]:.0f}" for measured in found.values()) for measure in ("rounds", "seconds")
+    stop, obstacle, costs, seen = (_of(results, part) for part in ("stop", "obstacle", "costs", "watched"))
+    if stop or obstacle:
+        stops, obstacles = (
+            _span(f"{measured['times']:,}" for measured in found.values()) for found in (stop, obstacle)
         )
-        parts += [WATCHED.format(rounds=rounds, seconds=seconds), _watched(found)]
-    if found := _of(results, "costs"):
-        parts += [TICKS, *(_ticks(kind, measured) for kind, measured in found.items())]
+        parts.append(REACTION.format(stops=stops, obstacles=obstacles, table=_reactions(stop, obstacle)))
+    if costs:
+        seconds = _span(f"{measured['seconds']:.0f}" for measured in costs.values())
+        parts.append(COSTS.format(seconds=seconds, table=_costs(costs), engine=_engine(costs)))
+    if seen:
+        most = max(share for measured in seen.values() for share in measured["more"].values())
+        parts.append(WATCHED.format(most=f"{100 * most:.1f} %", kinds="; ".join(kind.title for kind in seen)))
     return "\n".join(parts)
 
 
@@ -147,7 +116,7 @@ def _of(results: Results, part: str) -> dict[Kind, Results]:
     return {kind: results[part][kind.key] for kind in KINDS if kind.key in results.get(part, {})}
 
 
-def _span(values: Iterator[str]) -> str:
+def _span(values: Iterable[str]) -> str:
     return " or ".join(dict.fromkeys(values))
 
 
@@ -156,57 +125,45 @@ def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
-def _reactions(found: Mapping[Kind, Results]) -> str:
-    columns = [(of, value) for of in ("reaction", "echo") for value in ("median", "p99", "max")]
-    head = ["node", "median", "p99", "maximum", "echo: median", "p99", "maximum"]
-    return _table(
-        head,
-        [[kind.title, *(f"{measured[of][value]:.1f}" for of, value in columns)] for kind, measured in found.items()],
-    )
-
-
-def _costs(found: Mapping[Kind, Results]) -> str:
-    head = ["node", *(f"{kind.title}: {measure}" for kind in found for measure in ("processor", "memory"))]
-    # A supervisory layer is none of the nodes of ROS 1.
-    titles = dict.fromkeys(title for measured in found.values() for title in measured["nodes"])
-    return _table(
-        head,
-        [
-            [title, *(text for measured in found.values() for text in _cost(measured["nodes"].get(title)))]
-            for title in titles
-        ],
-    )
-
-
-def _watched(found: Mapping[Kind, Results]) -> str:
-    head = ["node", "nobody", "`robosc view`", "more", "monitor", "more"]
+def _reactions(stop: Mapping[Kind, Results], obstacle: Mapping[Kind, Results]) -> str:
+    head = ["node", "stop: median, p99, max.", "obstacle: median, p99, max.", "delay of `after`: median, max."]
     rows = []
-    for kind, measured in found.items():
-        taken, more = measured["taken"], measured["more"]
-        shares = [taken["nobody"], taken["view"], more["view"], taken["monitor"], more["monitor"]]
-        rows.append([kind.title, *(f"{100 * share:.1f} %" for share in shares)])
-    return _table(head, rows)
+    for kind in KINDS:
+        measured = [found.get(kind) for found in (stop, obstacle)]
+        echo = next((found["echo"] for found in measured if found), None)
+        if echo:
+            reactions = [_percentiles(found["reaction"]) if found else "-" for found in measured]
+            rows.append([kind.title, *reactions, TIMES[kind.key], _percentiles(echo)])
+    return _table([*head, "echo: median, p99, max."], rows)
 
 
-def _cost(node: Results | None) -> list[str]:
-    if node is None:
-        return ["", ""]
-    return [f"{100 * node['processor']:.1f} %", f"{node['resident']:.0f}"]
+def _percentiles(found: Results) -> str:
+    return ", ".join(f"{found[value]:.1f}" for value in ("median", "p99", "max"))
 
 
-def _ticks(kind: Kind, found: Results) -> str:
-    compiled = kind.nodes == "compiled"
-    values = ("mean", "min", "max", "deviation")
-    words = ["mean", "min.", "max.", "s. d."]
-    head = ["", f"node: {words[0]}", *words[1:]]
-    if compiled:
-        head += [f"engine: {words[0]}", *words[1:]]
-    head += [f"thesis: {words[0]}", *words[1:]]
+def _costs(costs: Mapping[Kind, Results]) -> str:
     rows = []
-    for title, node in found["nodes"].items():
-        if "node" in node:
-            row = [title, *(f"{node['node'][value]:.0f}" for value in values)]
-            if compiled:
-                row += [f"{node['engine'][value]:.2f}" for value in values]
-            rows.append([*row, *map(str, THESIS[title])])
-    return f"### {kind.title}\n\n" + _table(head, rows)
+    for kind, measured in costs.items():
+        nodes = measured["nodes"].values()
+        ticks = [node["node"]["mean"] for node in nodes if "node" in node]
+        rows.append(
+            [
+                kind.title,
+                _range((100 * node["processor"] for node in nodes), ".1f", " %"),
+                _range((node["resident"] for node in nodes), ".0f", " MB"),
+                _range((tick / 1000 for tick in ticks), ".2f", " ms"),
+            ]
+        )
+    return _table(["node", "processor", "memory", "tick"], rows)
+
+
+def _engine(costs: Mapping[Kind, Results]) -> str:
+    """The means of what the engine takes in a tick, in microseconds."""
+    nodes = [node for measured in costs.values() for node in measured["nodes"].values()]
+    return _range((node["engine"]["mean"] for node in nodes if "engine" in node), ".1f", "")
+
+
+def _range(values: Iterable[float], form: str, unit: str) -> str:
+    ordered = sorted(values)
+    low, high = (format(value, form) for value in (ordered[0], ordered[-1]))
+    return f"{low}{unit}" if low == high else f"{low} to {high}{unit}"

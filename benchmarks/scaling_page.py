@@ -24,56 +24,45 @@ EXPLICIT = ("faudes", "definition")
 HEAD = """\
 # Benchmarks
 
-How synthesis, and the tool as a whole, grow with the model. `python benchmarks/scaling.py` measured it on {machine} and
-wrote this page. `pip install -e '.[benchmarks]'` in a fresh environment is all that it needs; `--quick` is a first try.
+This page shows how large a robot can be: how the time and memory of synthesis, and of the whole tool, grow with the
+model. The numbers come from {machine}. Measure your computer with
 
-The models are robots of any size: `python benchmarks/families.py philosophers 5` prints one. Times are seconds of the
-processor, since the cores are shared; in parentheses what went by meanwhile. Each robot has a process of its own, whose
-memory at its peak is given in MB, what was loaded included. A series ends at the first robot that takes more than
-{limit} s.
-"""
+<!-- not run: it takes a quarter of an hour, and writes this page -->
+```sh
+pip install -e '.[benchmarks]'
+python benchmarks/scaling.py
+```
 
-AIMS = """\
-## Aims
+`--quick` measures only the smallest robots. `python benchmarks/families.py philosophers 5` prints one of the robots.
+[scaling.json](../benchmarks/scaling.json) holds all measurements, with robots of other sizes.
 
-*Synthesis* begins with the plants and requirements and ends with the guards and what is doubtful about them; *all* is
-everything from the text to generated CIF, C, ROS 1 and ROS 2.
+All times are seconds of processor time. A process has a limit of {limit} s.
 """
 
 FAMILIES_HEAD = """\
-## Families
+## Families of robots
 
 ![Seconds over N for each family](benchmarks-families.svg)
 
-*Reachable* are the states of the plants without requirements, *supervised* those under the supervisor. *Peak nodes* are
-nodes of decision diagrams that were there at once, *operations* images and preimages of single events: unlike seconds,
-both are the same on every run.
+The table shows the largest robot of each family that RoboSC completes within the limit.
 
-Beside it, two explicit syntheses of the same automata, state by state, with a third of the limit. One is `SupCon` of
-[libFAUDES](https://fgdes.tf.fau.de/faudes) on the composed plants. There a variable is part of its automaton's states,
-an event with data is one event for each value, and a requirement is an automaton that follows the plants that it speaks
-of; the time to make these automata counts. The other one is the definition of synthesis, written down in Python for the
-tests. All three find the same numbers of states, and those under the supervisor are what the family's formula in
-[benchmarks/families.py](../benchmarks/families.py) says.
-"""
+- *Supervised states*: the states that the robot can reach under its supervisor.
+- *Synthesis*: from the plants and requirements to the guards and the findings about them.
+- *All*: from the text to the generated CIF, C, ROS 1 and ROS 2.
+- *MB*: the peak memory of the process.
+- *Growth*: the growth of the synthesis time with N.
+- *libFAUDES* and *by the definition*: the largest N that two explicit syntheses complete within a third of the limit.
+  They are `SupCon` of [libFAUDES](https://fgdes.tf.fau.de/faudes) and the definition of synthesis in Python.
 
-GROWTH = """\
-### Growth
-
-What the four largest robots of each family say of the growth: *N^k*, or *b^N* where that fits far better.
-"""
-
-PHASES_HEAD = """\
-### Phases
-
-For the largest robot of each family that was finished. What is loaded and built once in a process is left out.
+All three find the same numbers of states. The formulas in [families.py](../benchmarks/families.py) confirm these
+numbers.
 """
 
 TRANSFORM = """\
 ## The whole tool
 
-`robosc transform --to cif,supervisor,ros1,ros2` from a cold start, of independent cells with two components each, and
-the phases of the same models in a warm process. No more than {limit} s each.
+`robosc transform --to cif,supervisor,ros1,ros2` of independent cells with two components each. *Written* is the size of
+the generated files. The limit is {limit} s.
 
 ![Seconds over lines for each phase](benchmarks-transform.svg)
 """
@@ -82,57 +71,36 @@ the phases of the same models in a warm process. No more than {limit} s each.
 def page(results: Results) -> str:
     """The page, in Markdown, of all that was measured."""
     families = {name: results["families"][name] for name in FAMILIES if name in results["families"]}
-    parts = [HEAD.format(machine=results["machine"], limit=results["limit"]), AIMS, _aims(results), FAMILIES_HEAD]
-    for name, tools in families.items():
-        parts += [f"### {FAMILIES[name].title[0].upper()}{FAMILIES[name].title[1:]}\n", _family(tools)]
-    parts += [GROWTH, _growths(families), PHASES_HEAD, _phases(families)]
+    parts = [HEAD.format(machine=results["machine"], limit=results["limit"]), FAMILIES_HEAD, _largest(families)]
     if results["transform"]:
         parts += [TRANSFORM.format(limit=3 * results["limit"]), _transform(results["transform"])]
     return "\n".join(parts)
 
 
-def _aims(results: Results) -> str:
-    families, transform = results["families"], results["transform"]
-    philosophers = {
-        point["n"]: point for point in families.get("philosophers", {}).get("robosc", ()) if point["finished"]
-    }
-    rows = [
-        [f"{number} philosophers: {aim}", _cost(philosophers[number])]
-        for number, aim in ((20, "3 s and 200 MB"), (40, "30 s"))
-        if number in philosophers
-    ]
-    for name in ("cells", "services"):
-        many = [point for point in _finished(families, name, "robosc") if point["states"] >= 10**30]
-        if many:
-            rows.append([f"10^30 supervised states, {_titled(name, many[0]['n'])}: 2 s", _cost(many[0])])
-    small = [point for point in transform if point["finished"] and point["lines"] <= 1000]
-    if small:
-        rows.append([f"`transform` of {small[-1]['lines']} lines: 1 s", _seconds(small[-1])])
-    larger = [point for point in transform if point["finished"] and point["lines"] >= 500]
-    if len(larger) > 1:
-        exponent = linear_regression(
-            [log(point["lines"]) for point in larger], [log(point["cpu"]) for point in larger]
-        ).slope
+def _largest(families: Results) -> str:
+    """The largest robot of each family that was finished, and the largest that the explicit syntheses finish."""
+    head = ["family", "N", "lines", "supervised states", "synthesis", "all", "MB", "growth"]
+    rows = []
+    for name in families:
+        finished = _finished(families, name, "robosc")
+        if not finished:
+            continue
+        point = finished[-1]
+        others = [_supervised(families, name, tool)[-1:] for tool in EXPLICIT]
         rows.append(
             [
-                "`transform` up to 50,000 lines: nearly linear",
-                f"lines^{exponent:.2f} from {larger[0]['lines']:,} to {larger[-1]['lines']:,} lines",
+                FAMILIES[name].title,
+                f"{point['n']}",
+                f"{point['lines']:,}",
+                _number(point["states"]),
+                f"{_synthesis_seconds(point):.1f}",
+                f"{_all_seconds(point):.1f}",
+                f"{point['memory']:.0f}",
+                growth(_supervised(families, name, "robosc"), _synthesis_seconds),
+                *(f"{found[0]['n']}" if found else "-" for found in others),
             ]
         )
-    return _table(["aim", "measured"], rows, "---")
-
-
-def _cost(point: Results) -> str:
-    synthesis = [sum(point["phases"][phase][which] for phase in SYNTHESIS) for which in (1, 0)]
-    everything = [sum(times[which] for times in point["phases"].values()) for which in (1, 0)]
-    return (
-        f"{_number(point['states'])} states; synthesis {synthesis[0]:.2f} s ({synthesis[1]:.2f}), "
-        f"all {everything[0]:.1f} s ({everything[1]:.1f}), {point['memory']:.0f} MB"
-    )
-
-
-def _seconds(point: Results) -> str:
-    return f"{point['cpu']:.1f} s ({point['wall']:.1f}), {point['memory']:.0f} MB"
+    return _table([*head, *(TOOLS[tool] for tool in EXPLICIT)], rows)
 
 
 def _finished(families: Results, name: str, tool: str) -> list[Results]:
@@ -142,55 +110,6 @@ def _finished(families: Results, name: str, tool: str) -> list[Results]:
 def _supervised(families: Results, name: str, tool: str) -> list[Results]:
     """Those whose synthesis was finished, whatever became of the rest."""
     return [point for point in families.get(name, {}).get(tool, ()) if "states" in point]
-
-
-def _family(tools: Results) -> str:
-    others = {tool: {point["n"]: point for point in tools.get(tool, ())} for tool in EXPLICIT}
-    head = ["N", "lines", "reachable", "supervised", "peak nodes", "operations", "synthesis", "all", "MB"]
-    head += [text for tool in others for text in (TOOLS[tool], "MB")]
-    rows = []
-    for point in tools.get("robosc", ()):
-        row = [f"{point['n']}", f"{point['lines']:,}"]
-        if "states" in point:
-            row += [_number(point["uncontrolled"]), _number(point["states"])]
-        else:
-            row += ["-", "-"]
-        row += [f"{point[measure]:,}" if measure in point else "-" for measure in ("peak_nodes", "operations")]
-        row += [_took(point, SYNTHESIS), _took(point), f"{point['memory']:.0f}"]
-        for points in others.values():
-            other = points.get(point["n"])
-            row += [_took(other), f"{other['memory']:.0f}"] if other else ["-", "-"]
-        rows.append(row)
-    return _table(head, rows)
-
-
-def _took(point: Results, phases: Sequence[str] = ()) -> str:
-    """Seconds of some phases, or of all; where the limit ended them, that of the process."""
-    if not point["finished"] and not (phases and "states" in point):
-        return f"over {point['cpu']:.0f}"
-    cpu, wall = (
-        sum(took[which] for phase, took in point["phases"].items() if phase in (phases or point["phases"]))
-        for which in (1, 0)
-    )
-    return f"{cpu:.2f} ({wall:.2f})"
-
-
-def _growths(families: Results) -> str:
-    measures: dict[str, Callable[[Results], float]] = {
-        "synthesis": _synthesis_seconds,
-        "peak nodes": lambda measure: measure["peak_nodes"],
-        "operations": lambda measure: measure["operations"],
-    }
-    rows = [
-        [
-            FAMILIES[name].title,
-            *(growth(_supervised(families, name, "robosc"), measure) for measure in measures.values()),
-            growth(_finished(families, name, "robosc"), _all_seconds),
-            *(growth(_supervised(families, name, tool), _all_seconds) for tool in EXPLICIT),
-        ]
-        for name in families
-    ]
-    return _table(["family", *measures, "all", *(TOOLS[tool] for tool in EXPLICIT)], rows)
 
 
 def _all_seconds(point: Results) -> float:
@@ -216,44 +135,18 @@ def growth(points: Sequence[Results], measure: Callable[[Results], float]) -> st
     return f"N^{linear_regression(logged, logarithms).slope:.1f}"
 
 
-def _phases(families: Results) -> str:
-    largest = {name: points[-1] for name in families if (points := _finished(families, name, "robosc"))}
-    rows = [[_titled(name, point["n"]), *_each_phase(point)] for name, point in largest.items()]
-    return _table(["", *(TITLES.get(phase, phase) for phase in (*PHASES, *TARGETS))], rows)
-
-
-def _each_phase(point: Results) -> list[str]:
-    phases = point["phases"]
-    return [f"{phases[phase][1]:.2f}" if phase in phases else "-" for phase in (*PHASES, *TARGETS)]
-
-
 def _transform(points: Sequence[Results]) -> str:
-    head = [
-        "components",
-        "lines",
-        "command",
-        "MB",
-        "written",
-        *(TITLES.get(phase, phase) for phase in (*PHASES, *TARGETS)),
-    ]
-    return _table(
-        head,
+    rows = [
         [
-            [
-                f"{point['components']:,}",
-                f"{point['lines']:,}",
-                f"{point['cpu']:.1f} ({point['wall']:.1f})" if point["finished"] else f"over {point['cpu']:.0f}",
-                f"{point['memory']:.0f}",
-                f"{point['bytes'] / 1e6:.1f} MB",
-                *_each_phase(point),
-            ]
-            for point in points
-        ],
-    )
-
-
-def _titled(name: str, number: int) -> str:
-    return FAMILIES[name].title.replace("N", str(number), 1)
+            f"{point['components']:,}",
+            f"{point['lines']:,}",
+            f"{point['cpu']:.1f}" if point["finished"] else f"over {point['cpu']:.0f}",
+            f"{point['memory']:.0f}",
+            f"{point['bytes'] / 1e6:.1f} MB",
+        ]
+        for point in points
+    ]
+    return _table(["components", "lines", "seconds", "MB", "written"], rows)
 
 
 def _number(value: int) -> str:
@@ -264,8 +157,8 @@ def _number(value: int) -> str:
     return f"{value // 10 ** (power - 1) / 10:.1f}·10^{power}"
 
 
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]], align: str = "---:") -> str:
-    lines = [head, ["---", *[align] * (len(head) - 1)], *rows]
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [head, ["---", *["---:"] * (len(head) - 1)], *rows]
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 

@@ -29,7 +29,7 @@ def _behaviour(name: str, communications: Iterable[str], *lines: str) -> str:
 
 
 def provides(number: int) -> Files:
-    """As many `provide` statements for one message."""
+    """Provide statements for one message."""
     level = f"integer(0..{number})"
     return _robot(
         _GO.format("integer"),
@@ -44,7 +44,7 @@ def provides(number: int) -> Files:
 
 
 def imports(number: int) -> Files:
-    """Libraries, each of which imports the next one."""
+    """Libraries in a chain of imports."""
     last = _behaviour("Part", [], "initial marked state there { }").replace(
         "behaviour", "incoming message go with type: none behaviour"
     )
@@ -56,7 +56,7 @@ def imports(number: int) -> Files:
 
 
 def imports_beside(number: int) -> Files:
-    """Libraries that the robot imports, one beside the other."""
+    """Libraries that the robot imports directly."""
     return {
         "model.rscd": "\n".join(
             ["robot Long {", *(f"component Part{i} from L{i} import Part" for i in range(number)), "}", ""]
@@ -84,7 +84,7 @@ def members(number: int) -> Files:
 
 
 def operators(number: int) -> Files:
-    """Operators in the condition of a requirement, none of which can be left out."""
+    """Operators in the condition of a requirement."""
     level = f"integer(0..{number})"
     condition = " and ".join(f"Gauge.height != {2 * i}" for i in range(number // 2))
     return _robot(
@@ -100,7 +100,7 @@ def operators(number: int) -> Files:
 
 
 def namespaces(number: int) -> Files:
-    """Prefixes that an XMI file declares on one element."""
+    """Namespace prefixes on one element of an XMI file."""
     declared = "".join(f' xmlns:a{i}="urn:a{i}"' for i in range(number))
     return {
         "model.xmi": '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -125,7 +125,7 @@ def states(number: int) -> Files:
 
 
 def components(number: int) -> Files:
-    """Components that know nothing of each other: eight lines each, up to 40,000 lines."""
+    """Independent components of eight lines, up to 40,000 lines."""
     return _robot(
         *(
             _behaviour(
@@ -141,7 +141,7 @@ def components(number: int) -> Files:
 
 
 def lines(number: int) -> Files:
-    """Components of ten lines, up to 50,000 lines, and a requirement on nothing behind them."""
+    """Components of ten lines, up to 50,000 lines, and a requirement on an unknown name."""
     return _robot(
         *(
             f"""\
@@ -162,7 +162,7 @@ requirement k{i} needs C{i}.A or C{max(i - 1, 0)}.v"""
 
 
 def topics(number: int) -> Files:
-    """Components whose messages come from one topic."""
+    """Components whose messages share one topic."""
     return _robot(
         *(
             _behaviour(
@@ -177,7 +177,7 @@ def topics(number: int) -> Files:
 
 
 def reactions(number: int) -> Files:
-    """Components with two reactions to data, a service, and a time that is set on the robot."""
+    """Components with two reactions to data, a service, and a parameter that is a time."""
     return _robot(
         *(
             f"""\
@@ -205,7 +205,7 @@ requirement rest{i} needs !Arm{i}.busy"""
 
 
 def enum_rules(number: int) -> Files:
-    """Rules of an enum, each with a value of its own."""
+    """Rules of an enum, each with its own value."""
     return _robot(
         "datatype enum Level from integer to {",
         *(f"value = {i} -> l{i}" for i in range(number)),
@@ -222,7 +222,7 @@ def enum_rules(number: int) -> Files:
 
 
 def requirements(number: int) -> Files:
-    """Requirements on one message, on a few states."""
+    """Requirements on one message that read few states."""
     return _robot(
         _GO.format("none"),
         _behaviour(
@@ -236,7 +236,7 @@ def requirements(number: int) -> Files:
 
 
 def faults(number: int) -> Files:
-    """Names that stand for nothing."""
+    """Unknown names."""
     return _robot(_GO.format("none"), *(f"requirement go needs Nobody.nowhere{i}" for i in range(number)))
 
 

@@ -40,21 +40,27 @@ MOST = 1.2
 HEAD = """\
 # Long models
 
-What a model costs that is long in one respect: seconds of the processor from its text to generated CIF, C, ROS 1, ROS 2
-and XMI, or to its findings where it is wrong on purpose, without what is loaded once; and the memory of the whole
-process at its peak. *k* is the exponent of *N^k* that fits best, and shall be below {most}; *end* is that of the two
-longest alone.
-`python benchmarks/walks.py` measured it on {machine}, and wrote this page; tests count the calls of the same walks.
+This page shows how the time and memory of RoboSC grow with a model that is long in one respect. The numbers come from
+{machine}. Measure your computer with
+
+<!-- not run: it takes long, and writes this page -->
+```sh
+python benchmarks/walks.py
+```
+
+The time is processor time, from the text to the generated CIF, C, ROS 1, ROS 2 and XMI. For a model that is wrong on
+purpose, it ends with the findings. *MB* is the peak memory of the process. *k* is the exponent of the growth *N^k*.
+It is below {most} for every model in the table, and [tests](../tests/benchmarks/test_walks.py) check that it stays so.
 """
 
 TAIL = """
-Two things grow with the square, and are none of these: the model of plants is that long itself, and with it CIF.
+Two other kinds of models grow with the square of N, because the model of plants and the CIF do:
 
-- *Transitions of one state on one event, each with a condition of its own.* The first whose condition holds is taken,
-  so an edge denies the conditions before it: N transitions make N²/2 conditions. In C they are tried one after the
-  other, and each is written once.
-- *Events that many states ignore.* What a state ignores is an edge of its location, too: a component of N states and N
-  messages has N² edges. In C nothing is written for them.
+- *Transitions of one state on one event, each with a condition of its own.* The first transition whose condition holds
+  is taken, so each edge negates the conditions before it. N transitions have N²/2 conditions. The generated C tries
+  them one after the other and contains each of them once.
+- *Events that many states ignore.* A location has an edge for each event that its state ignores. A component of N
+  states and N messages has N² edges. The generated C contains no code for them.
 """
 
 
@@ -139,8 +145,8 @@ def page(results: dict[str, Any]) -> str:
     sizes = sorted({point["n"] for points in results["families"].values() for point in points})
     lines = [HEAD.format(machine=results["machine"], most=MOST)]
     lines += [
-        f"| | {' | '.join(f'N = {size:,}' for size in sizes)} | MB | k | end |",
-        f"| --- |{' ---: |' * (len(sizes) + 3)}",
+        f"| | {' | '.join(f'N = {size:,}' for size in sizes)} | MB | k |",
+        f"| --- |{' ---: |' * (len(sizes) + 2)}",
     ]
     for family in FAMILIES:
         points = {point["n"]: point for point in results["families"].get(family, ())}
@@ -150,10 +156,7 @@ def page(results: dict[str, Any]) -> str:
         cells = [_seconds(points.get(size)) for size in sizes]
         memory = max(point["memory"] for point in points.values())
         measured = [points[size] for size in sizes if size in points]
-        steep = [
-            f"{exponent(series):.2f}" for series in (measured, [point for point in measured if point["finished"]][-2:])
-        ]
-        lines.append(f"| {title} | {' | '.join(cells)} | {memory:.0f} | {' | '.join(steep)} |")
+        lines.append(f"| {title} | {' | '.join(cells)} | {memory:.0f} | {exponent(measured):.2f} |")
     return "\n".join([*lines, TAIL])
 
 

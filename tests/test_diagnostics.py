@@ -261,7 +261,7 @@ def test_sarif_describes_the_rules_that_were_broken() -> None:
     assert [rules[result["ruleIndex"]]["id"] for result in only["results"]] == [
         result["ruleId"] for result in only["results"]
     ]
-    assert rules[1]["shortDescription"]["text"].startswith("An expression has another type")
+    assert rules[1]["shortDescription"]["text"].startswith("An expression has a type")
     assert rules[1]["help"]["text"].startswith("# type\n")
     assert "help" not in rules[0]
 

@@ -1,4 +1,4 @@
-"""The snippets of docs/language.md, put together, are a model that draws nothing and has a supervisor."""
+"""The snippets of the language pages, put together, are a model that draws nothing and has a supervisor."""
 
 import re
 from pathlib import Path
@@ -6,21 +6,24 @@ from pathlib import Path
 import robosc
 from robosc.files.resources import locate
 
-PAGE = Path(__file__).parent.parent / "docs" / "language.md"
+DOCS = Path(__file__).parent.parent / "docs"
 
 
-def snippet(heading: str, number: int = 0) -> str:
-    section = PAGE.read_text(encoding="utf-8").partition(f"\n## {heading}\n")[2].partition("\n## ")[0]
+def snippet(page: str, heading: str, number: int = 0) -> str:
+    text = (DOCS / page).read_text(encoding="utf-8")
+    section = text.partition(f"\n## {heading}\n")[2].partition("\n## ")[0]
     return re.findall(r"^```robosc\n(.*?)^```$", section, flags=re.MULTILINE | re.DOTALL)[number]
 
 
 def test_the_snippets_make_a_model(tmp_path: Path) -> None:
-    components = snippet("Components and their communication").rstrip()
+    components = snippet("language.md", "Components and their communication").rstrip()
     assert components.endswith("}")
     parts = [
-        snippet("Robot and library", 1),
-        components[:-1] + snippet("Behaviour") + "}",
-        *(snippet(title) for title in ("Data types", "Requirements", "Provided data")),
+        snippet("language.md", "Robot and library", 1),
+        components[:-1] + snippet("language.md", "Behaviour") + "}",
+        snippet("language-data.md", "Data types"),
+        snippet("language-requirements.md", "Requirements"),
+        snippet("language-requirements.md", "Provided data"),
     ]
     path = tmp_path / "porter.rscd"
     path.write_text("robot Porter {\n" + "\n".join(parts) + "}\n")
@@ -31,8 +34,7 @@ def test_the_snippets_make_a_model(tmp_path: Path) -> None:
 
 
 def test_the_snippet_on_time_is_a_behaviour(tmp_path: Path) -> None:
-    time = PAGE.read_text(encoding="utf-8").partition("\n### Time\n")[2]
-    behaviour = re.findall(r"^```robosc\n(.*?)^```$", time, flags=re.MULTILINE | re.DOTALL)[0]
+    behaviour = snippet("language-actions.md", "Time")
     heard = "\n".join(f"outgoing message {name} with type: none" for name in ("scan", "bumper"))
     behaviour = behaviour.replace("behaviour {", "behaviour {\n variable turned: boolean", 1)
     path = tmp_path / "turner.rscd"
@@ -43,7 +45,7 @@ def test_the_snippet_on_time_is_a_behaviour(tmp_path: Path) -> None:
 
 
 def test_the_standard_library_is_what_the_page_says() -> None:
-    page = PAGE.read_text(encoding="utf-8")
+    page = (DOCS / "language-libraries.md").read_text(encoding="utf-8")
     files = list(locate("robosc/stdlib").glob("*.rscd"))
     assert len(files) == 3
     for file in files:

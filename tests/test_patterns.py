@@ -1,4 +1,4 @@
-"""The models of docs/patterns.md: each draws nothing, does what the page says of it, and stands there word for word."""
+"""The models of the pages of patterns: each draws nothing, does what its page says, and stands there word for word."""
 
 import json
 import re
@@ -10,8 +10,9 @@ from click.testing import CliRunner
 from robosc.cli import main
 from tests.searching import less_effort
 
-PAGE = Path(__file__).parent.parent / "docs" / "patterns.md"
-PATTERNS = PAGE.with_suffix("")
+DOCS = Path(__file__).parent.parent / "docs"
+PAGES = (DOCS / "patterns.md", DOCS / "patterns-tasks.md")
+PATTERNS = DOCS / "patterns"
 NAMES = sorted(path.stem for path in PATTERNS.glob("*.rscd"))
 EACH = pytest.mark.parametrize("name", NAMES)
 PASSED, REFUSED = ' {"value": {"success": true}}', ' {"value": {"success": false}}'
@@ -41,7 +42,7 @@ def answered(name: str, result: str = "") -> str:
 @pytest.fixture(autouse=True)
 def nav2(monkeypatch: pytest.MonkeyPatch) -> None:
     """The definitions of Nav2 are known, as they are beside a robot that drives with it."""
-    monkeypatch.setenv("ROBOSC_INTERFACE_PATH", str(PAGE.parent.parent / "tests" / "ros" / "interfaces" / "ros2"))
+    monkeypatch.setenv("ROBOSC_INTERFACE_PATH", str(DOCS.parent / "tests" / "ros" / "interfaces" / "ros2"))
 
 
 @EACH
@@ -52,8 +53,9 @@ def test_nothing_is_said_of_it(name: str, command: str) -> None:
     assert (done.exit_code, done.stderr) == (0, ""), done.output
 
 
-def test_the_page_shows_each_model() -> None:
-    shown = re.findall(r"^```robosc\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+def test_the_pages_show_each_model() -> None:
+    text = "".join(page.read_text(encoding="utf-8") for page in PAGES)
+    shown = re.findall(r"^```robosc\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
     assert sorted(shown) == sorted((PATTERNS / f"{name}.rscd").read_text(encoding="utf-8") for name in NAMES)
     assert len(NAMES) == 15
 

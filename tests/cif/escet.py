@@ -1,4 +1,4 @@
-"""CIF's real tools, where `ESCET_HOME` names a folder with them: docs/coming-from-cif.md says what that holds."""
+"""CIF's real tools, where `ESCET_HOME` names a folder with them: benchmarks/escet.md describes it."""
 
 from __future__ import annotations
 
@@ -89,10 +89,11 @@ def without_inputs(text: str) -> str:
 class Tools:
     """CIF's tools in one running Java. Ends with the context."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, crashes: Path | None = None) -> None:
+        """`crashes`: the folder for reports of crashes; None: the present one."""
         command = ["java", "-Xmx3g", "-cp", class_path(folder), str(Path(__file__).with_name("Calls.java"))]
         self._java = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=crashes
         )
 
     def __enter__(self) -> Tools:

@@ -66,7 +66,7 @@ def test_an_input_that_changes(supervised: Path) -> None:
     """Tried on the plants and requirements, since no supervisor is synthesized for what has one."""
     model = supervised.with_name("LineFollower.cif")
     [plant] = re.findall(r"^```\n(plant world:.*?)```$", PAGE, re.MULTILINE | re.DOTALL)
-    [(new, old)] = re.findall(r"^with `(alg .*?)` in place of the line `(.*?)`", PAGE, re.MULTILINE)
+    [(old, new)] = re.findall(r"replace the line `(.*?)`\s+with\s+`(alg .*?)`", PAGE)
     text = model.read_text()
     assert text.count(old) == supervised.read_text().count(old) == 1
     model.write_text(f"{text.replace(old, new)}\n{plant}")

@@ -199,7 +199,7 @@ def test_the_shipped_schema_is_up_to_date_and_agrees(golden: Callable[[Path, str
 
 
 def test_every_key_is_explained() -> None:
-    manual = (Path(__file__).parents[2] / "docs" / "cli.md").read_text()
+    manual = (Path(__file__).parents[2] / "docs" / "configuration.md").read_text()
 
     def keys(values: dict[str, object], before: str = "") -> list[str]:
         below = [(f"{before}{name}", value) for name, value in values.items()]

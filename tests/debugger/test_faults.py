@@ -340,7 +340,7 @@ def test_the_page_tells_of_all_there_is() -> None:
     page = (ROOT / "docs" / "debugging.md").read_text()
     told = page.partition("## What can be done")[0]
     assert set(re.findall(r"`(\w+)`(?=[^\n]*? \| )", told)) >= set(_KEYS)
-    answered = page.partition("What is answered:")[2].partition(". `initialized`")[0]
+    answered = page.partition("answers these requests:")[2].partition(". It sends")[0]
     assert set(re.findall(r"`(\w+)`", answered)) == set(Adapter._answers)
     assert {known["filter"] for known in FILTERS} == set(re.findall(r"\(`(\w+)`\) \|", page))
     for code in re.findall(r"```json\n(.*?)```", page, re.DOTALL):

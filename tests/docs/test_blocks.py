@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 HELD = {
     "docs/rules/*.md": "tests/checks/test_rule_pages.py",
     "docs/rules/xmi.md": "tests/validity/test_validity.py",
-    "docs/patterns.md": "tests/test_patterns.py",
+    "docs/patterns*.md": "tests/test_patterns.py",
     "docs/explain.md": "tests/cli/test_explain_page.py",
     "docs/cif-simulator.md": "tests/cif/test_simulator_page.py",
 }

@@ -76,7 +76,7 @@ def test_the_page_sums_up_the_examples(path: Path, verified: Callable[[Path], An
 def test_the_page_shows_what_is_refuted(tmp_path: Path) -> None:
     page = (ROOT / "docs" / "verify.md").read_text()
     model = re.search(r"^```robosc\n(robot Lock .*?)^```", page, re.MULTILINE | re.DOTALL)
-    shown = page.partition("Below the table of `robosc verify lock.rscd` stands\n\n```\n")[2].partition("```")[0]
+    shown = page.partition("The output of `robosc verify lock.rscd` ends with\n\n```\n")[2].partition("```")[0]
     file = tmp_path / "lock.rscd"
     file.write_text(model[1])
     told = CliRunner().invoke(main, ["verify", str(file)])

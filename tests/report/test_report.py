@@ -179,7 +179,7 @@ def test_the_page_on_tests_tells_what_its_tours_show(name: str, planned: Planned
     page = (ROOT / "docs" / "tests-for-your-robot.md").read_text()
     row = re.search(rf"^\| `{name}` \| (.+) \|$", page, re.MULTILINE)
     assert row
-    runs, steps, _, transitions, true, false = row[1].split(" | ")
+    runs, steps, transitions, true, false = row[1].split(" | ")
     test = planned(name, 2)
     assert test.coverage == f"{transitions} transitions, {true} guards true, {false} false, in {steps} steps"
     assert sum(path.startswith("traces/") for path in test.files) == int(runs)

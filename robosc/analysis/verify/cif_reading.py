@@ -85,7 +85,8 @@ class _Reading:
         alphabets = [
             (declaration, automaton, self._fill(declaration, automaton)) for declaration, automaton in automata
         ]
-        model.plants.extend(automaton for declaration, automaton in automata if declaration.kind != "supervisor")
+        supervisor = automata[-1][0] if automata and automata[-1][0].kind == "supervisor" else None
+        model.plants.extend(automaton for declaration, automaton in automata if declaration is not supervisor)
         if not model.plants:
             self._fail(self._read, "there is no plant")
         invariants: dict[str, list[sct.Requirement]] = {"plant": [], "requirement": [], "supervisor": []}
@@ -95,9 +96,8 @@ class _Reading:
             else:
                 invariants[invariant.kind].append(self._exclusion(invariant.restriction))
         model.requirements.extend(invariants["requirement"])
-        supervisors = [alphabet for alphabet in alphabets if alphabet[0].kind == "supervisor"]
-        for declaration, _, _ in supervisors[1:]:
-            self._fail(declaration, "there is a second supervisor")
+        supervisors = [alphabet for alphabet in alphabets if alphabet[0] is supervisor]
+        self._check_kinds([declaration for declaration, _ in automata], supervisor)
         for declaration, automaton, _ in supervisors:
             if len(automaton.locations) != 1 or not automaton.locations[0].marked:
                 self._fail(declaration, "a supervisor has one location, and that is marked")
@@ -107,6 +107,15 @@ class _Reading:
             supervisors[0][1] if supervisors else None,
             supervisors[0][2] if supervisors else [],
         )
+
+    def _check_kinds(self, automata: Sequence[Any], supervisor: Any) -> None:
+        """Raise CifError where a supervisor stands in the wrong place, or a requirement automaton beside one."""
+        for declaration in automata:
+            if supervisor is not None and declaration.kind == "requirement":
+                self._fail(declaration, "a requirement automaton stands beside a supervisor")
+            has_alphabet = any(type(part).__name__ == "Alphabet" for part in declaration.declarations)
+            if declaration.kind == "supervisor" and has_alphabet != (declaration is supervisor):
+                self._fail(declaration, "the automaton that synthesis adds is the last one and has an alphabet")
 
     def _of(self, rule: str) -> list[Any]:
         return [declaration for declaration in self._read.declarations if type(declaration).__name__ == rule]
@@ -360,7 +369,7 @@ class _Reading:
 
 def _automaton(read: Any) -> sct.Plant:
     made = sct.Plant(name=_plain(read.name))
-    if read.kind == "requirement":
+    if read.kind != "plant":
         made.kind = sct.PlantKind.requirement
     return made
 

@@ -37,7 +37,7 @@ class Writer:
     def unsupervised(self) -> str:
         """The plants and the requirements."""
         lines = document([f"The plants and requirements of {self._model.name}."], sign="@@")
-        return folded([*lines, *self._plants(), *self._requirements()])
+        return folded([*lines, *self._plants("requirement automaton"), *self._requirements()])
 
     def supervised(self, supervisor: sct.Supervisor) -> str:
         """The plants under their supervisor: the requirements as it keeps them, and an automaton of what it adds."""
@@ -51,7 +51,7 @@ class Writer:
         return folded(
             [
                 *document(self._counted(supervisor), sign="@@"),
-                *self._plants(),
+                *self._plants("supervisor automaton"),
                 *([""] if kept else []),
                 *kept,
                 "",
@@ -69,15 +69,19 @@ class Writer:
             ]
         )
 
-    def _plants(self) -> Iterator[str]:
-        """The enumerations and the plants, with a blank line before them and between plants."""
+    def _plants(self, requirement: str) -> Iterator[str]:
+        """Yield the enumerations and the plants, with a blank line before them and between plants.
+
+        `requirement` is the kind of requirement automata: CIF's tools take none beside a supervisor, and its own
+        synthesis makes supervisors of them.
+        """
         if self._model.enumerations:
             yield ""
         for enumeration in self._model.enumerations:
             literals = listed(map(self._names.declared, enumeration.literals))
             yield f"enum {self._names.declared(enumeration)} = {literals};"
         for plant in self._model.plants:
-            kind = "requirement automaton" if plant.kind == sct.PlantKind.requirement else "plant"
+            kind = requirement if plant.kind == sct.PlantKind.requirement else "plant"
             yield from ["", f"{kind} {self._names.declared(plant)}:", *self._plant(plant), "end"]
 
     def _requirements(self) -> Iterator[str]:
