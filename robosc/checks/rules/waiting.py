@@ -65,8 +65,8 @@ def _states_without_end(known: Instances, places: Places) -> Iterator[Finding]:
                 yield Finding(
                     place,
                     f"`cancel from {name}` leads to `{instance.name}.{transition.target.name}`{onwards},"
-                    f" which does not wait for the end of `{name}`: the controller has only asked the server to cancel, and the robot may still"
-                    " move",
+                    f" which does not wait for the end of `{name}`: the controller has only asked the server to cancel,"
+                    " and the robot may still move",
                     f"go to a state `stopping` that `canceled from {name}`, `response from {name}` and"
                     f" `error from {name}` leave",
                     related=None if place is transition else transition,
