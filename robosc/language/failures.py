@@ -72,5 +72,8 @@ def _is_declared(declared: rsc.DataType | None) -> bool:
 
 
 def _is_reason(expression: ex.Expression | None) -> bool:
-    found = None if expression is None else type_of(expression)
+    # Only these can have an enum for a type. The operands of an operator are many: its type is not computed.
+    if not isinstance(expression, rsc.Access | rsc.ErrorReason | rsc.Call | ex.Conditional):
+        return False
+    found = type_of(expression)
     return isinstance(found, EnumType) and is_failure(found.definition)

@@ -608,7 +608,7 @@ class Linker:
         own = self.around(access, rsc.Component)
         if own is None or word.text != RUNNING_WORD or access.segments or name.text in (self.scope.members(own) or {}):
             return False
-        if self.scope.find(rsc.NamedExpression, name.text) or self.scope.values(name.text):
+        if self.scope.find(rsc.NamedExpression, name.text):
             return False
         communication = (self.scope.communications(own) or {}).get(name.text)
         if not isinstance(communication, rsc.Service | rsc.Action):

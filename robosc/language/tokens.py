@@ -96,13 +96,14 @@ class Tokens:
 
     def runs(self, first: int, last: int) -> list[tuple[int, int]]:
         """The offsets of the tokens from one index to another, both included, in pieces without a comment between."""
+        start, end = self[first].start, self[last].end
         found: list[tuple[int, int]] = []
-        for index in range(first, last + 1):
-            start, end = self[index].start, self[index].end
-            if found and not self.has_comment(found[-1][1], start):
-                start = found.pop()[0]
-            found.append((start, end))
-        return found
+        for comment in self.comments[bisect_left(self.comments, (start, 0)) : bisect_left(self.comments, (end, 0))]:
+            behind = self.index_at(comment[0])
+            if self[behind].start != start:  # several comments can stand between two tokens
+                found.append((start, self[behind - 1].end))
+                start = self[behind].start
+        return [*found, (start, end)]
 
     def has_comment(self, start: int, end: int) -> bool:
         """Whether a comment begins between two offsets."""

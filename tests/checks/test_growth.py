@@ -1,5 +1,8 @@
 """Short texts whose names stand for very much are refused before anything is written out."""
 
+import sys
+from collections.abc import Callable
+
 import pytest
 
 from robosc.checks import check
@@ -63,3 +66,31 @@ def test_texts_of_texts_are_not_written_out() -> None:
     reading = read("r.rscd", documents=Documents({"r.rscd": text}))
     findings = [*reading.findings, *check(reading.base, reading.findings)]
     assert {finding.message for finding in findings} == {TOO_LARGE}
+
+
+def calls(text: str) -> int:
+    """The number of Python functions that reading and checking a text calls."""
+    count = 0
+
+    def counted(_frame: object, event: str, _argument: object) -> None:
+        nonlocal count
+        count += event == "call"
+
+    before = sys.getprofile()
+    sys.setprofile(counted)
+    try:
+        reading = read("r.rscd", documents=Documents({"r.rscd": text}))
+        check(reading.base, reading.findings)
+    finally:
+        sys.setprofile(before)
+    return count
+
+
+@pytest.mark.parametrize("chain", [" = ".join, lambda parts: " = ".join(["lost", *parts[1:]])])
+def test_a_chain_of_reasons_costs_by_its_length(chain: Callable[[list[str]], str]) -> None:
+    text = """robot R {{ component A {{ service s with request: none, response: none behaviour {{
+      initial marked state idle {{ on request to s goto busy }}
+      state busy {{ on response from s goto idle on error from s if {} goto idle }} }} }} }}"""
+    calls(text.format("error = lost"))  # what is read once is read now
+    short, long = (calls(text.format(chain(["error"] * number))) for number in (100, 400))
+    assert long < 5 * short

@@ -114,7 +114,7 @@ def _beside_reason(
 ) -> Iterator[tuple[ex.Expression, rsc.CommunicationType | None]]:
     """The operand that stands beside `error`, and the service or action that has failed."""
     for read, other in ((comparison.left, comparison.right), (comparison.right, comparison.left)):
-        if isinstance(read, rsc.ErrorReason) and other is not None:
+        if isinstance(read, rsc.ErrorReason) and isinstance(other, rsc.Access | rsc.Call | ex.Conditional):
             yield other, _failing(read)
 
 

@@ -76,16 +76,21 @@ for _identifier, _kind, _scopes in _UNIQUE:
 def unique_variable(base: rsc.Base) -> Iterator[Finding]:
     """No variable of a component has the name of another one, or of a state: `Component.name` reaches both.
 
-    Nor has a variable of the predefined enum the name of one of its values.
+    Nor has a variable, constant or parameter of the predefined enum the name of one of its values.
     """
     yield from _parameters(base)
-    for declared in variables(base):
+    owners: list[Any] = [*statements(rsc.Function, base)]
+    owners += of_kind((rsc.Component, rsc.EnumDataType), base.definitions)
+    named: list[Any] = [*variables(base), *statements(rsc.Constant, base), *statements(rsc.Parameter, base)]
+    named += (parameter for owner in owners for parameter in owner.parameters)
+    for declared in named:
         kind = declared_type(declared.type)
         reasons = kind.definition if isinstance(kind, EnumType) and is_failure(kind.definition) else None
         if reasons is not None and declared.name in {known.value.name for known in reasons.rules}:
+            word = type(declared).__name__.removeprefix("Formal").lower()
             yield Finding(
                 declared,
-                f"variable `{declared.name}` is named like a value of its type `{FAILURE}`, expected another name:"
+                f"{word} `{declared.name}` is named like a value of its type `{FAILURE}`, expected another name:"
                 f" in `error = {declared.name}` the name is the value",
                 "choose another name, such as `why`",
             )

@@ -52,10 +52,10 @@ def unknown_end(base: rsc.Base) -> Iterator[Finding]:
             others = [condition for condition in conditions if condition.restricted - {port}]
             for state, left in _reasons_left(transition, instance, port, known).items():
                 misled = {
-                    reason: other
+                    reason: (other, after.state)
                     for reason in left
                     for other in others
-                    if _misleads(transition, _Situation(known, instance, state, reason), other)
+                    for after in _misleading(transition, _Situation(known, instance, state, reason), other)
                 }
                 place = places.new(transition, instance, port.communication) if misled else None
                 if place is not None:
@@ -66,13 +66,13 @@ def _finding(
     place: ex.Located,
     transition: rsc.ResultTransition,
     instance: Instance,
-    misled: Mapping[str, CommandCondition],
+    misled: Mapping[str, tuple[CommandCondition, rsc.State]],
     port: PortInstance,
 ) -> Finding:
-    """The finding about a transition that misleads a condition for each of some reasons."""
+    """The finding about a transition that misleads a condition for each of some reasons, in a state at rest."""
     name = written(port.communication.name)
     whether = " or ".join(f"error = {reason}" for reason in misled)
-    condition = next(iter(misled.values()))
+    condition, state = next(iter(misled.values()))
     read = {access.item for access in accesses(condition.condition)}
     variables = [assigned_variable(assignment) for assignment in transition.assignments]
     variable = next((variable for variable in variables if variable is not None and variable in read), None)
@@ -80,7 +80,8 @@ def _finding(
     if variable is not None or target is None:
         does = f"assigns `{variable.name}`" if variable is not None else "assigns a variable"
     else:
-        does = f"leads to `{instance.name}.{target.name}`"
+        onwards = "" if state is target else f" and from there to `{instance.name}.{state.name}`"
+        does = f"leads to `{instance.name}.{target.name}`{onwards}"
     return Finding(
         place,
         f"`error from {name}` {does}, which a requirement on another command reads: with the reason"
@@ -129,16 +130,41 @@ def _may_be_unreadable(transition: rsc.Transition) -> bool:
     )
 
 
-def _misleads(transition: rsc.ResultTransition, before: _Situation, condition: CommandCondition) -> bool:
-    """Whether a condition can become true by a transition that is taken in a situation."""
-    known, instance = before.known, before.instance
-    assigned: dict[rsc.Variable, Value | None] = {}
+def _misleading(
+    transition: rsc.ResultTransition, before: _Situation, condition: CommandCondition
+) -> Iterator[_Situation]:
+    """The situations after a transition, or after silent ones that follow it, in which a condition has become true."""
+    return (after for after in _at_rest(_taken(transition, before)) if _makes_true(condition, before, after))
+
+
+def _taken(transition: rsc.Transition, before: _Situation) -> _Situation:
+    """Return the situation after a transition."""
+    assigned = dict(before.variables)
     for assignment in transition.assignments:
         variable = assigned_variable(assignment)
         if variable is not None:
-            assigned[variable] = before.value(known.expanded(assignment.value, instance), instance)
-    changed = _Changed(instance, frozenset(assigned))
-    after = _Situation(known, instance, transition.target or before.state, None, assigned)
+            value = before.known.expanded(assignment.value, before.instance)
+            assigned[variable] = before.value(value, before.instance)
+    return before._replace(state=transition.target or before.state, reason=None, variables=assigned)
+
+
+def _at_rest(first: _Situation) -> list[_Situation]:
+    """Return a situation and those that silent transitions lead to whose conditions hold for certain."""
+    common = [transition for transition, where in first.instance.transitions if where is None]
+    reached = [first]
+    for situation in reached:
+        for transition in [*situation.state.transitions, *common]:
+            if isinstance(transition, rsc.TauTransition) and situation.holds(transition.guard):
+                after = _taken(transition, situation)
+                if all(after.state is not other.state for other in reached):
+                    reached.append(after)
+    return reached
+
+
+def _makes_true(condition: CommandCondition, before: _Situation, after: _Situation) -> bool:
+    """Whether a condition can become true between two situations."""
+    known, instance = before.known, before.instance
+    changed = _Changed(instance, frozenset(after.variables))
     expression, within = known.expanded(condition.condition, condition.within), condition.within
     earlier = before._replace(reason=None).formula(expression, within, changed, "before")
     later = after.formula(expression, within, changed, "after")

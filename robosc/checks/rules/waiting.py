@@ -48,21 +48,40 @@ def _states_without_end(known: Instances, places: Places) -> Iterator[Finding]:
             if transition.target is None or not _is_on(transition, rsc.ResultType.cancel):
                 continue
             action = communication_of(transition.communicationType)
-            waits = [*transition.target.transitions, *common]
-            if action is None or _hears(waits, transition.communicationType, rsc.ResultType.canceled):
+            if action is None:
+                continue
+            passed = (
+                state
+                for state in _silently_reached(transition.target, common)
+                if not _hears([*state.transitions, *common], transition.communicationType, rsc.ResultType.canceled)
+            )
+            deaf = next(passed, None)
+            if deaf is None:
                 continue
             place = places.new(transition, instance, action)
             if place is not None:
                 name = written(action.name)
+                onwards = "" if deaf is transition.target else f" and from there to `{instance.name}.{deaf.name}`"
                 yield Finding(
                     place,
-                    f"`cancel from {name}` leads to `{instance.name}.{transition.target.name}`, which does not wait for"
-                    f" the end of `{name}`: the controller has only asked the server to cancel, and the robot may still"
-                    " move",
+                    f"`cancel from {name}` leads to `{instance.name}.{transition.target.name}`{onwards},"
+                    f" which does not wait for the end of `{name}`: the controller has only asked the server to cancel,"
+                    " and the robot may still move",
                     f"go to a state `stopping` that `canceled from {name}`, `response from {name}` and"
                     f" `error from {name}` leave",
                     related=None if place is transition else transition,
                 )
+
+
+def _silently_reached(state: rsc.State, common: Iterable[rsc.Transition]) -> list[rsc.State]:
+    """Return a state and all that silent transitions without a condition lead to from there, nearest first."""
+    reached = [state]
+    for current in reached:
+        for transition in [*current.transitions, *common]:
+            is_certain = isinstance(transition, rsc.TauTransition) and transition.guard is None
+            if is_certain and transition.target is not None and transition.target not in reached:
+                reached.append(transition.target)
+    return reached
 
 
 def _forbidden_ends(known: Instances, places: Places) -> Iterator[Finding]:
