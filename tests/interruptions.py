@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, NoReturn
 
 #: The functions of `os` through which files are made, moved and removed, by pathlib, tempfile and shutil, too.
-CHANGES = ("mkdir", "link", "replace", "unlink", "rmdir")
+CHANGES = ("mkdir", "replace", "unlink", "rmdir")
 
 _MOST = 100
 

@@ -1,15 +1,13 @@
-"""Writes files: all of them or none, only what changed, never outside of the folder that was named.
+"""Write files: all of them or none, only those that changed, never outside of the folder that was named.
 
-A folder is locked while it is written. New texts are staged in a folder inside of it; a journal there says what is
-about to be moved where, and then everything is moved. A signal that would end the process waits meanwhile: it undoes
-what was moved, and only then ends it. After SIGKILL the next call that writes to the folder undoes what the journal
-tells of.
+A folder is locked while it is written. New texts are staged in a folder inside of it, then each is moved to its place.
+A signal that would end the process waits until all are moved, or ends the staging. After SIGKILL each file is whole,
+and the next call that writes to the folder finishes the work and removes the stage.
 """
 
 from __future__ import annotations
 
 import errno
-import json
 import os
 import re
 import shutil
@@ -20,7 +18,6 @@ import tempfile
 import threading
 import time
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 
@@ -29,16 +26,13 @@ from robosc.files import reading
 if sys.platform != "win32":
     import fcntl
 
-from robosc.files.json_reading import json_value
-
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
 
 #: How long a folder is waited for that another process writes to.
 PATIENCE_SECONDS = 60.0
 
 _STAGE = re.compile(r"\.robosc-[a-z0-9_]{8}")
-_STAGED = re.compile(r"[0-9]+\.(new|old)|journal(\.new)?")
 _ENDING_SIGNALS = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT") if hasattr(signal, name)
 )
@@ -49,13 +43,13 @@ class OutputError(OSError):
 
 
 def write(trees: Mapping[Path, Mapping[str, str]]) -> list[Path]:
-    """Writes texts below folders, as UTF-8, and says which files are new or different.
+    """Write texts below folders, as UTF-8, and return the files that are new or different.
 
-    Each folder comes with its files: relative POSIX path to text. Missing folders are made. A file that has its text
-    already keeps its time of change; files that are not mentioned are left alone. Scripts (`#!`) can be
-    executed. Raises OutputError, after undoing everything, where something can't be written, leads out of its folder
-    (by `..`, an absolute path or a link), is asked to be two texts, or would take the place of what is no regular file
-    or of an input (`robosc.files.reading.noting`); and where another process goes on writing to a folder.
+    Each folder comes with its files: relative POSIX path to text. Missing folders are created. A file with the same
+    text keeps its time of change; files that are not mentioned are left alone. Scripts (`#!`) become executable.
+    Raises OutputError, before any file has changed, where a text cannot be staged, a path leads out of its folder (by
+    `..`, an absolute path or a link) or has two texts, or a file would replace an input (`robosc.files.reading.noting`)
+    or anything but a regular file; and where another process goes on writing to a folder.
     """
     with _Signals() as signals:
         try:
@@ -143,9 +137,7 @@ def _write(trees: Mapping[Path, Mapping[str, str]], signals: _Signals) -> list[P
     with ExitStack() as made, ExitStack() as locks:
         for folder in sorted(placed):
             locks.enter_context(_locked(folder, made, signals))
-            for left in _left_over(folder):
-                left.undo()
-                left.discard()
+            _remove_left_over(folder)
         changed = {
             folder: {path: text.encode() for path, text in files.items() if not _is(path, text.encode())}
             for folder, files in placed.items()
@@ -153,8 +145,7 @@ def _write(trees: Mapping[Path, Mapping[str, str]], signals: _Signals) -> list[P
         for path in (path for files in changed.values() for path in files):
             if os.path.lexists(path):
                 _refuse_existing(path, path.lstat())
-        _replace(changed, signals)
-        made.pop_all()
+        _replace(changed, made, signals)
     return [path for files in changed.values() for path in files]
 
 
@@ -217,159 +208,46 @@ def _lock(descriptor: int) -> bool:
     return True
 
 
-@dataclass(frozen=True)
-class _Move:
-    """A staged file, the path below the folder that it is for, and what tells later that it is what is there."""
-
-    number: int
-    path: str
-    mark: list[int]
-
-
-def _mark(path: Path) -> list[int]:
-    """What a move keeps of a file and a change does not."""
-    found = path.lstat()
-    return [found.st_ino, found.st_size, found.st_mtime_ns]
-
-
-class _Stage:
-    """A folder inside of one that is written, with the new files, and with the old ones while they may come back."""
-
-    def __init__(self, folder: Path, path: Path) -> None:
-        self._folder = folder
-        self._path = path
-        self._moves: list[_Move] = []
-        self._folders: list[str] = []
-
-    def fill(self, files: Mapping[Path, bytes], signals: _Signals) -> None:
-        """Stages all files, then says in the journal what will be moved."""
-        for number, (path, content) in enumerate(files.items()):
-            signals.check()
-            new = self._path / f"{number}.new"
-            with new.open("xb") as file:
-                file.write(content)
-            if path.exists():
-                shutil.copymode(path, new)
-            if content.startswith(b"#!"):
-                new.chmod(new.stat().st_mode | 0o111)
-            self._moves.append(_Move(number, path.relative_to(self._folder).as_posix(), _mark(new)))
-            missing = [
-                parent for parent in path.relative_to(self._folder).parents if not (self._folder / parent).exists()
-            ]
-            self._folders += [
-                parent.as_posix() for parent in reversed(missing) if parent.as_posix() not in self._folders
-            ]
-        moves = [[move.number, move.path, move.mark] for move in self._moves]
-        draft = self._path / "journal.new"
-        draft.write_text(json.dumps({"moves": moves, "folders": self._folders}), encoding="utf-8")
-        draft.replace(self._journal)
-
-    def read_journal(self) -> bool:
-        """Takes from the journal what was to be moved; False where it can't be from here."""
-        try:
-            found = json_value(reading.read(self._journal, is_input=False).decode("utf-8"))
-            self._moves = [_Move(int(number), str(path), list(mark)) for number, path, mark in found["moves"]]
-            self._folders = [str(named) for named in found["folders"]]
-            for path in [*(move.path for move in self._moves), *self._folders]:
-                _inside(self._folder, path)
-        except FileNotFoundError:
-            return True  # nothing is moved yet, or all of it
-        except (OSError, ValueError, TypeError, KeyError, OutputError):
-            return False
-        return True
-
-    def move(self, signals: _Signals) -> None:
-        """Moves every file to its place; what is there is kept."""
-        for folder in self._folders:
-            (self._folder / folder).mkdir()
-        for move in self._moves:
-            signals.check()
-            path = self._folder / move.path
-            old = self._path / f"{move.number}.old"
-            if os.path.lexists(path):
-                try:
-                    old.hardlink_to(path)
-                except OSError:  # for a moment nothing is there, then
-                    path.replace(old)
-            (self._path / f"{move.number}.new").replace(path)
-
-    def undo(self) -> None:
-        """Puts back what was there, if it is still our file that is there now."""
-        for move in reversed(self._moves):
-            path = self._folder / move.path
-            old = self._path / f"{move.number}.old"
-            is_there = os.path.lexists(path)
-            if is_there and _mark(path) != move.mark:
-                continue  # not yet moved, or changed since by somebody else
-            if old.exists():
-                old.replace(path)
-            elif is_there:
-                path.unlink()
-        for folder in reversed(self._folders):
-            with suppress(OSError):  # it was not made yet, or somebody else uses it
-                (self._folder / folder).rmdir()
-
-    def commit(self) -> None:
-        """From now on nothing comes back."""
-        self._journal.unlink()
-
-    def discard(self) -> None:
-        """Removes the stage; the journal first, so that nobody undoes by half a stage."""
-        self._journal.unlink(missing_ok=True)
-        shutil.rmtree(self._path, ignore_errors=True)
-
-    @property
-    def _journal(self) -> Path:
-        return self._path / "journal"
-
-
-def _left_over(folder: Path) -> Iterator[_Stage]:
-    """The stages of calls that were killed: ours, as nobody else may tell what is to be moved."""
-    with os.scandir(folder) as entries:
-        names = sorted(entry.name for entry in entries if _STAGE.fullmatch(entry.name))
-    for name in names:
-        path = folder / name
-        found = path.lstat()
-        if stat.S_ISDIR(found.st_mode) and (sys.platform == "win32" or found.st_uid == os.geteuid()):
-            stage = _Stage(folder, path)
-            if all(_STAGED.fullmatch(entry.name) for entry in path.iterdir()) and stage.read_journal():
-                yield stage
-
-
-def _replace(changed: Mapping[Path, Mapping[Path, bytes]], signals: _Signals) -> None:
-    """Stages all files, then moves each into its place."""
-    stages: list[tuple[_Stage, Mapping[Path, bytes]]] = []
-    try:
+def _replace(changed: Mapping[Path, Mapping[Path, bytes]], made: ExitStack, signals: _Signals) -> None:
+    """Stage all files, then move each to its place; new folders stay once all files are staged."""
+    with ExitStack() as stages:
+        moves: list[tuple[Path, Path]] = []
         for folder, files in changed.items():
             if files:
-                # Inside of the folder: only there one can count on the right to write and on one file system.
-                stages.append((_Stage(folder, Path(tempfile.mkdtemp(prefix=".robosc-", dir=folder))), files))
-        for stage, files in stages:
-            stage.fill(files, signals)
-        for stage, _ in stages:
-            stage.move(signals)
+                # Inside of the folder, where this process may write and a move stays within one file system.
+                stage = Path(tempfile.mkdtemp(prefix=".robosc-", dir=folder))
+                stages.callback(shutil.rmtree, stage, ignore_errors=True)
+                moves += [(_staged(stage / str(number), file, files[file]), file) for number, file in enumerate(files)]
+            signals.check()
+        for _, path in moves:
+            _make(path.parent, made)
+            if not path.parent.is_dir():
+                raise OutputError(f"{path.parent} is no folder: {path.name} can't be written below it")
         signals.check()
-        for stage, _ in stages:
-            stage.commit()
-    except BaseException as error:
-        _undo([stage for stage, _ in reversed(stages)], error)
-        raise
-    for stage, _ in stages:
-        stage.discard()
+        made.pop_all()
+        for staged, path in moves:
+            staged.replace(path)
 
 
-def _undo(stages: Iterable[_Stage], cause: BaseException) -> None:
-    failure = None
+def _staged(staged: Path, path: Path, content: bytes) -> Path:
+    """Write the content of a file to its stage, with the permissions that the file has or needs."""
+    with staged.open("xb") as file:
+        file.write(content)
+    if path.exists():
+        shutil.copymode(path, staged)
+    if content.startswith(b"#!"):
+        staged.chmod(staged.stat().st_mode | 0o111)
+    return staged
+
+
+def _remove_left_over(folder: Path) -> None:
+    """Remove the stages of calls of this user that were killed."""
+    with os.scandir(folder) as entries:
+        stages = [Path(entry.path) for entry in entries if _STAGE.fullmatch(entry.name) and not entry.is_symlink()]
     for stage in stages:
-        try:
-            stage.undo()
-            stage.discard()
-        except OSError as error:  # the stage keeps what was there
-            failure = failure or error
-    if failure is not None:
-        reason = _reason(cause) if isinstance(cause, OSError) else str(cause)
-        again = "the next run that writes there tries to restore it"
-        raise OutputError(f"{reason}; what was there before could not be restored: {_reason(failure)}; {again}")
+        is_own = stage.is_dir() and (sys.platform == "win32" or stage.lstat().st_uid == os.geteuid())
+        if is_own and all(path.name.isdecimal() for path in stage.iterdir()):
+            shutil.rmtree(stage, ignore_errors=True)
 
 
 def _make(folder: Path, made: ExitStack) -> None:

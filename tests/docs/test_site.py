@@ -111,7 +111,7 @@ def test_only_pages_that_draw_load_the_script_for_it(site: Site) -> None:
 
 
 def test_models_are_coloured(site: Site) -> None:
-    text = (site.folder / "docs" / "language.html").read_text(encoding="utf-8")
+    text = (site.folder / "docs" / "language-requirements.html").read_text(encoding="utf-8")
     assert '<div class="highlight-robosc notranslate">' in text
     assert re.search(r'<span class="k\w*">requirement</span>', text)
 

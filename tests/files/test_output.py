@@ -2,13 +2,11 @@
 
 import fcntl
 import os
-import re
 import signal
 import stat
 import tempfile
 from collections.abc import Mapping
 from contextlib import suppress
-from functools import partial
 from pathlib import Path
 from threading import Timer
 from typing import Any
@@ -18,7 +16,7 @@ import pytest
 from robosc.files import reading as files
 from robosc.files import writing as output
 from robosc.files.writing import OutputError, open_log, temporary_folder, write, write_file
-from tests.interruptions import CHANGES, interrupted, interruptions
+from tests.interruptions import interrupted, interruptions
 
 
 def tree(folder: Path) -> dict[str, str]:
@@ -135,6 +133,7 @@ def test_what_is_in_the_way_stays(tmp_path: Path, existing: dict[str, str], want
 
 OLD = {"out": {"old": "1", "also/old": "2"}}
 NEW = {"out": {"old": "3", "also/old": "4", "new/file": "5"}, "copy": {"x": "6"}}
+ALL_NEW = {f"{folder}/{name}": text for folder, files in NEW.items() for name, text in files.items()}
 
 
 def below(folder: Path, trees: Mapping[str, Mapping[str, str]]) -> dict[Path, Mapping[str, str]]:
@@ -146,14 +145,13 @@ def texts(folder: Path) -> dict[str, str]:
     return {name: text for name, text in tree(folder).items() if text != "/"}
 
 
-@pytest.mark.parametrize("change", CHANGES)
+@pytest.mark.parametrize("change", ["mkdir", "unlink", "rmdir"])
 @pytest.mark.parametrize("failing", range(1, 8))
 @pytest.mark.parametrize("fault", [OSError(28, "No space left on device"), KeyboardInterrupt()], ids=repr)
-def test_a_failure_of_any_change_undoes_all(
+def test_a_failure_before_the_first_move_changes_nothing(
     tmp_path: Path, change: str, failing: int, fault: BaseException, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     write(below(tmp_path, OLD))
-    os.utime(tmp_path / "out" / "old", (1, 1))
     before = tree(tmp_path)
     done = 0
     real = getattr(os, change)
@@ -166,74 +164,23 @@ def test_a_failure_of_any_change_undoes_all(
         return real(*arguments, **options)
 
     monkeypatch.setattr(os, change, failing_once)
-    said = r"OutputError.*No space left on device" if isinstance(fault, OSError) else "KeyboardInterrupt"
-    error = None
+    error: BaseException | None = None
     try:
         write(below(tmp_path, NEW))
     except (OutputError, KeyboardInterrupt) as raised:
-        error = repr(raised)
+        error = raised
     monkeypatch.undo()
-    assert re.match(said, error or said)
+    left = [name for name in tree(tmp_path) if ".robosc-" in name]
+    assert left == [] or change in ("unlink", "rmdir")
     if tree(tmp_path)["out/old"] == "1":
-        assert error
-        write({tmp_path / "out": {"old": "1"}})  # removes what could not be removed
-        assert tree(tmp_path) == before
-        assert (tmp_path / "out" / "old").stat().st_mtime == 1
-    else:  # there were less such changes, or a link could not be made and the file was moved
-        left = [name for name in tree(tmp_path) if ".robosc-" in name]
-        assert left == [] or change in ("unlink", "rmdir")
-        assert {name: text for name, text in texts(tmp_path).items() if name not in left} == {
-            f"{folder}/{name}": text for folder, files in NEW.items() for name, text in files.items()
-        }
+        assert error is not None
+        assert {name: text for name, text in tree(tmp_path).items() if name not in left} == before
+    else:
+        assert {name: text for name, text in texts(tmp_path).items() if name not in left} == ALL_NEW
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("again", [False, True], ids=["once", "again and again"])
-@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT])
-def test_a_signal_at_any_change_leaves_all_or_nothing(tmp_path: Path, sent: signal.Signals, again: bool) -> None:
-    def run(number: int) -> int:
-        write(below(tmp_path / str(number), OLD))
-        return interrupted(lambda: write(below(tmp_path / str(number), NEW)), number, sent, again=again)
-
-    seen = []
-    for number, status in interruptions(run):
-        assert status == (130 if sent == signal.SIGINT else -sent)
-        found = tree(tmp_path / str(number))
-        if found["out/old"] == "1":
-            assert found == {"out": "/", "out/old": "1", "out/also": "/", "out/also/old": "2"}
-        else:
-            assert texts(tmp_path / str(number)) == {
-                f"{folder}/{name}": text for folder, files in NEW.items() for name, text in files.items()
-            }
-        seen.append(found["out/old"])
-    assert seen == sorted(seen)
-    assert seen.count("1") > 10
-
-
-@pytest.mark.slow
-def test_what_kill_leaves_the_next_run_undoes(tmp_path: Path) -> None:
-    def run(number: int) -> int:
-        write(below(tmp_path / str(number), OLD))
-        return interrupted(lambda: write(below(tmp_path / str(number), NEW)), number, signal.SIGKILL)
-
-    halfway = 0
-    for number, status in interruptions(run):
-        assert status == -signal.SIGKILL
-        home = tmp_path / str(number)
-        # Even before: each file is there as a whole.
-        assert texts(home)["out/old"] in ("1", "3")
-        assert texts(home)["out/also/old"] in ("2", "4")
-        halfway += texts(home)["out/old"] != {"2": "1", "4": "3"}[texts(home)["out/also/old"]]
-        write({home / name: {"last": "7"} for name in NEW})
-        for folder, new in NEW.items():
-            whole = (OLD.get(folder, {}), new)
-            assert texts(home / folder) in [{**files, "last": "7"} for files in whole], f"change {number}"
-        assert "out/new" not in tree(home) or "out/new/file" in tree(home)
-    assert halfway > 0
-
-
-@pytest.mark.parametrize("failing", range(2, 7))
-def test_what_could_not_be_undone_the_next_run_undoes(
+@pytest.mark.parametrize("failing", range(1, 5))
+def test_after_a_move_that_fails_each_file_is_whole(
     tmp_path: Path, failing: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     write(below(tmp_path, OLD))
@@ -251,50 +198,52 @@ def test_what_could_not_be_undone_the_next_run_undoes(
     with pytest.raises(OutputError, match="Input/output error"):
         write(below(tmp_path, NEW))
     monkeypatch.undo()
-    write({tmp_path / "out": {"last": "7"}})
-    assert texts(tmp_path / "out") == {"old": "1", "also/old": "2", "last": "7"}
+    assert texts(tmp_path)["out/old"] in ("1", "3")
+    write(below(tmp_path, NEW))
+    assert texts(tmp_path) == ALL_NEW
 
 
-def test_undoing_spares_what_was_changed_since(tmp_path: Path) -> None:
-    write(below(tmp_path, OLD))
-    run = partial(interrupted, lambda: write(below(tmp_path, NEW)), sent=signal.SIGKILL)
-    number = 1
-    while texts(tmp_path)["out/old"] == "1":
-        assert run(number) == -signal.SIGKILL
-        number += 1
-    (tmp_path / "out" / "old").write_text("written by hand since")
-    write({tmp_path / "out": {"last": "7"}})
-    assert texts(tmp_path / "out") == {"old": "written by hand since", "also/old": "2", "last": "7"}
+@pytest.mark.slow
+@pytest.mark.parametrize("again", [False, True], ids=["once", "again and again"])
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT])
+def test_a_signal_at_any_change_leaves_all_or_nothing(tmp_path: Path, sent: signal.Signals, again: bool) -> None:
+    def run(number: int) -> int:
+        write(below(tmp_path / str(number), OLD))
+        return interrupted(lambda: write(below(tmp_path / str(number), NEW)), number, sent, again=again)
+
+    seen = []
+    for number, status in interruptions(run):
+        assert status == (130 if sent == signal.SIGINT else -sent)
+        found = tree(tmp_path / str(number))
+        if found["out/old"] == "1":
+            assert found == {"out": "/", "out/old": "1", "out/also": "/", "out/also/old": "2"}
+        else:
+            assert texts(tmp_path / str(number)) == ALL_NEW
+        seen.append(found["out/old"])
+    assert seen == sorted(seen)
+    assert seen.count("1") > 3
 
 
-@pytest.mark.parametrize(
-    "journal",
-    [
-        '{"moves": [[0, "../victim", MARK]], "folders": []}',
-        '{"moves": [[0, "link/victim", MARK]], "folders": []}',
-        '{"moves": [], "folders": ["../empty"]}',
-        '{"moves": 1}',
-        "[" * 100_000,
-        "",
-    ],
-)
-def test_a_journal_that_leads_out_is_not_followed(tmp_path: Path, journal: str) -> None:
-    (tmp_path / "victim").write_text("mine")
-    (tmp_path / "empty").mkdir()
-    stage = tmp_path / "out" / ".robosc-abcdefgh"
-    stage.mkdir(parents=True)
-    (tmp_path / "out" / "link").symlink_to(tmp_path)
-    (stage / "0.old").write_text("not mine")
-    found = (tmp_path / "victim").stat()
-    mark = [found.st_ino, found.st_size, found.st_mtime_ns]
-    (stage / "journal").write_text(journal.replace("MARK", str(mark)))
-    write({tmp_path / "out": {"a": "1"}})
-    assert (tmp_path / "victim").read_text() == "mine"
-    assert (tmp_path / "empty").is_dir()
+@pytest.mark.slow
+def test_what_kill_leaves_the_next_run_finishes(tmp_path: Path) -> None:
+    def run(number: int) -> int:
+        write(below(tmp_path / str(number), OLD))
+        return interrupted(lambda: write(below(tmp_path / str(number), NEW)), number, signal.SIGKILL)
+
+    halfway = 0
+    for number, status in interruptions(run):
+        assert status == -signal.SIGKILL
+        home = tmp_path / str(number)
+        assert texts(home)["out/old"] in ("1", "3")
+        assert texts(home)["out/also/old"] in ("2", "4")
+        halfway += texts(home)["out/old"] != {"2": "1", "4": "3"}[texts(home)["out/also/old"]]
+        write(below(home, NEW))
+        assert texts(home) == ALL_NEW
+    assert halfway > 0
 
 
 def test_nobody_elses_folder_is_removed(tmp_path: Path) -> None:
-    for name in (".robosc-abcdefgh/precious", ".robosc-cache/0.new", ".robosc/0.new"):
+    for name in (".robosc-abcdefgh/precious", ".robosc-cache/0", ".robosc/0"):
         (tmp_path / name).parent.mkdir()
         (tmp_path / name).write_text("mine")
     before = tree(tmp_path)
