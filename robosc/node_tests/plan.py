@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.engine import ControlLoop, Hooks
 from robosc.metamodel import sct
-from robosc.node_tests.beam_search import beam_search
 from robosc.node_tests.coverage import Goal, Watcher, goals
 from robosc.node_tests.guide import Guide, Way
 from robosc.node_tests.steps import WAIT, Place, Step, Stimulus
@@ -31,10 +30,6 @@ if TYPE_CHECKING:
 _ALL = 12_000
 #: So often a tour is planned, each time with other choices between what is as near: with all places known, and without.
 _PLANS, _GUIDED = 10, 5
-#: So many ways of the same length a beam search goes on with, likewise; for a tour that was shortened by one, then.
-_WAYS, _FEW_WAYS = (300, 300), (30, 80)
-#: Where this many steps have been looked at no shorter tour is looked for any more.
-_MOST = 320_000
 #: So long may the way be that takes the place of a part of a tour.
 _DETOUR = 4
 #: So many ways that lead to where something can be seen may not show it.
@@ -205,23 +200,7 @@ class Plan:
             tours = [self._planned(start, wanted, choice) for choice in _choices(_PLANS)]
         else:
             tours = encoded(self.model, lambda encoding: self._all_guided(start, wanted, encoding))
-        best = max(tours, key=lambda tour: ((_together(tour) & wanted).bit_count(), -len(tour)))
-        wanted &= _together(best)
-        (first_width, width), detour = (_WAYS, _DETOUR) if self.is_whole else (_FEW_WAYS, 1)
-        for example in tours:
-            followed, ways = example, first_width
-            while followed and not wanted & ~_together(followed):
-                shorter = beam_search(
-                    self._steps_until_enough, start, followed, wanted, longest=len(best) - 1, width=ways
-                )
-                if shorter is None:
-                    break
-                best = followed = self._shortened(start, shorter, wanted, detour)
-                ways = width
-        return best
-
-    def _steps_until_enough(self, place: Place) -> list[Step] | None:
-        return None if len(self._known) * len(self.stimuli) > _MOST else self.steps(place)
+        return max(tours, key=lambda tour: ((_together(tour) & wanted).bit_count(), -len(tour)))
 
     def _planned(self, start: Place, wanted: int, choice: random.Random) -> list[Step]:
         tour: list[Step] = []
