@@ -232,7 +232,7 @@ class Observer:
             return
         for requirements in stated:
             states = self._system.diagrams.any_of(map(self._matters, requirements))
-            # Skip requirements that only keep a variable in its range and cannot be violated: no author wrote them.
+            # Skip range requirements that matter in no state: they follow from types, and no author wrote them.
             stands = not all(isinstance(own, sct.Requirement) and own.ranges for own in requirements)
             if stands or states.satisfiable():
                 yield Weight(requirements, self._system.encoding.count(states))

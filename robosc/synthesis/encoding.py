@@ -360,8 +360,8 @@ class Encoding:
     def _divided(self, value: Vector, divisor: Vector) -> tuple[Vector, Vector]:
         """Divide a value by a positive constant; return the quotient and the remainder.
 
-        The quotient is that of a non-negative value; the value of the remainder may have any sign. From the sign down,
-        each step doubles the remainder and adds a bit.
+        The quotient is right only for a non-negative value, the remainder for any value. From the sign down, each step
+        doubles the remainder and adds a bit.
         """
         number = arithmetic.value_of(divisor)
         assert number is not None

@@ -220,7 +220,7 @@ def _joined_where_it_pays(steps: Sequence[Step]) -> Sequence[Step]:
 
 
 def _as_one(steps: Sequence[Step]) -> Sequence[Step]:
-    """Return the steps as a single one that keeps all elements only the others change.
+    """Join the steps into one; each part keeps the elements that only the other parts change.
 
     Returns the steps unchanged if the joined relation gets large.
     """

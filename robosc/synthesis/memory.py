@@ -21,7 +21,7 @@ _PAGE = 4096 if sys.platform == "win32" else resource.getpagesize()
 
 
 class TooFewAddressesError(MemoryError):
-    """Address space limit of the process that is too small, independent of the available memory."""
+    """The address space limit of the process is too small, regardless of the available memory."""
 
 
 class _TooMuchError(MemoryError):

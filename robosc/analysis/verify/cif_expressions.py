@@ -44,8 +44,8 @@ class _Open:
 class ExpressionReader:
     """Reader of one expression from its tokens, without recursion (Dijkstra's shunting yard).
 
-    `difference`: the expression is the whole assigned value. Synthesis accepts a `-` only there, and only as its last
-    operator.
+    `difference`: the expression is the whole assigned value. Synthesis accepts a `-` only there, and only as the
+    outermost operator.
     """
 
     def __init__(self, read: Any, value_of: Callable[[Any], Typed], *, difference: bool) -> None:

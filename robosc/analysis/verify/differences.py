@@ -28,7 +28,7 @@ def event_in_words(event: sct.Event, inputs: Mapping[Element, int]) -> str:
 
 
 def on_one_side(step: str, translation: str, *, translated: bool) -> str:
-    """Return that an event can happen only in the translation, or only in the model, as text."""
+    """Return a clause which states that an event can happen only in the translation, or only in the model."""
     sides = (translation, "the model") if translated else ("the model", translation)
     return f"{step} can happen in {sides[0]} and not in {sides[1]}"
 

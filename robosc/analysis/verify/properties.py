@@ -341,7 +341,7 @@ def _permitted(relation: EventRelation, controlled: Diagram) -> Diagram:
 
 
 def _stuck(plants: Sequence[sct.Plant], codes: Codes) -> str:
-    """Return that these plants, or all of them together, are never marked again, as text."""
+    """Return a clause about plants that are never marked again, or never all at once if there are none."""
     if not plants:
         return "the marked states of all components can't be reached together any more"
     places = (

@@ -101,7 +101,7 @@ def _of_other_types(base: rsc.Base, kind: type[rsc.CommunicationType]) -> Iterat
         if ros_type(second.communication) is None:
             continue
         first = firsts.setdefault(_name(second).removeprefix("/"), second)
-        same_name = first.communication.name == second.communication.name  # `unique-communication`
+        same_name = first.communication.name == second.communication.name  # `unique-communication` reports it
         if not same_name and ros_type(first.communication) != ros_type(second.communication):
             yield first, second
 

@@ -69,7 +69,10 @@ def _finding(
     misled: Mapping[str, tuple[CommandCondition, rsc.State]],
     port: PortInstance,
 ) -> Finding:
-    """Return the finding about a transition that misleads a condition for some reasons, in a final state."""
+    """Return the finding about a transition that misleads a condition.
+
+    `misled` maps each reason of the error to the condition and to the state in which the component then rests.
+    """
     name = written(port.communication.name)
     whether = " or ".join(f"error = {reason}" for reason in misled)
     condition, state = next(iter(misled.values()))
