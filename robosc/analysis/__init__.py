@@ -1,7 +1,8 @@
-"""What is asked of a supervised system: its findings, why something can not happen, and proofs.
+"""Analyses of a supervised system: findings, explanations, proofs.
 
-`system` is the supervised system on which all stand, `paths` finds shortest traces in it. `supervise` gives a model its
-supervisor, `blocking` says why one is empty and what it guards against, `observations` what is doubtful about it, and
-`findings` says that by the rules of the language, with the `wording` that all share. `explain` answers questions about
-events, `verify` proves properties of the system and validates what is generated from it.
+`system` is the supervised system on which all analyses build; `paths` computes shortest traces in it. `supervise` gives
+a model its supervisor. `blocking` explains why a supervisor is empty and what it guards against. `observations`
+collects what is suspicious about a supervisor, `causes` relates these observations, and `findings` reports them by the
+rules of the language, with the shared `wording`. `explain` answers questions about events. `verify` proves properties
+of the system and validates the artifacts that are generated from it.
 """

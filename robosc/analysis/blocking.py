@@ -1,4 +1,4 @@
-"""Why a supervisor is empty, and what a supervisor guards against: ways to where no marked state can be reached."""
+"""Causes of an empty supervisor, and paths to blocking states that a supervisor prevents."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Reason:
-    """Why a supervisor is empty.
+    """Cause of an empty supervisor.
 
-    `event` is at fault: an uncontrollable event that no supervisor can prevent, or a
-    controllable one whose requirement stands between the robot and its marked states; None where the plants alone reach
-    no marked state. `unmarked` are the plants that can't be in a marked location any more once the event happened, or
-    at all; none if all can be but never at once. `trace` is a shortest one from the initial state, the event last;
-    `state` is where it ends, before an event that a requirement forbids: the location of every plant with several of
-    them, and the value of every variable. `codes` are those of that state. `requirements` forbid the event at fault
-    there, or else something from there on. `violated` are the invariants that do not hold once the event happened, or
+    `event` is the event at fault: an uncontrollable event that no supervisor can prevent, or a controllable event whose
+    requirement separates the robot from its marked states. It is None if the plants alone reach no marked state.
+    `unmarked` are the plants that can no longer be in a marked location after the event, or at all; none if each can
+    be, but never all at once. `trace` is a shortest trace from the initial state that ends with the event. `state` is
+    its last state; if a requirement forbids the event, it is the state before the event. It has the location of every
+    plant with several locations and the value of every variable. `codes` are those of that state. `requirements` forbid
+    the event at fault there, or something after it. `violated` are the invariants that do not hold after the event, or
     at the start.
     """
 
@@ -43,14 +43,14 @@ class Reason:
 
 
 def reason_of_emptiness(system: SynthesizedSystem) -> Reason:
-    """What keeps the initial state of a system without controlled states from being controlled."""
+    """Return why the initial state of a system without controlled states is not controlled."""
     blocked = not (system.encoding.initial & system.found.alive[0]).satisfiable()
     return _blocked_from_the_start(system) if blocked else _uncontrollable(system)
 
 
 def _uncontrollable(system: SynthesizedSystem) -> Reason:
     encoding, found = system.encoding, system.found
-    # Of several initial states those that can't even reach a marked one say nothing of what is uncontrollable.
+    # Initial states that reach no marked state at all do not show which event is uncontrollable.
     start = pick(encoding.initial & found.alive[0], encoding.layout.state)
     before = encoding.state(unavoidable(system, start).states[-2])
     blocked = found.rounds[0] & ~found.alive[0]
@@ -74,7 +74,7 @@ def _uncontrollable(system: SynthesizedSystem) -> Reason:
 def _blocked_from_the_start(system: SynthesizedSystem) -> Reason:
     encoding = system.encoding
     marked, path = encoding.all_marked & system.uncontrolled, None
-    if marked.satisfiable():  # else all states would be looked at, layer by layer
+    if marked.satisfiable():  # else the search would visit all states, layer by layer
         path = shortest_path(encoding, system.plant_moves, encoding.initial, marked, system.diagrams.true)
     start = encoding.initial_codes if path is None else path.states[0]
     unmarked = system.never_marked(start)
@@ -99,7 +99,7 @@ def _blocked_from_the_start(system: SynthesizedSystem) -> Reason:
 def _described(
     system: SynthesizedSystem, unmarked: Sequence[sct.Plant], steps: Sequence[TraceStep], codes: Codes
 ) -> Reason:
-    """A reason without its event, with the state by name."""
+    """Return a reason without its event, with the state by name."""
     state: dict[str, Value] = {}
     for plant in system.model.plants:
         if len(plant.locations) > 1:
@@ -111,14 +111,14 @@ def _described(
 
 @dataclass(frozen=True)
 class BlockingCounterexample:
-    """What the supervisor prevents when it holds an event back that plants and requirements on it would allow.
+    """Consequence that the supervisor prevents by holding back an event that plants and its requirements allow.
 
-    `trace` is a shortest one from the initial state, or from the state asked about, that ends with the event so held
-    back. `onwards` is a way from there, under the requirements, to where an invariant is violated or no marked state
-    can be reached any more, as `unavoidable` finds it: its last event is the uncontrollable one that is guarded
-    against; empty where none is needed. `codes` are those of the state where it ends, `violated` the invariants that do
-    not hold there. Where all hold, `unmarked` are the plants that can't be in a marked location from then on; none if
-    all can be but never at once.
+    `trace` is a shortest trace that ends with this event, from the initial state or from the state in question.
+    `onwards` is a path from there under the requirements to a state that violates an invariant or reaches no marked
+    state, as `unavoidable` computes it. Its last event is the uncontrollable event that the supervisor guards against.
+    It is empty if no event is needed. `codes` are those of its last state. `violated` are the invariants that do not
+    hold there. If all hold, `unmarked` are the plants that can no longer be in a marked location; none if each can be,
+    but never all at once.
     """
 
     trace: tuple[TraceStep, ...]
@@ -129,10 +129,10 @@ class BlockingCounterexample:
 
 
 def blocking_counterexample(system: SynthesizedSystem, event: sct.Event, way: Path) -> BlockingCounterexample:
-    """What would happen if an event that only synthesis forbids were not held back at the end of a way."""
+    """Return the consequence of an event that only synthesis forbids, at the end of a path."""
     encoding, relation = system.encoding, system.relations[event]
     step = relation.step
-    assert step is not None  # else the event would change nothing, and lead to no blocking
+    assert step is not None  # else the event would change nothing and could not lead to blocking
     after = pick(step.image(system.last(way)), encoding.layout.state)
     onwards = unavoidable(system, after)
     end = onwards.states[-1]
@@ -150,13 +150,12 @@ def blocking_counterexample(system: SynthesizedSystem, event: sct.Event, way: Pa
 
 
 def unavoidable(system: SynthesizedSystem, start: Codes) -> Path:
-    """A way from a state that was given up to one that was first, because of what nothing prevents.
+    """Return a path from a removed state to one that was removed first, driven by uncontrollable events.
 
-    That one violates an invariant, or no marked state can be reached from it.
-
-    Round by round, backwards: uncontrollable events lead from the state to one that, without the states given up in
-    earlier rounds, reaches no marked state; its nearest way there leads through one of those, and so on. So the last
-    event is uncontrollable; there is none where already the start reaches no marked state.
+    The last state violates an invariant or reaches no marked state. Round by round, backwards: uncontrollable events
+    lead from the state to one that reaches no marked state without the states that earlier rounds removed. Its shortest
+    path to a marked state visits one of those, and so on. The last event is therefore uncontrollable. The path is empty
+    if the start itself reaches no marked state.
     """
     uncontrollable = _uncontrollable_moves(system)
     rounds, alive = system.found.rounds, system.found.alive
@@ -176,7 +175,10 @@ def unavoidable(system: SynthesizedSystem, start: Codes) -> Path:
 
 
 def forbidden_from(system: SynthesizedSystem, codes: Codes) -> list[sct.Requirement]:
-    """The requirements that forbid something which the plants would do from a state on, in the order of the events."""
+    """Return the requirements that forbid an event after this state, in the order of the events.
+
+    The plants enable the event in the state or in one that can follow.
+    """
     onwards = system.onwards(codes)
     return [
         requirement
@@ -187,9 +189,10 @@ def forbidden_from(system: SynthesizedSystem, codes: Codes) -> list[sct.Requirem
 
 
 def forbidding(relation: EventRelation, states: Diagram) -> tuple[sct.Requirement, ...]:
-    """Of the requirements on an event, which allow it in none of these states, those at fault.
+    """Return the requirements at fault if an event is allowed in none of these states.
 
-    That are all that alone allow it in none; where there is none, some that do not together, and no fewer of them.
+    These are all requirements that each disable the event in all states. If there is none, it is a minimal set of
+    requirements that together disable it.
     """
     alone = [requirement for requirement, asked in relation.asked.items() if not (states & asked).satisfiable()]
     if alone:
@@ -205,7 +208,7 @@ def forbidding(relation: EventRelation, states: Diagram) -> tuple[sct.Requiremen
 
 
 def never_ready(relation: EventRelation, states: Diagram) -> tuple[sct.Plant, ...]:
-    """The plants that enable an event in none of these states."""
+    """Return the plants that enable an event in none of these states."""
     return tuple(plant for plant, own in relation.enabled_by.items() if not (states & own).satisfiable())
 
 

@@ -1,4 +1,4 @@
-"""Causes of blocking, and ways out, in the words of the robot model."""
+"""Causes of blocking, and repairs, in the words of the robot model."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def blocking(reason: Reason) -> str:
-    """Why there is no supervisor, in a sentence without its trace."""
+    """Return why there is no supervisor, as a sentence without its trace."""
     if reason.violated:
         problem = violates(called(reason.violated), reason.violated)
         if reason.event is None:
@@ -50,7 +50,7 @@ def counterexample_in_words(counterexample: BlockingCounterexample, model: sct.S
             f"{listed([f'`{name(plant)}`' for plant in counterexample.unmarked])} can't get back to a marked state"
         )
     if counterexample.violated:
-        # Without lines: the sentence stands in generated code, which changes where the robot does.
+        # Without line numbers: the sentence is part of generated code, which should change only if the robot does.
         named = listed(
             [
                 f"`{requirement.text}`" if requirement.text else "a requirement"

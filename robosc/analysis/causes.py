@@ -1,4 +1,4 @@
-"""Which of the events that never happen, and states that are never reached, follow from others of these."""
+"""Causes of impossible events and unreachable states among other such events and states."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from robosc.analysis.observations import NeverEnabled, Observations, UnreachableState
     from robosc.diagnostics import Diagnostic
 
-    #: An event that never happens, or a state that is never reached.
+    #: Event that never happens, or state that is never reached.
     Absent: TypeAlias = sct.Event | sct.Location
 
 
 def causes(observations: Observations) -> dict[Absent, set[Absent]]:
-    """What each absent event or state follows from, directly; of a cause nothing."""
+    """Return the direct causes of each absent event or state; a root cause has none."""
     never = {found.event for found in observations.never_enabled}
     unreached = {found.location for found in observations.unreachable_states}
     found: dict[Absent, set[Absent]] = {}
@@ -43,7 +43,7 @@ def _of_event(observed: NeverEnabled, never: set[sct.Event], unreached: set[sct.
     elif observed.forbidden is Forbidden.BY_REQUIREMENTS:
         for requirement in observed.requirements:
             for plant in referenced(requirement.condition):
-                # An automaton or order that waits for an event that never happens.
+                # An automaton or order waits for an event that never happens.
                 if isinstance(plant, sct.Plant) and plant.kind == sct.PlantKind.requirement:
                     yield from {edge.event for edge in edges_of(plant)} & never
     elif observed.counterexample is None:
@@ -62,12 +62,12 @@ def _of_state(observed: UnreachableState, never: set[sct.Event], unreached: set[
         elif hindrance.edge.event in never:
             found.add(hindrance.edge.event)
         else:
-            return set()  # What keeps this transition back is a cause of its own.
+            return set()  # This transition has another cause.
     return found
 
 
 def with_causes(findings: Mapping[Absent, Diagnostic], follows: Mapping[Absent, set[Absent]]) -> list[Diagnostic]:
-    """The findings about what is absent; one that follows from another says so, and its hint names that one's line."""
+    """Return the findings about absent elements; a consequence refers to the line of its root cause."""
     depths: dict[Absent, int] = {absent: 0 for absent in findings if not follows[absent]}
     nearest: dict[Absent, Absent] = {}
     pending = list(depths)

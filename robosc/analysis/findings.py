@@ -1,4 +1,4 @@
-"""The rules that synthesis checks: from what it observed to findings in the words of the robot model."""
+"""Findings of synthesis rules in the words of the robot model, from the observations of a supervisor."""
 
 from __future__ import annotations
 
@@ -37,15 +37,15 @@ if TYPE_CHECKING:
     from robosc.synthesis.encoding import Element
 
 _DONE = {sct.PlantKind.service: "called", sct.PlantKind.action: "started"}
-#: How many further commands a message names.
+#: Maximum number of further commands that a message names.
 _NAMED = 3
 _FOLLOWED = {sct.EventKind.reset: "the end of `{}`"}
 
 
 def findings_of(model: sct.SupervisoryControlModel, observations: Observations) -> list[Diagnostic]:
-    """The findings about a model, from what synthesis observed of it, in order.
+    """Return the findings about a model, in order, from the observations of its supervisor.
 
-    Each stands at an element of the model: at the requirement, where one alone is at fault.
+    Each finding is at an element of the model, at a requirement if only one is at fault.
     """
     words_for = _Findings(model)
     absent: dict[Absent, Diagnostic] = {}
@@ -68,10 +68,10 @@ def findings_of(model: sct.SupervisoryControlModel, observations: Observations) 
 
 
 def _unused_of_libraries(model: sct.SupervisoryControlModel, observations: Observations) -> set[Absent]:
-    """States and silent transitions of a library's components that this robot never uses, and does not speak of.
+    """Return states and silent transitions of library components that this robot neither uses nor names.
 
-    The library serves other robots, too. Requirements in the robot's own text, and a supervisor that keeps the robot
-    from them, are no lack of use.
+    A library serves other robots, too. An element is not unused if a requirement in the robot's own text or the
+    supervisor makes it unreachable.
     """
     unreached = {
         found.location
@@ -92,14 +92,14 @@ def _unused_of_libraries(model: sct.SupervisoryControlModel, observations: Obser
 
 
 def _is_own_restriction(observed: Hindrance | NeverEnabled, model: sct.SupervisoryControlModel) -> bool:
-    """Whether a requirement in the robot's own text, or the supervisor, keeps something from happening."""
+    """Return whether a requirement in the robot's own text, or the supervisor, prevents something."""
     if observed.counterexample is not None or observed.forbidden is Forbidden.BY_SYNTHESIS:
         return True
     return any(not _of_library(requirement, model) for requirement in observed.requirements)
 
 
 def _named_in_own_text(model: sct.SupervisoryControlModel) -> set[sct.Location]:
-    """The locations that requirements, properties and guards in the robot's own text read."""
+    """Return the locations that requirements, properties and guards in the robot's own text read."""
     texts = [*model.plants, *model.requirements, *model.invariants, *model.properties]
     return {
         node.location
@@ -110,7 +110,7 @@ def _named_in_own_text(model: sct.SupervisoryControlModel) -> set[sct.Location]:
 
 
 def _of_library(element: Any, model: sct.SupervisoryControlModel) -> bool:
-    """Whether an element comes from another text than the robot."""
+    """Return whether an element comes from another text than the robot's."""
     while element.source is None or element.source.file is None:
         if element is model or element.eContainer() is None:
             return False
@@ -278,7 +278,7 @@ class _Findings:
         )
 
     def _hindrance(self, observed: Hindrance) -> str:
-        """Why a transition never leads to a state."""
+        """Return why a transition never leads to a state."""
         here: sct.Location = observed.edge.eContainer()
         event, own = observed.edge.event, here.eContainer()
         if observed.forbidden is None:
@@ -316,14 +316,14 @@ class _Findings:
         return found
 
     def _asking(self, event: sct.Event) -> Iterable[Element]:
-        """What decides whether an event is allowed: the plants that take part in it and what requirements read."""
+        """Yield the elements that decide about an event: plants that take part, and data of its requirements."""
         yield from self._participants.get(event, ())
         for requirement in self._requirements(event):
             yield from referenced(requirement.condition)
 
 
 def _likewise(second: str, others: Sequence[sct.Plant]) -> str:
-    """The rest of a message on a command that also meets others than the one of its finding."""
+    """Return the end of a message that names further commands with the same conflict."""
     if not others:
         return ""
     shown = [f"`{name(plant)}`" for plant in others[:_NAMED]]
@@ -341,7 +341,7 @@ def _blamed(requirements: Sequence[sct.StatedRequirement], event: sct.Event) -> 
 
 
 def _guard(event: sct.Event) -> str:
-    """Why a transition is never taken that no requirement restricts."""
+    """Return why a transition without requirements is never taken."""
     plant = plant_of(event)
     locations = [location for location in plant.locations if any(edge.event is event for edge in edges_from(location))]
     guarded = any(
@@ -361,7 +361,7 @@ def _not_requested(observed: NeverEnabled) -> str:
 
 
 def _entered(event: sct.Event) -> Iterable[tuple[sct.Plant, sct.Location]]:
-    """The states of components to which an event leads from others."""
+    """Return the states of components that an event enters from other states."""
     plants: Sequence[sct.Plant] = plant_of(event).eContainer().plants
     targets = [
         edge.target
@@ -374,7 +374,7 @@ def _entered(event: sct.Event) -> Iterable[tuple[sct.Plant, sct.Location]]:
 
 
 def _where(example: Example, relevant: Iterable[Element]) -> str:
-    """The example, as far as it is about elements with several values that matter."""
+    """Return the example as text, restricted to relevant elements with several values."""
     chosen = set(relevant)
     said = [
         (domain, value)

@@ -1,4 +1,4 @@
-"""Doubts about a supervisor that is not empty: unintended freedom, and events and states that never occur."""
+"""Suspicious properties of a nonempty supervisor: unintended freedom, impossible events, unreachable states."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ if TYPE_CHECKING:
 
 _Key = TypeVar("_Key", sct.Event, sct.Plant)
 _CALLS = (sct.PlantKind.service, sct.PlantKind.action)
-#: What the counterexamples of all guards may cost: the way to them, in nodes looked at, and the steps of all traces.
+#: Effort limits for the counterexamples of all guards: the search, in visited nodes, and the total number of steps.
 _EFFORT = 1_000_000
 _STEPS = 400
-#: What it may cost to count the states in which requirements matter, in nodes looked at.
+#: Effort limit for counting the states in which requirements matter, in visited nodes.
 _WEIGHING = 20_000_000
 _FOLLOWS_THE_ROBOT = (sct.EventKind.tau, sct.EventKind.reset, sct.EventKind.cancel)
 
 
 class Forbidden(Enum):
-    """The first of these that keeps an event from ever happening."""
+    """First cause in this order that makes an event impossible."""
 
     BY_PLANTS = auto()
     BY_REQUIREMENTS = auto()
@@ -45,15 +45,16 @@ class Forbidden(Enum):
 
 @dataclass(frozen=True)
 class NeverEnabled:
-    """A trigger or tau event that is allowed in no controlled state.
+    """Trigger or tau event that is allowed in no controlled state.
 
-    `plants` are those which forbid it alone wherever the robot may come, `requirements` those which forbid it wherever
-    the plants enable it, be it only in states that the supervisor keeps the robot from: see `forbidding`. `trace` is a
-    shortest way of the plants to one of these, where an order, a count or an automaton is among them.
-    `kept_away` says that the plants forbid it for that reason only: a shortest way of the plants to where it could
-    happen goes on with an event that the supervisor holds back. That is for `requirements` on `needed`, the last event
-    of `trace`, or for what `counterexample` says; for neither where such a way costs too much. `counterexample` is
-    there also where synthesis forbids the event itself.
+    `plants` each disable it in every controlled state. `requirements` disable it in all states in which the plants
+    enable it, even if these are outside of the controlled states: see `forbidding`. `trace` is then a shortest path of
+    the plants to one of these states, if an order, a count or an automaton is among the requirements.
+
+    If `kept_away`, the plants disable the event only because the supervisor keeps the robot away from the states that
+    enable it. A shortest path of the plants to such a state contains an event that the supervisor holds back. The
+    reason is either `requirements` on `needed`, the last event of `trace`, or `counterexample`; neither is given if the
+    search exceeds its effort limit. `counterexample` is also given if synthesis forbids the event itself.
     """
 
     event: sct.Event
@@ -68,7 +69,7 @@ class NeverEnabled:
 
 @dataclass(frozen=True)
 class SilentRestricted:
-    """A tau, reset or cancel event to which synthesis added something."""
+    """Tau, reset or cancel event that synthesis restricts."""
 
     event: sct.Event
     counterexample: BlockingCounterexample
@@ -76,7 +77,7 @@ class SilentRestricted:
 
 @dataclass(frozen=True)
 class ForbiddenCancel:
-    """A cancel that is due, and that an order, a count or an automaton forbids after `trace`."""
+    """Cancel that is due but forbidden by an order, a count or an automaton after `trace`."""
 
     event: sct.Event
     requirement: sct.Requirement
@@ -85,9 +86,9 @@ class ForbiddenCancel:
 
 @dataclass(frozen=True)
 class SharedServer:
-    """Services or actions of one ROS name that can be under way together: `second`, and the first before it.
+    """Services or actions of one ROS name that can run at the same time: `second`, and the first before it.
 
-    `trace` leads there. `others` are further ones before `second` that can be under way together with it.
+    `trace` leads to such a state. `others` are further ones before `second` that can run at the same time as it.
     """
 
     first: sct.Plant
@@ -98,9 +99,9 @@ class SharedServer:
 
 @dataclass(frozen=True)
 class SelfCancelling:
-    """An action, by its trigger, whose requirement holds in no state right after it.
+    """Action, given by its trigger, whose requirement holds in no state directly after its start.
 
-    `requirements` are those on it which hold in none of these states: see `forbidding`.
+    `requirements` are the requirements on it that hold in none of these states: see `forbidding`.
     """
 
     event: sct.Event
@@ -111,7 +112,7 @@ class SelfCancelling:
 class Example:
     """A controlled state: the location of every plant by name, the value of every variable.
 
-    `quiescent` says that no internal event is allowed in it; there is another example only where no state is quiescent.
+    `quiescent`: no internal event is allowed in the state. An example that is not quiescent is used only if none is.
     """
 
     state: Mapping[Element, Value]
@@ -120,7 +121,7 @@ class Example:
 
 @dataclass(frozen=True)
 class ProvideGap:
-    """A trigger that is allowed where none of the conditions on its data, in the plant `data`, holds."""
+    """Trigger that is allowed in a state in which none of its data conditions, in the plant `data`, holds."""
 
     event: sct.Event
     data: sct.Plant
@@ -129,9 +130,9 @@ class ProvideGap:
 
 @dataclass(frozen=True)
 class SharedTopicConflict:
-    """Commands to one topic that can be sent in one state: `second`, and the first before it, with an example.
+    """Commands to one topic that can be sent in the same state: `second`, and the first before it, with an example.
 
-    `others` are further ones before `second` that can be sent where `second` can be.
+    `others` are further ones before `second` that can be sent together with it.
     """
 
     first: sct.Event
@@ -142,11 +143,11 @@ class SharedTopicConflict:
 
 @dataclass(frozen=True)
 class Hindrance:
-    """Why a transition that leads to a state from another is never taken.
+    """Reason why a transition to a state from another is never taken.
 
-    `forbidden` is None where its own state is never reached. `plants` are those, its own among them, that are never
-    ready for it there, none if all are but never at once; `requirements` forbid it there, as `forbidding` says;
-    `counterexample` is there where synthesis does.
+    `forbidden` is None if the source state is never reached. `plants` are those that are never ready for the transition
+    in the source state, possibly its own plant; none if each is ready but never all at once. `requirements` forbid it
+    there: see `forbidding`. `counterexample` is given if synthesis forbids it.
     """
 
     edge: sct.Edge
@@ -158,7 +159,7 @@ class Hindrance:
 
 @dataclass(frozen=True)
 class UnreachableState:
-    """A location of a component in no controlled state, and why none of the transitions to it is ever taken."""
+    """Location of a component in no controlled state, and the reason for each transition to it."""
 
     location: sct.Location
     hindrances: tuple[Hindrance, ...]
@@ -166,10 +167,11 @@ class UnreachableState:
 
 @dataclass(frozen=True)
 class Weight:
-    """A requirement of the text, as the requirements of the model that it became, and in how many states it matters.
+    """A requirement of the text, as requirements of the model, and the number of states in which it matters.
 
-    Where it restricts what the controller does, these are the controlled states in which the plants allow what it
-    forbids. Else they are the states that it forbids, of those that can be reached under what restricts the controller.
+    If it restricts the controller, these are the controlled states in which the plants allow an event that it forbids.
+    Otherwise, they are the states that it forbids among those reachable under the requirements that restrict the
+    controller.
     """
 
     requirements: tuple[sct.StatedRequirement, ...]
@@ -178,10 +180,10 @@ class Weight:
 
 @dataclass(frozen=True)
 class Observations:
-    """All of them, each kind in the order of the model. `unrestricted_calls` are triggers of services and actions.
+    """All observations of a supervisor, each kind in the order of the model.
 
-    These can happen, no requirement is on them, and no plant but their own takes part in them. `counterexamples` are
-    there for events to which synthesis added something: for all in models that are not large.
+    `unrestricted_calls` are triggers of services and actions that can happen, have no requirement, and involve no other
+    plant than their own. `counterexamples` explain events that synthesis restricts; large models may lack some of them.
     """
 
     never_enabled: tuple[NeverEnabled, ...]
@@ -197,7 +199,7 @@ class Observations:
 
 
 class Observer:
-    """Looks at a system whose supervisor is not empty; `permissions` are those of all controllable events."""
+    """Observer of a system whose supervisor is not empty; `permissions` are those of all controllable events."""
 
     def __init__(self, system: SynthesizedSystem, permissions: Sequence[Permission]) -> None:
         self._system = system
@@ -206,7 +208,7 @@ class Observer:
         self._triggers = [trigger for trigger in system.roles.triggers if trigger in self._permissions]
 
     def observations(self) -> Observations:
-        """All that there is to say."""
+        """Return all observations."""
         return Observations(
             tuple(self._never_enabled()),
             tuple(self._silent_restricted()),
@@ -221,13 +223,16 @@ class Observer:
         )
 
     def weights(self) -> Iterator[Weight]:
-        """In how many states each requirement matters, in the order of the model; nothing where that costs much."""
+        """Yield, in the order of the model, the number of states in which each requirement matters.
+
+        Yields nothing if the count exceeds its effort limit.
+        """
         stated = self._system.stated()
         if len(stated) * self._system.found.rounds[0].node_count() > _WEIGHING:
             return
         for requirements in stated:
             states = self._system.diagrams.any_of(map(self._matters, requirements))
-            # A range that an update can leave by its type alone is nothing that an author wrote.
+            # Skip range requirements that matter in no state: they follow from types, and no author wrote them.
             stands = not all(isinstance(own, sct.Requirement) and own.ranges for own in requirements)
             if stands or states.satisfiable():
                 yield Weight(requirements, self._system.encoding.count(states))
@@ -265,7 +270,7 @@ class Observer:
                 yield NeverEnabled(event, Forbidden.BY_SYNTHESIS, counterexample=self._counterexample(permission))
 
     def _way_of_plants(self, goal: Diagram) -> Path | None:
-        """A shortest way to one of these states, whatever is required; None where it costs too much."""
+        """Return a shortest path of the plants to one of these states; None if it exceeds the effort limit."""
         system = self._system
         within, effort = system.uncontrolled, None if system.violations else _EFFORT
         return Layers(system.encoding, system.plant_moves, system.encoding.initial, within).path_to(
@@ -273,7 +278,7 @@ class Observer:
         )
 
     def _kept_away(self, event: sct.Event, plants: tuple[sct.Plant, ...], goal: Diagram) -> NeverEnabled:
-        """An event that could happen only where the supervisor lets nobody go: what it prevents on the way there."""
+        """Return why an event that the plants allow only outside of the controlled states never happens."""
         system = self._system
         way = self._way_of_plants(goal)
         found = NeverEnabled(event, Forbidden.BY_PLANTS, plants=plants, kept_away=True)
@@ -341,9 +346,10 @@ class Observer:
                 yield SharedServer(first, second, self._system.trace(self._system.path_to(both)), tuple(others))
 
     def _meetings(self, where: Mapping[_Key, Diagram]) -> Iterator[tuple[list[_Key], _Key, Diagram]]:
-        """Each key whose states meet those of keys before it: these keys, the key, the states shared with the first.
+        """Yield each key whose states overlap with those of earlier keys.
 
-        A key that meets none costs one operation, so that hundreds of commands may go to one topic.
+        Each result has the earlier keys, the key, and the states shared with the first of them. A key without an
+        overlap costs one operation, so hundreds of commands may use one topic.
         """
         before = self._system.diagrams.false
         for position, (second, states) in enumerate(where.items()):
@@ -354,7 +360,7 @@ class Observer:
             before |= states
 
     def _running(self, plant: sct.Plant) -> Diagram:
-        """The states in which a service or action is under way."""
+        """Return the states in which a service or action is running."""
         encoding = self._system.encoding
         running = [location for location in plant.locations if location.name in RUNNING]
         return encoding.diagrams.any_of(map(encoding.location, running))
@@ -410,7 +416,7 @@ class Observer:
                     yield UnreachableState(location, tuple(hindrances))
 
     def _hindrance(self, edge: sct.Edge, here: Diagram) -> Hindrance:
-        """Why an edge is never taken in the controlled states in which its plant is in its location."""
+        """Return why an edge is never taken in the controlled states in which its plant is in its location."""
         if not here.satisfiable():
             return Hindrance(edge, None)
         relation = self._system.relations[edge.event]
@@ -463,11 +469,11 @@ class Observer:
         return self._counterexamples[event, goal]
 
     def _held_back(self, permission: Permission) -> Diagram:
-        """The controlled states in which only synthesis forbids the event."""
+        """Return the controlled states in which only synthesis forbids the event."""
         relation = permission.relation
         return self._system.controlled & (relation.enabled & relation.requirement & ~permission.where)
 
 
 def _server(plant: sct.Plant) -> str:
-    """The ROS name of a service or action: with a slash before it or without, it is one."""
+    """Return the ROS name of a service or action without the leading slash, which makes no difference."""
     return (plant.topic or "").removeprefix("/")

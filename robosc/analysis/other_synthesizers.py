@@ -1,4 +1,4 @@
-"""Gives a model the supervisor that another synthesis tool finds."""
+"""Supervisors from other synthesis tools."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 
 def supervise_by(extension: Extension, model: sct.SupervisoryControlModel, *, memory: int = MEMORY) -> Synthesis:
-    """Gives the model the supervisor that the function `synthesize` of another package makes of it.
+    """Give the model the supervisor that the function `synthesize` of another package returns for it.
 
-    Nothing but its guards is believed, and of these no more than that they are well-formed: one for each controllable
-    event. States are counted anew. Raises ModelError where the package fails or finds no supervisor, MemoryError where
-    decision diagrams take more than `memory` bytes.
+    Only its guards are used, and they are only checked to be well-formed: one for each controllable event. States are
+    counted again. Raises ModelError if the package fails or finds no supervisor, and MemoryError if decision diagrams
+    take more than `memory` bytes.
     """
     module = extension.load("synthesize")
     model.supervisor = None
@@ -46,7 +46,7 @@ def supervise_by(extension: Extension, model: sct.SupervisoryControlModel, *, me
 
 
 def _check(extension: Extension, model: sct.SupervisoryControlModel, supervisor: object) -> None:
-    """Makes the supervisor that of the model, if it is one."""
+    """Check the supervisor and assign it to the model."""
     if not isinstance(supervisor, sct.Supervisor):
         raise extension.fault(f"it gives a {type(supervisor).__name__} and no supervisor")
     controllable = [event for plant in model.plants for event in plant.events if event.controllable]

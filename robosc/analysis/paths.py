@@ -1,4 +1,4 @@
-"""Shortest ways through the state space, event by event."""
+"""Shortest paths through the state space, event by event."""
 
 from __future__ import annotations
 
@@ -21,35 +21,35 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class TraceStep:
-    """One event of a trace: its name, with its plant, and the values of those inputs on which its effect depends."""
+    """One event of a trace: its name, with its plant, and the values of the inputs that its effect depends on."""
 
     event: str
     inputs: Mapping[str, Value] = field(default_factory=dict)
 
     def __str__(self) -> str:
-        """The event as a person writes it: `message_level.u_response(i_response = 3)`."""
+        """Return the event as text, such as `message_level.u_response(i_response = 3)`."""
         values = ", ".join(f"{name} = {text(chosen)}" for name, chosen in self.inputs.items())
         return f"{self.event}({values})" if values else self.event
 
 
 def trace_data(steps: Iterable[TraceStep]) -> list[dict[str, Any]]:
-    """A trace as JSON data: events with their inputs."""
+    """Return a trace as JSON data: events with their inputs."""
     return [{"event": step.event, "inputs": dict(step.inputs)} for step in steps]
 
 
 @dataclass(frozen=True)
 class Path:
-    """A way from one state to another: the states on it, both ends included, and the events between them."""
+    """A path: its states, both ends included, and the events between them."""
 
     states: list[dict[Element, int]]
     moves: list[Move]
 
 
 class Layers:
-    """The states that moves reach from a start, by the least number of steps, as far as was asked for."""
+    """States that moves reach from a start, by the least number of steps, computed on demand."""
 
     def __init__(self, encoding: Encoding, moves: Sequence[Move], start: Diagram, within: Diagram) -> None:
-        """A path stays `within` until it is at its goal."""
+        """Begin at `start`; a path stays `within` until it is at its goal."""
         self._encoding = encoding
         self._moves = moves
         self._within = within
@@ -58,10 +58,10 @@ class Layers:
         self._effort = 0
 
     def path_to(self, goal: Diagram, effort: int | None = None) -> Path | None:
-        """A shortest path to a state of `goal`; None where there is none, or where all layers would take more effort.
+        """Return a shortest path to a state of `goal`; None if there is none or the effort is exceeded.
 
-        Effort counts the nodes that every move looks at. Of several paths it is the same one every time: by the order
-        of the moves, then by the states' codes.
+        The effort counts the nodes that every move visits. Of several paths, the result is always the same one: by the
+        order of the moves, then by the codes of the states.
         """
         steps = 0
         while not (self._layers[steps] & goal).satisfiable():
@@ -106,12 +106,12 @@ class Layers:
 def shortest_path(
     encoding: Encoding, moves: Sequence[Move], start: Diagram, goal: Diagram, within: Diagram
 ) -> Path | None:
-    """A shortest path from a state of `start` to one of `goal`, as `Layers` finds it."""
+    """Return a shortest path from a state of `start` to one of `goal`, as `Layers` computes it."""
     return Layers(encoding, moves, start, within).path_to(goal)
 
 
 def deciding(moves: Sequence[Move], elements: Iterable[Element]) -> list[Move]:
-    """The moves that decide what becomes of the elements: those that change them, or what these read, and so on."""
+    """Return the moves that influence the elements: those that change them or an element they depend on."""
     changing: dict[Element, list[int]] = {}
     for number, (relation, _) in enumerate(moves):
         for element in relation.changed:
@@ -126,7 +126,7 @@ def deciding(moves: Sequence[Move], elements: Iterable[Element]) -> list[Move]:
 
 
 def trace(encoding: Encoding, path: Path) -> list[TraceStep]:
-    """The events of a path with the input values that take it."""
+    """Return the events of a path with the input values that take it."""
     return [
         TraceStep(event_name(relation.event), _inputs(encoding, relation, before, after))
         for (relation, _), before, after in zip(path.moves, path.states[:-1], path.states[1:], strict=True)
@@ -136,7 +136,7 @@ def trace(encoding: Encoding, path: Path) -> list[TraceStep]:
 def _inputs(
     encoding: Encoding, relation: EventRelation, before: Mapping[Element, int], after: Mapping[Element, int]
 ) -> dict[str, Value]:
-    """Values of the event's inputs that lead from one state to the next; none for those that do not matter."""
+    """Return input values that lead from one state to the next, without inputs that do not matter."""
     if not relation.event.inputs:
         return {}
     fitting = relation.between(before, after)

@@ -1,4 +1,4 @@
-"""Gives a model its supervisor, or says why there is none, and what is doubtful about it."""
+"""Synthesize the supervisor of a model; report why it is empty or suspicious."""
 
 from __future__ import annotations
 
@@ -24,9 +24,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Diagnosis(Synthesis):
-    """The result of synthesis, with `observations` of the supervisor, or with the `reason` why it is empty.
+    """Result of synthesis, with `observations` of the supervisor, or with the `reason` why it is empty.
 
-    `weights` say in how many states each requirement matters, where that was asked for and does not cost much.
+    `weights` are the numbers of states in which each requirement matters. They are given on request, and only if their
+    computation is cheap.
     """
 
     observations: Observations | None = None
@@ -36,14 +37,14 @@ class Diagnosis(Synthesis):
 
 @dataclass(frozen=True)
 class Supervision:
-    """The result of synthesis, and what its rules find."""
+    """Result of synthesis, and the findings of its rules."""
 
     synthesis: Diagnosis
     findings: list[Diagnostic]
 
 
 class EmptySupervisorError(ModelError):
-    """No behaviour of the robot keeps to its requirements; `synthesis.reason` says why."""
+    """No behavior of the robot satisfies its requirements; `synthesis.reason` holds the cause."""
 
     def __init__(self, model: sct.SupervisoryControlModel, synthesis: Diagnosis) -> None:
         self.synthesis = synthesis
@@ -68,7 +69,7 @@ def _place(model: sct.SupervisoryControlModel, reason: Reason) -> tuple[str, Spa
 
 
 def _condition(model: sct.SupervisoryControlModel, reason: Reason) -> str | None:
-    """The condition that an automaton lacks which follows a message where its component ignores it; None: none."""
+    """Return the condition that an automaton lacks if it follows a message that its component ignores."""
     events = [requirement.event for requirement in reason.violated if isinstance(requirement, sct.Requirement)]
     for event in events:
         component, _, message = name(plant_of(event)).rpartition(".")
@@ -87,7 +88,7 @@ def _condition(model: sct.SupervisoryControlModel, reason: Reason) -> str | None
 
 
 def _does(edge: sct.Edge, event: sct.Event) -> bool:
-    """Whether an edge of an event changes something."""
+    """Return whether an edge of an event changes something."""
     return edge.event is event and (edge.target not in (None, edge.eContainer()) or bool(edge.updates))
 
 
@@ -99,9 +100,10 @@ def diagnose(
     weigh: bool = False,
     effort: int | None = None,
 ) -> Diagnosis:
-    """Synthesizes the supervisor of a model, which stays as it is, and observes it; `weigh` asks for the weights.
+    """Synthesize the supervisor of a model and observe it, without changing the model.
 
-    `memory`, `statistics` and errors are those of `robosc.synthesis.synthesize`, `effort` is that of `solve`.
+    `weigh` requests the weights. For `memory`, `statistics` and errors see `robosc.synthesis.synthesize`; for `effort`
+    see `solve`.
     """
 
     def look(solution: Solution) -> Diagnosis:
@@ -127,12 +129,12 @@ def supervise(
     weigh: bool = False,
     effort: int | None = None,
 ) -> Supervision:
-    """Synthesizes the supervisor of a model, and makes it the model's own if it is whole, and no finding is an error.
+    """Synthesize the supervisor of a model and assign it to the model.
 
-    Its guards say why synthesis added something, where that is told at reasonable cost.
-
-    `memory` and `statistics` are those of `robosc.synthesis.synthesize`, `weigh` and `effort` are those of `diagnose`.
-    Raises EmptySupervisorError where there is no supervisor, ModelError and MemoryError as `synthesize` does.
+    The model gets the supervisor only if all guards are complete and no finding is an error. Guards explain why
+    synthesis added a condition, if the explanation is cheap. For `memory` and `statistics` see
+    `robosc.synthesis.synthesize`; for `weigh` and `effort` see `diagnose`. Raises EmptySupervisorError if there is no
+    supervisor, and ModelError and MemoryError as `synthesize` does.
     """
     synthesis = diagnose(model, memory=memory, statistics=statistics, weigh=weigh, effort=effort)
     if synthesis.observations is None:

@@ -1,4 +1,4 @@
-"""Events, states and traces of an sct model in the words of the robot model that it came from."""
+"""Events, states and traces of an SCT model in the words of the robot model that it came from."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from robosc.synthesis.decoding import Value
     from robosc.synthesis.encoding import Element
 
-#: How many components a sentence names.
+#: Maximum number of components that a sentence names.
 NAMED = 4
 _EVENTS = {
     sct.EventKind.trigger: "request to {}",
@@ -31,19 +31,19 @@ _EVENTS = {
     sct.EventKind.tau: "transition of {}",
     sct.EventKind.timeout: "timeout of {}",
 }
-#: The events of transitions without communication: their names say nothing of the text that they come from.
+#: Events of transitions without communication: their names do not identify the text that they come from.
 _OWN = (sct.EventKind.tau, sct.EventKind.timeout)
 
 
 def name(plant: sct.Plant) -> str:
-    """The name in the robot model: a component, or a component and its communication with a dot between."""
+    """Return the name in the robot model: a component, or a component and its communication with a dot."""
     return plant.origin or plant.name
 
 
 def words(event: sct.Event) -> str:
-    """An event, such as `request to Platform.move`.
+    """Return an event in words, such as `request to Platform.move`.
 
-    Of silent transitions and of statements that provide data also the line, and what tells them apart.
+    Silent transitions and `provide` statements also get their line, and a column if needed to distinguish them.
     """
     owner = f"`{name(plant_of(event))}`"
     if event.kind == sct.EventKind.data:
@@ -61,13 +61,13 @@ def words(event: sct.Event) -> str:
 
 
 def with_words(event: sct.Event) -> str:
-    """The event's name; of those whose name says nothing of the text that they come from, also that."""
+    """Return the event's name, with its description if the name does not identify its text."""
     unclear = event.kind in (*_OWN, sct.EventKind.data) and event.source
     return f"{event_name(event)} ({words(event)})" if unclear else event_name(event)
 
 
 def _where(event: sct.Event) -> str:
-    """The line of an event, with the column where another of its plant stands in that line."""
+    """Return the line of an event, with the column if another event of its plant has the same line."""
     if event.source is None:
         return ""
     span = event.source.span
@@ -77,7 +77,7 @@ def _where(event: sct.Event) -> str:
 
 
 def change(event: sct.Event) -> str:
-    """An internal event in words: `Lidar changes by itself: blocked to free`; of several alike with the line."""
+    """Return an internal event in words: `Lidar changes by itself: blocked to free`; with the line if ambiguous."""
     plant = plant_of(event)
     if event.kind == sct.EventKind.reset:
         return f"{name(plant)} is ready to be used again"
@@ -92,7 +92,7 @@ def change(event: sct.Event) -> str:
 
 
 def called(requirements: Sequence[sct.StatedRequirement]) -> str:
-    """Requirements, each in its own words and with its line: "`requirement move needs Lidar.free` (line 12)"."""
+    """Return requirements with their text and line: "`requirement move needs Lidar.free` (line 12)"."""
     told = list(dict.fromkeys(map(_called, requirements)))
     named = told[:NAMED]
     if len(told) > NAMED:
@@ -109,12 +109,12 @@ def _called(requirement: sct.StatedRequirement) -> str:
 
 
 def forbid(requirements: Sequence[sct.Requirement], what: str) -> str:
-    """That they forbid something."""
+    """Return a clause which states that requirements forbid something."""
     return f"{called(requirements)} {_forbid(requirements)} {what}"
 
 
 def violates(named: str, requirements: Sequence[sct.StatedRequirement]) -> str:
-    """That requirements, named so, do not hold."""
+    """Return a clause which states that requirements, named `named`, are violated."""
     events = dict.fromkeys(
         requirement.event for requirement in requirements if isinstance(requirement, sct.Requirement)
     )
@@ -128,7 +128,7 @@ def _forbid(requirements: Sequence[sct.StatedRequirement]) -> str:
 
 
 def in_words(steps: Sequence[TraceStep], model: sct.SupervisoryControlModel) -> str:
-    """The events of a trace with the data that matters; what happens several times in a row is said once."""
+    """Return the events of a trace with the data that matters; repetitions in a row appear once."""
     events = {event_name(event): event for plant in model.plants for event in plant.events}
     said = []
     for step in steps:
@@ -140,7 +140,7 @@ def in_words(steps: Sequence[TraceStep], model: sct.SupervisoryControlModel) -> 
 
 
 def _data(input_name: str, chosen: Value, event: sct.Event) -> str:
-    """A piece of an event's data, or the node's computation on it, as the model writes it."""
+    """Return a piece of an event's data, or the node's computation on it, as the model writes it."""
     computed = next((carried.text for carried in event.inputs if carried.name == input_name), None)
     if computed is None:
         said = input_name.removeprefix(f"i_{event.kind.name}").removeprefix("_") or "value"
@@ -149,17 +149,17 @@ def _data(input_name: str, chosen: Value, event: sct.Event) -> str:
 
 
 def listed(names: Sequence[str]) -> str:
-    """`a`, `a and b`, `a, b and c`."""
+    """Return `a`, `a and b`, or `a, b and c`."""
     return ", ".join(names[:-1]) + f" and {names[-1]}" if len(names) > 1 else "".join(names)
 
 
 def condition(values: Iterable[tuple[Element, Value]]) -> str:
-    """Values of plants and variables as a condition of the language, such as `Lidar.free and Lidar.front = clear`."""
+    """Return values as a condition of the language, such as `Lidar.free and Lidar.front = clear`."""
     return " and ".join(_is(element, chosen) for element, chosen in values)
 
 
 def what_is(element: Element, chosen: Value) -> str:
-    """The present value of a plant or variable, such as "`Lidar` is in `free`" or "`Gauge.level` is 3"."""
+    """Return the value of a plant or variable in words, such as "`Lidar` is in `free`" or "`Gauge.level` is 3"."""
     if isinstance(element, sct.Plant):
         return f"`{name(element)}` is in `{chosen}`"
     return f"`{name(element.eContainer())}.{element.name}` is {text(chosen)}"

@@ -1,7 +1,7 @@
-"""The rules that a model must follow beyond its syntax (thesis 4.5): a module of `rules` a family.
+"""Rules that a model must follow beyond its syntax (thesis 4.5), one module of `rules` for each family.
 
-A new rule is a function decorated by `rule` in `rules`, a page in `docs/rules`, and models in `tests/checks`. What
-rules have in common stands beside this file.
+A new rule is a function decorated by `rule` in `rules`, a page in `docs/rules`, and models in `tests/checks`. Code that
+rules share is beside this file.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 def check(
     base: rsc.Base | None, known: Iterable[Diagnostic] = (), interfaces: RosTypes | None = None
 ) -> list[Diagnostic]:
-    """The violations of all rules in a robot or library and in every library that it imports, directly or not.
+    """Return the violations of all rules in a robot or library and in every library that it imports.
 
-    They are sorted by file, position and rule. `known`: the findings from reading the texts; they are not returned
-    again, and no rule reports what they may have caused, such as the absence of something that may stand in a part of
-    the text that could not be read or resolved. `interfaces`: the known ROS types; None: `RosTypes()`. A base of None
-    gives [].
+    The violations are sorted by file, position and rule. Indirectly imported libraries are checked, too. `known`: the
+    findings from reading the texts. They are not returned again, and no rule reports a possible consequence of them,
+    such as the absence of an element that may be in an unreadable or unresolved part of the text. `interfaces`: the
+    known ROS types; None: `RosTypes()`. A base of None gives [].
     """
     if base is None:
         return []

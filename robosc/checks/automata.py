@@ -1,6 +1,6 @@
 """Rules on requirement automata and on the events that requirements name.
 
-And how a text is mended where one state is to be initial, or one of two transitions is to be left out.
+The module also has the edits that leave one initial state, or one of two transitions.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 
 def named_events(base: rsc.Base) -> Iterator[rsc.EventReference]:
-    """The events that orders, counts and automata name."""
+    """Yield the events that orders, counts and automata name."""
     for requirement in statements(rsc.Requirement, base):
         if not isinstance(requirement, rsc.CommunicationRequirement | rsc.StateInvariant):
             yield from of_kind(rsc.EventReference, (element for _, element in tree(requirement)))
 
 
 def unknown_events(base: rsc.Base) -> Iterator[Finding]:
-    """The events that their communications do not have, of the rule `result-type`."""
+    """Report events that their communications do not have, for the rule `result-type`."""
     for named in named_events(base):
         communication = communication_of(named.communicationType)
         if communication is not None and meant(named) is None and isinstance(named, rsc.NamedEvent):
@@ -47,7 +47,7 @@ def unknown_events(base: rsc.Base) -> Iterator[Finding]:
 
 
 def initial_states(base: rsc.Base) -> Iterator[Finding]:
-    """The automata without one initial state, of the rule `initial-state`."""
+    """Report automata without exactly one initial state, for the rule `initial-state`."""
     for automaton in statements(rsc.AutomatonRequirement, base):
         initial = [state for state in automaton.states if state.initial]
         for other in initial[1:]:
@@ -61,19 +61,19 @@ def initial_states(base: rsc.Base) -> Iterator[Finding]:
 
 
 def start_of(hint: str, states: Iterable[rsc.State | rsc.RequirementState]) -> Choice:
-    """The states of which one may be initial."""
+    """Return the choice of the state to make initial."""
     ways = (Insertion(f"write `initial` before `state {written(state.name)}`", "initial ", state) for state in states)
     return Choice(hint, tuple(ways))
 
 
 def one_initial(hint: str, *states: rsc.State | rsc.RequirementState) -> Choice:
-    """The states of which one is not to be initial."""
+    """Return the choice of the state that loses `initial`."""
     ways = (Removal(f"leave `initial` out before `{state.name}`", part_of(state).find("initial")) for state in states)
     return Choice(hint, tuple(ways))
 
 
 def one_out(hint: str, later: rsc.Transition | rsc.RequirementTransition, earlier: ex.Located) -> Choice:
-    """Two transitions of which one is to be left out."""
+    """Return the choice of which of two transitions to remove."""
     ways = (
         Removal(f"leave this one out{on_line(later)}", later),
         Removal(f"leave the other one out{on_line(earlier)}", earlier),
@@ -82,7 +82,7 @@ def one_out(hint: str, later: rsc.Transition | rsc.RequirementTransition, earlie
 
 
 def repeated_events(base: rsc.Base) -> Iterator[Finding]:
-    """Transitions of a state behind one without condition on the same event, of the rule `nondeterminism`."""
+    """Report transitions after an unconditional one on the same event in a state, for the rule `nondeterminism`."""
     for automaton in statements(rsc.AutomatonRequirement, base):
         for state in automaton.states:
             always: dict[Any, rsc.RequirementTransition] = {}

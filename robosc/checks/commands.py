@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Places:
-    """Where findings about instances stand: in the robot's own text, or at the import of a library's component."""
+    """Places of findings about instances: in the robot's own text, or at the import of a library's component."""
 
     def __init__(self, base: rsc.Base) -> None:
         self._base = base
@@ -24,9 +24,9 @@ class Places:
     def new(
         self, element: ex.Located, instance: Instance | None, communication: rsc.CommunicationType
     ) -> ex.Located | None:
-        """The place of a finding about an element in the text of an instance; None where one stands there already.
+        """Return the place of a finding about an element of an instance; None if the place has one already.
 
-        At one place there is one finding for each communication.
+        A place has at most one finding for each communication.
         """
         place = element if instance is None or instance.unit is self._base else instance.component
         if (place, communication) in self._reported:
@@ -36,7 +36,7 @@ class Places:
 
 
 class CommandCondition(NamedTuple):
-    """A condition of a requirement on commands: they are allowed only where it has the wanted value."""
+    """Condition of a requirement on commands: they are allowed only if it has the value `wanted`."""
 
     requirement: rsc.Requirement
     restricted: set[PortInstance | None]
@@ -46,7 +46,7 @@ class CommandCondition(NamedTuple):
 
 
 def command_conditions(known: Instances) -> Iterator[CommandCondition]:
-    """The conditions of requirements on starting commands, requirement automata among them."""
+    """Yield the conditions of requirements on starting commands, including those of requirement automata."""
     for required in known.statements(rsc.CommunicationRequirement):
         if required.element.condition is not None:
             wanted = not isinstance(required.element, rsc.DisablesRequirement)
@@ -74,7 +74,7 @@ def events_of(requirement: rsc.Requirement) -> list[rsc.EventReference]:
 
 
 def commands_of(requirement: Statement[rsc.CommunicationRequirement], known: Instances) -> set[PortInstance | None]:
-    """The commands that a requirement restricts."""
+    """Return the commands that a requirement restricts."""
     target = requirement.element.target
     named = target.communicationTypes if target else ()
     return {known.port(reference, requirement.within) for reference in named}

@@ -1,4 +1,4 @@
-"""The own definitions of a robot or library, in the order of its text; `robosc.checks.libraries` has its imports."""
+"""Own definitions of a robot or library, in the order of its text; `robosc.checks.libraries` has its imports."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Text(Protocol):
 
     @property
     def definitions(self) -> Iterable[Any]:
-        """Its definitions."""
+        """Definitions in the text."""
 
 
 _Element = TypeVar("_Element", bound="ex.Located")
@@ -26,26 +26,26 @@ _Use = TypeVar("_Use")
 
 
 def of_kind(kind: type[_Element] | tuple[type[_Element], ...], elements: Iterable[Any]) -> list[_Element]:
-    """Those elements that are of a kind."""
+    """Return the elements of a kind."""
     return [element for element in elements if isinstance(element, kind)]
 
 
 def components(base: Text) -> Iterator[tuple[rsc.Component, rsc.LocalComponent]]:
-    """The components that are not imported."""
+    """Yield the components that are not imported."""
     for component in of_kind(rsc.Component, base.definitions):
         if isinstance(component.type, rsc.LocalComponent):
             yield component, component.type
 
 
 def statements(kind: type[_Element], base: Text) -> Iterator[_Element]:
-    """The definitions of a kind outside of components, then those in these components."""
+    """Yield the definitions of a kind outside of components, then those inside local components."""
     yield from of_kind(kind, base.definitions)
     for _, local in components(base):
         yield from of_kind(kind, local.definitions)
 
 
 def behaviours(base: Text) -> Iterator[tuple[rsc.Component, rsc.ComponentBehaviour]]:
-    """Every behaviour of these components, of one component all of them."""
+    """Yield all behaviors of local components; a component may have several."""
     for component, local in components(base):
         for behaviour in of_kind(rsc.ComponentBehaviour, local.definitions):
             if behaviour.automaton:
@@ -53,7 +53,7 @@ def behaviours(base: Text) -> Iterator[tuple[rsc.Component, rsc.ComponentBehavio
 
 
 def transitions(base: Text) -> Iterator[tuple[rsc.Component, rsc.Transition]]:
-    """Every transition of these behaviours, with its component."""
+    """Yield the transitions of these behaviors, each with its component."""
     for component, behaviour in behaviours(base):
         for definition in behaviour.automaton.definitions:
             if isinstance(definition, rsc.State):
@@ -63,19 +63,19 @@ def transitions(base: Text) -> Iterator[tuple[rsc.Component, rsc.Transition]]:
 
 
 def variables(base: Text) -> Iterator[rsc.Variable]:
-    """The variables of these behaviours."""
+    """Yield the variables of these behaviors."""
     for _, behaviour in behaviours(base):
         yield from of_kind(rsc.Variable, behaviour.automaton.definitions)
 
 
 def communications(base: Text) -> Iterator[rsc.CommunicationType]:
-    """The messages, services and actions of these components."""
+    """Yield the messages, services and actions of local components."""
     for _, local in components(base):
         yield from of_kind(rsc.CommunicationType, local.definitions)
 
 
 def identified_elements(base: rsc.Base) -> Iterator[rsc.CommunicationType | rsc.TopicRemapping]:
-    """The declarations and re-mappings that name a topic, a service or an action."""
+    """Yield the declarations and re-mappings that name a topic, a service or an action."""
     yield from communications(base)
     for component in of_kind(rsc.Component, base.definitions):
         if isinstance(component.type, rsc.ImportedComponent):
@@ -83,21 +83,22 @@ def identified_elements(base: rsc.Base) -> Iterator[rsc.CommunicationType | rsc.
 
 
 def states(automaton: rsc.Automaton) -> list[rsc.State]:
-    """The states of an automaton."""
+    """Return the states of an automaton."""
     return of_kind(rsc.State, automaton.definitions)
 
 
 def common_transitions(automaton: rsc.Automaton) -> list[rsc.Transition]:
-    """The transitions that every state of an automaton has."""
+    """Return the transitions that every state of an automaton has."""
     return of_kind(rsc.Transition, automaton.definitions)
 
 
 def circles(
     elements: Iterable[_Element], uses: Callable[[_Element], Iterable[tuple[_Use, _Element]]]
 ) -> Iterator[tuple[_Use, list[_Element]]]:
-    """Each use that closes a circle, and the elements of this, first the one that it leads back to.
+    """Yield each use that closes a cycle, with the elements of the cycle; it leads back to the first of them.
 
-    `uses` are those of an element, each with what it uses. Nothing recurses: a circle may be thousands of uses long.
+    `uses` yields the uses of an element, each with the element that it leads to. The search does not recurse, because a
+    cycle may have thousands of uses.
     """
     done: set[_Element] = set()
     for start in elements:
@@ -116,7 +117,7 @@ def circles(
 
 
 def sends_message(transition: rsc.Transition) -> bool:
-    """Whether a transition happens when the controller sends its component a message."""
+    """Return whether a transition happens when the controller sends its component a message."""
     if not isinstance(transition, rsc.ResultTransition) or transition.communicationType is None:
         return False
     event = event_of(transition.communicationType, transition.resultType)
@@ -125,13 +126,13 @@ def sends_message(transition: rsc.Transition) -> bool:
 
 
 def assigned_variable(assignment: rsc.Assignment) -> rsc.Variable | None:
-    """The variable of the own component that an assignment means; None for anything else."""
+    """Return the variable of the own component that an assignment sets; None for any other item."""
     item = assignment.item.item if assignment.item else None
     return item if isinstance(item, rsc.Variable) and component_of(item) is component_of(assignment) else None
 
 
 def component_of(element: ex.Located) -> rsc.Component | None:
-    """The component whose text an element stands in."""
+    """Return the component that contains an element."""
     around = element
     while around is not None and not isinstance(around, rsc.Component):
         around = around.eContainer()
@@ -139,7 +140,7 @@ def component_of(element: ex.Located) -> rsc.Component | None:
 
 
 def unit_of(element: ex.Located) -> Any:
-    """The robot or library in whose text an element stands."""
+    """Return the robot or library whose text contains an element."""
     around = element
     while around.eContainer() is not None:
         around = around.eContainer()
@@ -147,7 +148,7 @@ def unit_of(element: ex.Located) -> Any:
 
 
 def restricted_events(base: rsc.Base) -> Iterator[rsc.EventSet]:
-    """The events that orders and counts restrict."""
+    """Yield the events that orders and counts restrict."""
     for order in statements(rsc.OrderRequirement, base):
         yield order.target
     for count in statements(rsc.CountRequirement, base):
@@ -155,12 +156,12 @@ def restricted_events(base: rsc.Base) -> Iterator[rsc.EventSet]:
 
 
 def communication_of(reference: rsc.CommunicationReference | None) -> rsc.CommunicationType | None:
-    """The communication that a reference names; None where there is none, or it is not resolved."""
+    """Return the communication of a reference; None if there is no reference or it is not resolved."""
     return reference.communicationType if reference else None
 
 
 def data_types(base: Text) -> Iterator[rsc.DataType]:
-    """Every type that stands in the text of a base, those within arrays too."""
+    """Yield every type in the text of a base, including the element types of arrays."""
     for outermost in _outermost(base):
         around: rsc.DataType | None = outermost
         while around is not None:

@@ -1,4 +1,4 @@
-"""Finds what is wrong with the types in one expression, each fault once, where it is."""
+"""Type check of one expression. Each fault is reported once, at its place."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 
 class Restriction(Enum):
-    """Which names an expression may read."""
+    """Names that an expression may read."""
 
     FREE = "any"
     CONSTANT = "enum values"
@@ -50,10 +50,10 @@ class Restriction(Enum):
 
 @dataclass(frozen=True)
 class Place:
-    """Where an expression stands: the type of `value` there, or why there is none, and which names it may read.
+    """Context of an expression: the type of `value` or why there is none, and the names that it may read.
 
-    `has_reason` says whether it may read `error`. `what` and `instead` are for what must be constant: what it is, and
-    what a hint says behind what it may be.
+    `has_reason`: whether the expression may read `error`. `what` and `instead` are for expressions that must be
+    constant: `what` names the expression in messages, and `instead` ends the hint.
     """
 
     value: Type | None
@@ -65,7 +65,7 @@ class Place:
 
 
 _STORE_REASON = "store it in a variable by `on error from … do why := error`, and read the variable"
-#: What functions want that is no basic type.
+#: Argument types of functions that take no basic type: a test of a type, and its name.
 _FITTING: Mapping[Rule, tuple[Callable[[Type], bool], str]] = {
     Rule.SIZE: (lambda found: isinstance(found, ArrayType) or found == STRING, "an array or a string"),
     Rule.ELEMENTS: (
@@ -73,7 +73,7 @@ _FITTING: Mapping[Rule, tuple[Callable[[Type], bool], str]] = {
         "an array of integers or doubles",
     ),
 }
-#: What constant expressions read, and what the rules of enums and functions do.
+#: Items that constant expressions may read, and those that rules of enums and functions may read.
 _CONSTANT_ITEMS = (rsc.EnumValue, rsc.Constant, rsc.FormalParameter, rsc.ArrayElement)
 _SET_ITEMS = (*_CONSTANT_ITEMS, rsc.Parameter)
 CONSTANT = Place(None, restriction=Restriction.CONSTANT)
@@ -81,9 +81,9 @@ ENUM_RULE = Restriction.ENUM_RULE
 
 
 class ExpressionCheck:
-    """Types an expression at a place and collects what is wrong with it.
+    """Type check of an expression in a context, which collects findings.
 
-    An expression with a fault of its own is unknown to what is around it, so that no fault draws a second finding.
+    A faulty expression has the type UNKNOWN for the expression around it. Each fault therefore gives only one finding.
     """
 
     def __init__(self, place: Place) -> None:
@@ -91,16 +91,16 @@ class ExpressionCheck:
         self.findings: list[Finding] = []
 
     def expect(self, expression: ex.Expression | None, wanted: Type, what: str) -> None:
-        """Demands that the expression has exactly this type; `what` says what it is for."""
+        """Report the expression unless it has exactly this type; `what` names its role."""
         found = self.type(expression)
         if expression is not None and UNKNOWN not in {found, wanted} and found != wanted:
             wants, finds = names(wanted, found)
             self.report(expression, f"{what} must be {wants}, found {finds}", repair(expression, found, wanted))
 
     def provided(self, value: ex.Expression | None, wanted: Type, what: str) -> None:
-        """Demands that provided data has this type; of an object value each property is checked by its own type."""
+        """Report provided data unless it has this type; the properties of an object value are checked one by one."""
         if isinstance(wanted, EnumType) or wanted == NONE:
-            wanted = UNKNOWN  # That no such data goes out is the matter of `data-type` and of `data-provisioning`.
+            wanted = UNKNOWN  # `data-type` and `data-provisioning` report this.
         if isinstance(value, rsc.ArrayLiteral):
             if wanted != UNKNOWN and not isinstance(wanted, ArrayType):
                 self.report(value, f"{what} must be {wanted}, found an array", repair(value, UNKNOWN, wanted))
@@ -119,7 +119,7 @@ class ExpressionCheck:
             self.provided(given.value, declared_type(given.property.type) if given.property else UNKNOWN, name)
 
     def type(self, expression: ex.Expression | None) -> Type:
-        """The type of the expression, UNKNOWN if it has a fault itself; what is wrong within it is reported."""
+        """Return the type of the expression and report faults within it; UNKNOWN if it is faulty itself."""
         return UNKNOWN if expression is None else fold(self._typed, expression, _inside)
 
     def _typed(self, expression: ex.Expression | None, types: list[Type]) -> Type:
@@ -176,7 +176,7 @@ class ExpressionCheck:
         return then if then != UNKNOWN else otherwise
 
     def report(self, element: ex.Located, message: str, hint: Hint) -> None:
-        """Notes a finding."""
+        """Add a finding."""
         self.findings.append(Finding(element, message, hint))
 
     def _operator(self, operator: ex.Expression, row: Operator, types: list[Type]) -> Type:
@@ -237,7 +237,7 @@ class ExpressionCheck:
         return types[-1]
 
     def _refusal(self, access: rsc.Access) -> tuple[str, Hint] | None:
-        """Why this can't be read here, and the repair; None where it can."""
+        """Return why the access is not allowed here and how to repair it; None if it is allowed."""
         item, restriction = access.item, self.place.restriction
         if restriction is Restriction.CONSTANT and (access.value or (item and not isinstance(item, _CONSTANT_ITEMS))):
             return (
@@ -270,12 +270,12 @@ class ExpressionCheck:
 
 
 def _inside(expression: ex.Expression | None) -> list[ex.Expression]:
-    """The operands; an object value is a finding itself."""
+    """Return the operands to check; literals of objects and arrays are findings themselves."""
     return [] if isinstance(expression, rsc.ObjectValue | rsc.ArrayLiteral) else operands(expression)
 
 
 def names(first: Type, second: Type) -> tuple[str, str]:
-    """Two different types as a message names them, with their libraries where their names alone are equal."""
+    """Return two different types as text, with their libraries if their names are equal."""
     if str(first) == str(second):
         return _with_unit(first), _with_unit(second)
     return str(first), str(second)

@@ -1,4 +1,4 @@
-"""What the rules have found out of a robot or library, asked once in a check."""
+"""Cache of values that rules compute from a robot or library, for one check."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _FACTS: ContextVar[dict[tuple[Callable[..., Any], rsc.Base], Any]] = ContextVar(
 
 @contextmanager
 def keeping_facts() -> Iterator[None]:
-    """Within the `with` block no model changes, so that what is found out of one holds until the end."""
+    """Cache facts within the `with` block, in which no model may change."""
     token = _FACTS.set({})
     try:
         yield
@@ -28,7 +28,7 @@ def keeping_facts() -> Iterator[None]:
 
 
 def fact(find: Callable[[_Base], _Fact], base: _Base) -> _Fact:
-    """What a function finds of a robot or library, asked once in a check."""
+    """Return `find(base)`, computed once for each check."""
     facts = _FACTS.get({})
     if (find, base) not in facts:
         facts[find, base] = find(base)

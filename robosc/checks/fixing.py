@@ -1,4 +1,4 @@
-"""Apply edits only where they leave a model at least as good as it was."""
+"""Apply edits only if they leave a model at least as good as it was."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic, Edit
     from robosc.language import Reading, Reference, Text
 
-#: So many syntax errors of one item, of which each hides the next, are mended.
+#: Maximum number of syntax errors of one item to mend if each of them hides the next.
 _MOST_HIDDEN = 8
 _STRINGS = (Kind.STRING, Kind.OPEN_STRING)
 
 
 class Checked(Protocol):
-    """A model that was read and checked; `findings` are those of reading and of the rules, of imported files too."""
+    """A checked model; `findings` are those of reading and of the rules, including imported files."""
 
     @property
     def reading(self) -> Reading:
-        """The model and its files."""
+        """Model and its files."""
 
     @property
     def findings(self) -> Sequence[Diagnostic]:
@@ -49,33 +49,33 @@ class _Offsets:
         ]
 
     def after(self, offset: int) -> int:
-        """Where an offset lies after the edits; one that was replaced lies where the new text starts."""
+        """Return the offset after the edits; a replaced offset moves to the start of the new text."""
         index = bisect_right(self._ends, offset)
         start = self._ranges[index][0] if index < len(self._ranges) else offset
         return min(offset, start) + self._shifts[index]
 
     def range(self, start: int, end: int) -> tuple[int, int]:
-        """Where a range without edits lies after the edits."""
+        """Return the place of an unedited range after the edits."""
         return self.after(start), self.after(start) + end - start
 
     def edits_in(self, start: int, end: int) -> list[tuple[int, int]]:
-        """The ranges that are replaced, or written at, between two offsets."""
+        """Return the ranges between two offsets that are replaced or receive text."""
         return [(first, last) for first, last in self._ranges if first < end and start < last]
 
     def is_written(self, start: int, end: int) -> bool:
-        """Whether a range of the text after the edits holds something that an edit wrote."""
+        """Return whether a range of the text after the edits contains new text."""
         return any(first < end and start < last for first, last in self._written)
 
 
 def objection(
     before: Checked, after: Checked, edits: Mapping[str, Sequence[Edit]], mended: Sequence[Diagnostic] = ()
 ) -> str | None:
-    """Why a model is worse after edits, in words; None where it is not.
+    """Return why the edits make a model worse, in words; None if they do not.
 
-    `edits` are those of each file, by the paths that findings carry, `mended` the findings that they are to mend. A
-    model is worse where less of it can be read, where a finding is new or one of `mended` stays, where a name stands
-    for something else, or where a comment or a string has changed. A syntax error hides findings of the rules: to mend
-    it may reveal them. But for each syntax error that is mended there must be one less.
+    `edits` maps the path of each file, as findings have it, to its edits. `mended` are the findings that the edits
+    should mend. A model is worse if less of it can be read, if a finding is new, if one of `mended` stays, if a name
+    refers to another element, or if a comment or a string has changed. A syntax error hides findings of the rules, so
+    its repair may reveal them. Each mended syntax error must reduce the number of syntax errors by one.
     """
     return _Comparison(before, after, edits).objection(mended)
 
@@ -89,11 +89,11 @@ class Safety(Enum):
 
 
 def safety_of(finding: Diagnostic, edits: Sequence[Edit], before: Checked, check: Callable[[str], Checked]) -> Safety:
-    """The effect of edits of a file that are to mend a finding in it; `check` is that of `safe_edits`.
+    """Return the effect of edits of a file that should mend a finding in it.
 
-    They are safe where `safe_edits` may take them. They do harm where the finding stays, a comment, a string or an
-    import would change, or a syntax error is new, but for one that the mended one may have hidden. All others are
-    doubtful, such as those after which a rule finds something else.
+    The edits are safe if `safe_edits` may use them; `check` is the argument of `safe_edits`. They are harmful if the
+    finding stays, if a comment, a string or an import changes, or if a syntax error is new, except one that the mended
+    error may have hidden. All others are doubtful, for example if a rule reports something else afterwards.
     """
     text = before.reading.file.text
     after = check(text.after(edits))
@@ -106,11 +106,11 @@ def safety_of(finding: Diagnostic, edits: Sequence[Edit], before: Checked, check
 
 
 def safe_edits(before: Checked, check: Callable[[str], Checked]) -> list[Edit]:
-    """The edits of a file's findings, of those with exactly one way to mend them, that leave it no worse.
+    """Return the edits that leave a file no worse, for findings with exactly one way to mend them.
 
-    `check` reads and checks the model with another text in place of the file's. Syntax errors come first: other edits
-    are returned where no edit mends one. A syntax error that hides others of its item is mended only where those can
-    be mended, too.
+    `check` reads and checks the model with another text of the file. Syntax errors come first: other edits are returned
+    only if no edit mends a syntax error. A syntax error that hides others of its item is mended only if those can be
+    mended, too.
     """
     text = before.reading.file.text
     own = [finding for finding in before.findings if finding.file == text.file and finding.edits]
@@ -120,7 +120,7 @@ def safe_edits(before: Checked, check: Callable[[str], Checked]) -> list[Edit]:
 
 
 def _safe(findings: Sequence[Diagnostic], before: Checked, check: Callable[[str], Checked]) -> Sequence[Diagnostic]:
-    """As many of these findings as can be mended at once."""
+    """Return a large set of these findings that can be mended together."""
     text = before.reading.file.text
     chosen = _apart(findings)
     if not chosen:
@@ -140,7 +140,7 @@ def _safe(findings: Sequence[Diagnostic], before: Checked, check: Callable[[str]
 
 
 def _leads_on(finding: Diagnostic, before: Checked, check: Callable[[str], Checked]) -> bool:
-    """Whether to mend a syntax error reveals another one, and to mend that in the end leaves fewer than before."""
+    """Return whether mending a syntax error reveals others that can be mended, too, with fewer left in the end."""
     if finding.rule != "syntax":
         return False
     for _ in range(_MOST_HIDDEN):
@@ -158,7 +158,7 @@ def _leads_on(finding: Diagnostic, before: Checked, check: Callable[[str], Check
 
 
 def _apart(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Those findings whose edits touch no edit of an earlier one, but for the same edit."""
+    """Return the findings whose edits touch no edit of an earlier finding; an equal edit is allowed."""
     found: list[Diagnostic] = []
     done: set[Edit] = set()
     for finding in findings:
@@ -179,7 +179,7 @@ def _edits(findings: Iterable[Diagnostic]) -> list[Edit]:
 
 
 class _Comparison:
-    """A model before and after edits."""
+    """Comparison of a model before and after edits."""
 
     def __init__(self, before: Checked, after: Checked, edits: Mapping[str, Sequence[Edit]]) -> None:
         self._before, self._after = before, after
@@ -188,7 +188,7 @@ class _Comparison:
         self._moved = {path: _Offsets(file.text, edits.get(path, ())) for path, file in self._files.items()}
 
     def objection(self, mended: Sequence[Diagnostic], *, revealed: int = 0) -> str | None:
-        """Why it is worse, so many syntax errors that were hidden aside."""
+        """Return why the model is worse; `revealed` formerly hidden syntax errors are accepted."""
         damage = self._damage(mended)
         if damage is not None:
             return damage
@@ -200,7 +200,7 @@ class _Comparison:
         return None if name is None else f"`{name.name}` would stand for something else"
 
     def is_harmful(self, mended: Diagnostic) -> bool:
-        """Whether the edits that are to mend a finding break the text, or leave the finding."""
+        """Return whether the edits for a finding break the text or leave the finding."""
         if self._damage([mended], removing=True) is not None:
             return True
         if mended.rule == "syntax":
@@ -217,7 +217,7 @@ class _Comparison:
         return stays and len(after) >= len(before)
 
     def _damage(self, mended: Sequence[Diagnostic], *, removing: bool = False) -> str | None:
-        """An import, a comment or a string that would change; `removing`: edits may remove whole strings."""
+        """Return which import, comment or string changes; `removing`: edits may remove whole strings."""
         for path in self._files:
             if path not in self._files_after:
                 return f"{path} would be imported no more"
@@ -234,9 +234,9 @@ class _Comparison:
         return [moved.range(*comment) for comment in comments] == self._files_after[path].text.tokens.comments
 
     def _keeps_strings(self, path: str, mended: Sequence[Diagnostic], removing: bool) -> bool:
-        """Whether strings are kept, but for those that an edit replaces whole and those with an error inside.
+        """Return whether all strings stay, except wholly replaced strings and strings with an error inside.
 
-        `removing`: nor those that an edit removes with what they stand in.
+        `removing`: strings may also disappear with the element that contains them.
         """
         moved, text = self._moved[path], self._files[path].text
         faulty = [_start(finding, text) for finding in mended if finding.file == path]
@@ -253,7 +253,7 @@ class _Comparison:
         return kept <= strings and all(moved.is_written(*string) for string in strings - kept)
 
     def revealed(self, mended: Diagnostic) -> Diagnostic | None:
-        """The first syntax error that is new and stands behind a mended one; None where it has no edit."""
+        """Return the first new syntax error after the mended one; None if it has no edit."""
         before, after = _syntax_errors(self._before), _syntax_errors(self._after)
         known = {(self._start(found), found.message) for found in before if found.file == mended.file}
         text = self._files_after[mended.file].text
@@ -264,7 +264,10 @@ class _Comparison:
         return None
 
     def _syntax_error(self, mended: Sequence[Diagnostic], revealed: int) -> Diagnostic | None:
-        """A syntax error that stays, or the first of them where not one less is left for each that is mended."""
+        """Return a mended syntax error that stays, or the first of too many.
+
+        The number of syntax errors must fall by one for each mended one; `revealed` more are accepted.
+        """
         before, after = _syntax_errors(self._before), _syntax_errors(self._after)
         if len(after) > len(before) - len(mended) + revealed:
             return after[0]
@@ -272,7 +275,7 @@ class _Comparison:
         return next((found for found in mended if (found.file, self._start(found), found.message) in places), None)
 
     def _new_finding(self, mended: Sequence[Diagnostic]) -> Diagnostic | None:
-        """A finding of a rule in a line in which no finding of the rule was left."""
+        """Return a finding of a rule on a line with more findings of this rule than before."""
         left = Counter(map(self._line, self._before.findings))
         left.subtract(map(self._line, mended))
         for finding in self._after.findings:
@@ -283,20 +286,20 @@ class _Comparison:
         return None
 
     def _start(self, finding: Diagnostic) -> int:
-        """Where a finding of before starts after the edits."""
+        """Return where a finding from before starts after the edits."""
         return self._moved[finding.file].after(_start(finding, self._files[finding.file].text))
 
     def _line(self, finding: Diagnostic) -> tuple[str, str, int]:
-        """File, rule and line after the edits of a finding of before."""
+        """Return the file, the rule and the new line of a finding from before."""
         if finding.file not in self._files:
             return finding.file, finding.rule, finding.span.line
         start = self._start(finding)
         return finding.file, finding.rule, self._files_after[finding.file].text.span(start, start).line
 
     def _changed_names(self) -> Iterator[Reference]:
-        """The names that stand for something else.
+        """Yield the names that refer to another element than before.
 
-        A name that an edit replaces or removes may do so, but for the names of an element that is renamed.
+        Names that an edit replaces or removes are exempt, unless their element is renamed.
         """
         declared, declared_after = _declarations(self._before.reading), _declarations(self._after.reading)
         for path, file in self._files.items():
@@ -329,7 +332,7 @@ def _start(finding: Diagnostic, text: Text) -> int:
 
 
 def _declarations(reading: Reading) -> dict[Any, tuple[str, int, int]]:
-    """File and offsets of the names of all elements."""
+    """Return the file and the offsets of the name of each declared element."""
     return {
         name.target: (path, name.start, name.end)
         for path, file in reading.files.items()

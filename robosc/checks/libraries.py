@@ -1,4 +1,4 @@
-"""What a robot or library imports."""
+"""Imports of a robot or library."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from robosc.semantics.evaluation import Value
     from robosc.semantics.instances import Instance, Resolved
 
-    #: Says whether a robot or library by itself has what a rule looks for.
+    #: Predicate on a robot or library by itself.
     Holds = Callable[[rsc.Base], bool]
 
 
 @dataclass
 class _Memory:
-    """What the rules have found out about the bases of one check, each of which most of them look at."""
+    """Cache of one check: most rules look at the same bases."""
 
     instances: dict[rsc.Base, Instances] = field(default_factory=dict)
     resolved: Resolved = field(default_factory=dict)
@@ -36,7 +36,7 @@ class _Memory:
 
 @dataclass(frozen=True)
 class Cell:
-    """A list that several lists go on with: a library, and what comes after it."""
+    """Linked list of libraries. Several lists may share their end."""
 
     library: rsc.Library
     after: Cell | None
@@ -47,7 +47,7 @@ _MEMORY: ContextVar[_Memory] = ContextVar("_MEMORY")
 
 @contextmanager
 def remembering() -> Iterator[None]:
-    """Within the `with` block no model changes, so that what is found out of one holds until the end."""
+    """Cache results within the `with` block, in which no model may change."""
     token = _MEMORY.set(_Memory())
     try:
         with keeping_facts():
@@ -61,7 +61,7 @@ def _memory() -> _Memory:
 
 
 def instances(base: rsc.Base) -> Instances:
-    """The instances of a robot or library."""
+    """Return the instances of a robot or library."""
     memory = _memory()
     if base not in memory.instances:
         memory.instances[base] = Instances(base, memory.resolved)
@@ -70,15 +70,16 @@ def instances(base: rsc.Base) -> Instances:
 
 @dataclass(frozen=True)
 class Meaning:
-    """The text of a robot or library; or that of a template, as an instance of it means it by its arguments."""
+    """Text of a robot or library, or text of a template with the arguments of one instance."""
 
     definitions: Sequence[rsc.Definition]
     made: Instance | None = None
 
     def values(self, *expressions: ex.Expression | None) -> list[Value | None]:
-        """The value of each constant expression, None where it has none.
+        """Return the value of each constant expression; None if it has none.
 
-        An instance has values only where arguments take part: of all others the template's own text has them.
+        For an instance, only expressions that depend on arguments have values. The others get theirs from the
+        template's own text.
         """
         alone = [constant_value(expression) for expression in expressions]
         if self.made is None or None not in alone:
@@ -86,7 +87,7 @@ class Meaning:
         return [constant_value(expression, self.made) for expression in expressions]
 
     def finding(self, element: ex.Located, message: str, hint: Hint) -> Finding:
-        """Found at an element; what the arguments of an instance lead to is found there."""
+        """Return a finding at an element. If arguments of an instance cause it, the place is the instance."""
         if self.made is None:
             return Finding(element, message, hint)
         message = f"with these arguments, {message}{on_line(element)}"
@@ -94,7 +95,7 @@ class Meaning:
 
 
 def meanings(base: rsc.Base) -> Iterator[Meaning]:
-    """The text of a robot or library, then that of each component in it that is made with arguments."""
+    """Yield the text of a robot or library, then that of each of its components with arguments."""
     yield Meaning(base.definitions)
     for instance in instances(base):
         if instance.arguments:
@@ -102,20 +103,20 @@ def meanings(base: rsc.Base) -> Iterator[Meaning]:
 
 
 def imports(base: rsc.Base) -> list[tuple[rsc.Component, rsc.Library]]:
-    """Each imported component with its library, in the order of the text; unresolved libraries are left out."""
+    """Return each imported component with its library, in the order of the text, without unresolved libraries."""
     return fact(imported, base)
 
 
 def anything(_: rsc.Base) -> bool:
-    """Any library will do."""
+    """Accept every library."""
     return True
 
 
 def reachable(base: rsc.Base, holds: Holds = anything) -> list[rsc.Library]:
-    """Every library that the base's imports reach, each once, without the base itself: those for which `holds` is true.
+    """Return every library reachable by imports from the base that satisfies `holds`, without the base itself.
 
-    The near ones come first. In a chain of imports the libraries of each base are those of the next one and it: only
-    where a base imports several libraries all are visited anew.
+    Each library occurs once, the near ones first. In a chain of imports, the libraries of a base are the next library
+    and the libraries of that one. All libraries are visited again only if a base imports several.
     """
     known = _memory().reachable
     chain: list[tuple[rsc.Base, rsc.Library]] = []

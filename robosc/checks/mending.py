@@ -1,6 +1,6 @@
 """Hints that name an edit, and the edits.
 
-An edit takes tokens away, replaces them or writes beside them. It never looks for words in comments or strings.
+An edit removes tokens, replaces them or inserts text beside them. It never searches comments or strings.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ _BLANKS = (" ", "\t")
 
 @dataclass(frozen=True)
 class Part:
-    """The tokens of a text from one index to another, both included.
+    """Tokens of a text from one index to another, both included.
 
-    Without a `text` it is nowhere, and so is every part found from it: no edit follows.
+    A part without a `text` is nowhere. Every part derived from it is nowhere, too, and gives no edit.
     """
 
     text: Text | None = None
@@ -35,37 +35,37 @@ class Part:
     last: int = -1
 
     def find(self, *words: str) -> Part:
-        """The first place in it where these keywords or symbols follow each other."""
+        """Return the first place in the part with these keywords or symbols in sequence."""
         starts = range(self.first, self.last - len(words) + 2)
         return next((self._at(start, len(words)) for start in starts if self._stand(words, start)), NOWHERE)
 
     def preceded_by(self, *words: str) -> Part:
-        """It together with these words right before it."""
+        """Return the part extended by these words directly before it."""
         start = self.first - len(words)
         return Part(self.text, start, self.last) if self._stand(words, start) else NOWHERE
 
     def followed_by(self, *words: str) -> Part:
-        """It together with these words right behind it."""
+        """Return the part extended by these words directly after it."""
         return Part(self.text, self.first, self.last + len(words)) if self._stand(words, self.last + 1) else NOWHERE
 
     def to(self, last: Part) -> Part:
-        """From its beginning to the end of another part."""
+        """Return the range from the beginning of the part to the end of another part."""
         return NOWHERE if NOWHERE in (self, last) else Part(self.text, self.first, last.last)
 
     def until(self, other: Part) -> Part:
-        """From its beginning to where another part begins."""
+        """Return the range from the beginning of the part to the beginning of another part."""
         return NOWHERE if NOWHERE in (self, other) else Part(self.text, self.first, other.first - 1)
 
     def behind(self) -> Part:
-        """The token behind it."""
+        """Return the token after the part."""
         return self._at(self.last + 1, 1)
 
     def end(self) -> Part:
-        """Its last token."""
+        """Return the last token of the part."""
         return self._at(self.last, 1)
 
     def token(self, index: int) -> Token:
-        """A token of its text."""
+        """Return a token of the text."""
         assert self.text is not None
         return self.text.tokens[index]
 
@@ -73,7 +73,7 @@ class Part:
         return Part(self.text, start, start + count - 1)
 
     def _stand(self, words: tuple[str, ...], start: int) -> bool:
-        """Whether these words stand from an index on."""
+        """Return whether the text has these words from an index on."""
         if self.text is None or start < 0:
             return False
         return all(self.token(start + index).is_keyword(word) for index, word in enumerate(words))
@@ -83,7 +83,7 @@ NOWHERE = Part()
 
 
 def file_of(element: ex.Located | None) -> File | None:
-    """The file in whose text an element stands; None where the text was not read."""
+    """Return the file that contains an element; None if the element comes from no text."""
     around = element
     while around is not None and around.source is None:
         around = around.eContainer()
@@ -93,7 +93,7 @@ def file_of(element: ex.Located | None) -> File | None:
 
 
 def part_of(element: ex.Located | None) -> Part:
-    """The tokens of an element; of None nowhere."""
+    """Return the tokens of an element; NOWHERE for None."""
     file = file_of(element)
     if file is None:
         return NOWHERE
@@ -107,9 +107,9 @@ def _part(where: ex.Located | Part) -> Part:
 
 
 class Insertion(NamedTuple):
-    """A hint, and a text to write before a part of the text, or `behind` it.
+    """Hint to insert a text before a part of the text, or `behind` it.
 
-    With `is_choice` it is one way of several: a person chooses.
+    With `is_choice`, it is one way of several, and the user chooses.
     """
 
     hint: str
@@ -119,7 +119,7 @@ class Insertion(NamedTuple):
     is_choice: bool = False
 
     def edits(self) -> tuple[Edit, ...]:
-        """The edits, in the file of the part."""
+        """Return the edits, in the file of the part."""
         part = _part(self.where)
         if part.text is None:
             return ()
@@ -128,7 +128,7 @@ class Insertion(NamedTuple):
 
 
 class Replacement(NamedTuple):
-    """A hint, and a text to write in place of a part of the text."""
+    """Hint to replace a part of the text."""
 
     hint: str
     text: str
@@ -136,7 +136,7 @@ class Replacement(NamedTuple):
     is_choice: bool = False
 
     def edits(self) -> tuple[Edit, ...]:
-        """The edits, in the file of the part."""
+        """Return the edits, in the file of the part."""
         part = _part(self.where)
         if part.text is None:
             return ()
@@ -144,20 +144,20 @@ class Replacement(NamedTuple):
 
 
 class Removal(NamedTuple):
-    """A hint that a part of the text is to be left out, an element with the comma beside it."""
+    """Hint to remove a part of the text, or an element with the comma beside it."""
 
     hint: str
     where: ex.Located | Part
     is_choice: bool = True
 
     def edits(self) -> tuple[Edit, ...]:
-        """The edits, in the file of the part."""
+        """Return the edits, in the file of the part."""
         part = self.where if isinstance(self.where, Part) else _with_comma(part_of(self.where))
         return () if part.text is None else tuple(_removed(part.text, part))
 
 
 class Renaming(NamedTuple):
-    """A hint that gives an element another name, wherever its file names it."""
+    """Hint to rename an element everywhere in its file."""
 
     hint: str
     element: ex.NamedElement
@@ -165,7 +165,7 @@ class Renaming(NamedTuple):
     is_choice: bool = True
 
     def edits(self) -> tuple[Edit, ...]:
-        """The edits, in the file of the element; none where the text does not declare it."""
+        """Return the edits, in the file of the element; none if the text does not declare it."""
         file = file_of(self.element)
         names = file.occurrences(self.element) if file is not None else []
         if file is None or not any(name.is_declaration for name in names):
@@ -174,14 +174,14 @@ class Renaming(NamedTuple):
 
 
 class Together(NamedTuple):
-    """A hint, and all that is to be done at once, in one file."""
+    """Hint to apply several edits of one file together."""
 
     hint: str
     parts: tuple[Insertion | Replacement | Removal | Renaming, ...]
     is_choice: bool = False
 
     def edits(self) -> tuple[Edit, ...]:
-        """The edits of all parts; none where one part has none."""
+        """Return the edits of all parts; none if one part has none."""
         edits = [part.edits() for part in self.parts]
         return tuple(edit for those in edits for edit in those) if all(edits) else ()
 
@@ -190,18 +190,18 @@ Way: TypeAlias = "Insertion | Replacement | Removal | Renaming | Together"
 
 
 class Choice(NamedTuple):
-    """A hint, and the ways to do what it says, among which a person chooses: each with a hint of its own."""
+    """Hint with several ways to follow it, each with its own hint; the user chooses one."""
 
     hint: str
     ways: tuple[Way, ...]
 
 
-#: How to mend a finding: words, the text that takes the place of the element, or an edit elsewhere.
+#: Repair of a finding: words, a text that replaces the element, or an edit elsewhere.
 Hint: TypeAlias = "str | Repair | Way | Choice"
 
 
 def changed_file(way: Way) -> str:
-    """The file that a way changes, as the user would write it; empty where it changes none."""
+    """Return the file that a way changes, as the user would write it; empty if it changes none."""
     match way:
         case Together(parts=parts):
             return changed_file(parts[0])
@@ -213,7 +213,7 @@ def changed_file(way: Way) -> str:
 
 
 def wrapped(hint: str, before: str, behind: str, element: ex.Located, *, is_choice: bool = False) -> Together:
-    """A hint that puts texts before and behind an element."""
+    """Return a hint to insert texts before and after an element."""
     parts = (Insertion("", before, element), Insertion("", behind, element, behind=True))
     return Together(hint, tuple(part for part in parts if part.text), is_choice)
 
@@ -226,7 +226,7 @@ def _with_comma(part: Part) -> Part:
 
 
 def _removed(text: Text, part: Part) -> Iterator[Edit]:
-    """Edits that take tokens away, with blanks or lines that nothing else stands in. Comments stay."""
+    """Yield edits that remove tokens, with blanks or lines that become empty. Comments stay."""
     content = text.content
     for start, end in text.tokens.runs(part.first, part.last):
         line = content.rfind("\n", 0, start) + 1

@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Finding:
-    """A breach of a rule at an element of the model; the text of a `Repair` takes the element's place.
+    """Violation of a rule at an element of the model; the text of a `Repair` replaces the element.
 
-    `relies_on` is an element that must be free of syntax errors for the finding to be true: what is concluded from
-    something being absent. `relies_on_names` are the classes whose own names must be resolved within it, too.
-    `related` is another element that the message speaks of.
+    `relies_on` is an element that must be free of syntax errors for the finding to be true, because the finding reports
+    an absence. `relies_on_names` are the classes whose own names must be resolved within it, too. `related` is another
+    element that the message refers to.
     """
 
     element: ex.Located
@@ -37,7 +37,7 @@ class Finding:
     related: ex.Located | None = None
 
     def said(self) -> tuple[str, tuple[Edit, ...], tuple[Alternative, ...]]:
-        """The hint, the edits that do what it says in the file of the element, or the ways among which to choose."""
+        """Return the hint, and its edits in the file of the element or the alternatives to choose from."""
         match self.hint:
             case Repair(said, None) | str(said):
                 return said, (), ()
@@ -54,17 +54,17 @@ class Finding:
         return tuple(way for way in found if way.edits)
 
     def _edits(self, way: Way) -> tuple[Edit, ...]:
-        """The edits of a way in the file of the element; none where it changes another file, too."""
+        """Return the edits of a way in the file of the element; none if it changes another file."""
         return way.edits() if changed_file(way) == place(self.element)[0] else ()
 
     def places(self) -> tuple[Related, ...]:
-        """Where the other element that it speaks of stands."""
+        """Return the place of the related element, if any."""
         if self.related is None or self.related.source is None:
             return ()
         return (Related(*place(self.related), "this is what the finding speaks of"),)
 
     def can_be_false(self, findings: Sequence[Diagnostic]) -> bool:
-        """Whether a fault of the text may have caused it: it relies on a part that could not be read or resolved."""
+        """Return whether an unreadable or unresolved part of the text may have caused the finding."""
         if isinstance(self.element, ex.Expression):
             expression = place(self.element)[1]
             if any(finding.rule == "syntax" and _goes_on(expression, finding.span) for finding in findings):
@@ -80,18 +80,18 @@ class Finding:
 
 
 def on_line(element: ex.Located) -> str:
-    """` (line 12)`, or nothing where the element comes from no text."""
+    """Return ` (line 12)`, or an empty text if the element comes from no text."""
     return f" (line {element.source.span.line})" if element.source else ""
 
 
 def _goes_on(expression: Span, skipped: Span) -> bool:
-    """Whether text that can't be read may belong to an expression, as the point of `1.` does and the `3` of `2 3`."""
+    """Return whether unreadable text may belong to an expression, such as the point of `1.` or the `3` of `2 3`."""
     behind = expression.end_line == skipped.line and 0 <= skipped.column - expression.end_column <= 1
     return behind or expression.contains(skipped)
 
 
 def _innermost(element: ex.Located, span: Span) -> ex.Located:
-    """The smallest part of an element that holds a place in the text."""
+    """Return the smallest part of an element that contains a place in the text."""
     *_, found = (part for _, part in tree(element) if place(part)[1].contains(span))
     assert isinstance(found, ex.Located)
     return found
@@ -103,7 +103,7 @@ InterfaceCheck: TypeAlias = "Callable[[rsc.Base, RosTypes], Iterator[Finding]]"
 
 @dataclass(frozen=True)
 class Rule:
-    """A rule: its identifier, its severity, and what looks for breaches of it in one robot or library."""
+    """A rule: its identifier, its severity, and a function that yields its violations in one robot or library."""
 
     id: str
     severity: Severity
@@ -115,10 +115,10 @@ RULES: dict[str, Rule] = {}
 
 
 def rule(identifier: str, severity: Severity = Severity.ERROR) -> Callable[[Check], Check]:
-    """Registers a function as the check of a rule; the rule's page is `docs/rules/<identifier>.md`.
+    """Register a function as the check of a rule; the rule's page is `docs/rules/<identifier>.md`.
 
-    The function is called with a robot or a library, partly linked perhaps, and yields the findings in it; libraries
-    that it imports are checked by themselves.
+    The function takes a robot or a library, which may have unresolved names, and yields the findings in it. Imported
+    libraries are checked separately.
     """
 
     def register(check: Check) -> Check:
@@ -129,7 +129,7 @@ def rule(identifier: str, severity: Severity = Severity.ERROR) -> Callable[[Chec
 
 
 def interface_rule(identifier: str, severity: Severity = Severity.ERROR) -> Callable[[InterfaceCheck], InterfaceCheck]:
-    """As `rule`, for a function that is also called with what ROS knows of its types."""
+    """Register a function as `rule` does; the function also takes the known ROS types."""
 
     def register(check: InterfaceCheck) -> InterfaceCheck:
         assert identifier not in RULES, f"two checks for the rule {identifier}"

@@ -1,4 +1,4 @@
-"""The data of a robot or library that the supervisor needs, and the places where it can't have them."""
+"""Data of a robot or library that the supervisor needs but does not support, and where to report it."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Fault:
-    """An element in the cone of influence that has to change, and the first reason why it is in there."""
+    """Unsupported element in the cone of influence, and the first reason why the supervisor needs it."""
 
     element: ex.Located
     reason: Reason
@@ -55,16 +55,17 @@ class Fault:
     hint: Hint
 
 
-#: `abs`, `min` and `max` are written out by cases in C and CIF, up to so many parts.
+#: Maximum size of an expression after `abs`, `min` and `max` are expanded into cases for C and CIF.
 _LARGEST_CHOICE = 1 << 12
-#: Finds the faults of one kind among what is needed of some instances.
+#: Yields the faults of one kind in a cone of influence.
 Search: TypeAlias = "Callable[[Instances, ConeOfInfluence], Iterator[Fault]]"
 
 
 def supervised_faults(base: rsc.Base, search: Search) -> Iterator[Finding]:
-    """A finding for each fault of a base that is not one of a library by itself.
+    """Yield a finding for each fault of a base that is not a fault of one of its libraries.
 
-    It stands at the element where the base's text has it, else at the reference in this text that makes it needed.
+    The finding is at the element if it is in the base's text. Otherwise, it is at the reference in this text that makes
+    the supervisor need the element.
     """
     reported = set()
     result = fact(_cone, base)
@@ -84,7 +85,10 @@ def supervised_faults(base: rsc.Base, search: Search) -> Iterator[Finding]:
 
 
 def _unit(fault: Fault, base: rsc.Base) -> rsc.Base:
-    """The robot or library in whose text the element stands; what is written out has the place of the original."""
+    """Return the robot or library whose text contains the element.
+
+    An expanded element has the place of its original.
+    """
     unit = unit_of(fault.element)
     if isinstance(unit, rsc.Base):
         return unit
@@ -92,15 +96,15 @@ def _unit(fault: Fault, base: rsc.Base) -> rsc.Base:
 
 
 def can_be_needed(variable: rsc.Variable) -> bool:
-    """Whether the supervisor can hold values of the variable's type, or the type is not known."""
+    """Return whether the supervisor can hold values of the variable's type, or the type is unknown."""
     found = declared_type(variable.type)
     return found in {BOOLEAN, INTEGER, UNKNOWN} or isinstance(found, EnumType)
 
 
 def readings(result: ConeOfInfluence) -> Iterator[Reading]:
-    """Every reading of an event's data by what the supervisor computes.
+    """Return every reading of an event's data that the supervisor computes with.
 
-    Of variables only where these are fine themselves, and get a value of their type.
+    Readings of unsupported variables and assignments of a wrong type are left out: these have findings of their own.
     """
     unfit = {
         assigned.value
@@ -133,7 +137,7 @@ def _reference(base: rsc.Base, reason: Reason, result: ConeOfInfluence) -> rsc.A
 
 
 class _Limit(NamedTuple):
-    """Up to how many combinations of values something is computed, and what helps beyond."""
+    """Maximum number of value combinations of a computation, with the repair for a larger one."""
 
     what: str
     most: int
@@ -143,14 +147,14 @@ class _Limit(NamedTuple):
 _COMPARISON = _Limit(
     "this comparison of doubles or strings", LARGEST_TABLE, "compare integers, or give the integers smaller ranges"
 )
-#: What synthesis does within seconds: the decision diagram of a product has a node for many a combination.
+#: Synthesis takes seconds up to this limit. The decision diagram of a product has a node for many combinations.
 _PRODUCT = _Limit(
     "this product", 1 << 22, "give the integers smaller ranges, or let an enum stand for what matters about them"
 )
 
 
 class _Where(NamedTuple):
-    """The meaning of an expression: its instance, the variable that it is assigned to, and its inputs."""
+    """Context of an expression: its instance, the variable that it is assigned to, and its inputs."""
 
     within: Instance | None
     variable: InstanceVariable | None
@@ -158,13 +162,13 @@ class _Where(NamedTuple):
 
 
 def table_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
-    """Each comparison of doubles and each product that the supervisor computes from too many valuations."""
+    """Report comparisons of doubles or strings, and products, with too many value combinations."""
     for expression, where in _computed(instances, result):
         yield from _in_expression(instances, expression, where)
 
 
 def _computed(instances: Instances, result: ConeOfInfluence) -> Iterator[tuple[ex.Expression, _Where]]:
-    """The expressions that the supervisor computes, each with its meaning."""
+    """Yield the expressions that the supervisor computes, each with its context."""
     inputs: dict[ex.Expression | None, dict[ex.Expression, Told | None]] = {}
     for reading in result.readings:
         inputs.setdefault(reading.whole, {})[reading.part] = reading.told
@@ -176,9 +180,9 @@ def _computed(instances: Instances, result: ConeOfInfluence) -> Iterator[tuple[e
 
 
 def function_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
-    """Each function that the supervisor would have to compute of doubles or strings, or in too many cases.
+    """Report functions of doubles or strings, and functions with too many cases, in the supervisor.
 
-    What reads a double, a string or an array has a finding of its own.
+    An access to a double, a string or an array has a finding of its own.
     """
     for expression, where in _computed(instances, result):
         types, cases = Types(value_type(expression)), dict[ex.Expression | None, int]()
@@ -202,7 +206,7 @@ def function_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[F
 
 
 def supervised_accesses(instances: Instances, result: ConeOfInfluence) -> Iterator[tuple[rsc.Access, _Where]]:
-    """Each access in what the supervisor computes itself, with where it stands."""
+    """Yield each access in the expressions that the supervisor computes itself, with its context."""
     for expression, where in _computed(instances, result):
         for part in _supervised_parts(expression, where):
             if isinstance(part, rsc.Access):
@@ -210,7 +214,7 @@ def supervised_accesses(instances: Instances, result: ConeOfInfluence) -> Iterat
 
 
 def _supervised_parts(expression: ex.Expression, where: _Where) -> Iterator[ex.Expression]:
-    """The parts of an expression that the supervisor computes: not those that the node does for it."""
+    """Yield the parts of an expression that the supervisor computes, without those that the node computes for it."""
     pending = [expression]
     while pending:
         part = pending.pop()
@@ -220,7 +224,7 @@ def _supervised_parts(expression: ex.Expression, where: _Where) -> Iterator[ex.E
 
 
 def _cases(expression: ex.Expression | None, inside: list[int]) -> int:
-    """How large an expression is when functions are written out by cases."""
+    """Return the size of an expression after its functions are expanded into cases."""
     size = 1 + sum(inside)
     return (
         3 * size if isinstance(expression, ex.FunctionCall) and expression.function in {"abs", "min", "max"} else size
@@ -264,7 +268,7 @@ def _too_many(instances: Instances, expression: ex.BinaryExpression, limit: _Lim
 
 
 def _size(declared: rsc.DataType | None) -> int:
-    """How many values there are; 1 where there is no range, which is reported as such."""
+    """Return the number of values; 1 for a type without a range, which has a finding of its own."""
     if not isinstance(declared, rsc.IntegerDataType) or declared.minimum is None or declared.maximum is None:
         return 1
     return max(declared.maximum - declared.minimum + 1, 1)

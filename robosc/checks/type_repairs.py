@@ -31,10 +31,10 @@ if TYPE_CHECKING:
 
     from robosc.checks.mending import Hint, Together
 
-#: What stands in a hint for words that are the writer's.
+#: Placeholder in a hint for text that the user writes.
 _GAP = "…"
 _COMPARISON: Mapping[Type, str] = {INTEGER: "> 0", DOUBLE: "> 0.0", STRING: f'= "{_GAP}"'}
-#: What can be written, and how a hint says so.
+#: Literals of each type, and their description in hints.
 _LITERALS: Mapping[Type, tuple[tuple[str, ...], str]] = {
     BOOLEAN: (("true", "false"), "`true` or `false`"),
     INTEGER: (("0",), "a whole number such as `0`"),
@@ -46,9 +46,9 @@ _LITERAL = (ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLiteral)
 
 
 def repair(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
-    """How an expression of one type becomes one of the wanted type.
+    """Return how to turn an expression of one type into one of the wanted type.
 
-    An object value is found as UNKNOWN; where UNKNOWN is wanted, any type will do that can be compared.
+    An object value has the type UNKNOWN in `found`. If UNKNOWN is `wanted`, any comparable type is accepted.
     """
     source = _source(expression) if isinstance(wanted, EnumType) else None
     if source and isinstance(wanted, EnumType) and declared_type(wanted.definition.type) == found:
@@ -75,7 +75,7 @@ def repair(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
 
 
 def literal_repair(expression: ex.Expression, found: Type, wanted: Type) -> Repair | None:
-    """The literal of the wanted type that means the same, as a repair; None where there is none."""
+    """Return the equivalent literal of the wanted type as a repair; None if there is none."""
     inner = expression.operand if isinstance(expression, ex.UnaryMinus) else expression
     sign = "" if inner is expression else "-"
     text = None
@@ -98,7 +98,7 @@ def literal_repair(expression: ex.Expression, found: Type, wanted: Type) -> Repa
 
 
 def equality_repair(operator: ex.Equation | ex.Inequation, left: Type, right: Type) -> tuple[ex.Expression, Hint]:
-    """Where and how to mend a comparison of two types: at a literal that can be rewritten, else as a whole."""
+    """Return the place and the repair of a comparison of two types: a literal to rewrite, else the whole."""
     sides = ((operator.right, right, left), (operator.left, left, right))
     for expression, found, wanted in sides:
         literal = literal_repair(expression, found, wanted)
@@ -116,14 +116,14 @@ def equality_repair(operator: ex.Equation | ex.Inequation, left: Type, right: Ty
 
 
 def _in_place(expression: ex.Expression, names: Iterable[str]) -> tuple[Replacement, ...]:
-    """The names of which one can stand in place of an expression."""
+    """Return one replacement of the expression for each name."""
     return tuple(Replacement(f"write `{written(name)}`", written(name), expression) for name in names)
 
 
 def _source(expression: ex.Expression) -> tuple[str, rsc.DataType] | None:
-    """Whose data an expression is as a whole: a message, or the response, error or feedback of something else.
+    """Return the source of the data that an expression is as a whole, and the data's declared type.
 
-    With the type that it is declared with.
+    The source is a message, or the response, error or feedback of another communication.
     """
     if not isinstance(expression, rsc.Access) or not expression.value or expression.segments:
         return None
@@ -179,7 +179,7 @@ def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
 
 
 def _compared(expression: ex.Expression, found: Type) -> Hint | None:
-    """The comparison that a value can be meant to be a side of."""
+    """Return a comparison that has the value as one side."""
     if isinstance(found, EnumType):
         texts = [f"= {written(value)}" for value in _values(found)]
         ways = (
@@ -194,7 +194,7 @@ def _compared(expression: ex.Expression, found: Type) -> Hint | None:
 
 
 def _around(hint: str, expression: ex.Expression, before: str, behind: str, *, is_choice: bool = True) -> Together:
-    """A hint that puts something around an expression, in parentheses unless it is a name."""
+    """Return a hint to write text around an expression, in parentheses unless the expression is a name."""
     if isinstance(expression.eContainer(), ex.Expression):
         before, behind = f"({before}", f"{behind})"
     if not isinstance(expression, rsc.Access):
@@ -211,7 +211,7 @@ def _values(enum: EnumType) -> list[str]:
 
 
 def _text(expression: ex.Expression) -> str:
-    """An access as the text has it, members of the own component unqualified; `(…)` for any other expression."""
+    """Return an access as the text has it, without its own component; `(…)` for any other expression."""
     if not isinstance(expression, rsc.Access):
         return "(…)"
     text, own = RoboscPrinter()(expression), component_of(expression)

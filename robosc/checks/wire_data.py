@@ -1,4 +1,4 @@
-"""The data that communication with an interface carries, and what of it the model uses."""
+"""Data that communications with an interface carry, and the parts of it that the model uses."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
     from robosc.metamodel import expression as ex
 
-#: The properties that a text touches, each with the first place that does.
+#: Properties that a text uses, each with the place of its first use.
 Uses: TypeAlias = "dict[rsc.ObjectProperty, ex.Located]"
 
 
 @dataclass(frozen=True)
 class Carried:
-    """The data of one part of a communication with an interface."""
+    """Data of one part of a communication with an interface."""
 
     communication: rsc.CommunicationType
     interface: rsc.Interface
@@ -32,23 +32,23 @@ class Carried:
 
     @property
     def is_received(self) -> bool:
-        """Whether the data comes into the controller."""
+        """Whether the controller receives the data."""
         return not self.event.is_sent
 
     @property
     def part(self) -> Section:
-        """The section of the ROS type that holds the data."""
+        """Section of the ROS type that contains the data."""
         assert self.event.section is not None
         return self.event.section
 
     @property
     def ros_type(self) -> Nested:
-        """The ROS type that the interface names."""
+        """ROS type that the interface names."""
         return Nested(self.interface.package, self.interface.type)
 
 
 def carried_data(base: rsc.Base) -> Iterator[Carried]:
-    """The data of all communications with an interface that the base itself defines, in the order of the text."""
+    """Yield the data of all communications with an interface that the base defines, in the order of the text."""
     for communication in communications(base):
         interface = communication.interface
         if interface is not None and interface.package and interface.type:
@@ -57,12 +57,12 @@ def carried_data(base: rsc.Base) -> Iterator[Carried]:
 
 
 def carries(base: rsc.Base) -> bool:
-    """Whether the base itself defines a communication with an interface."""
+    """Return whether the base defines a communication with an interface."""
     return any(True for _ in carried_data(base))
 
 
 class UsedData:
-    """What expressions and provided data of some texts touch of the data that is carried."""
+    """Parts of the carried data that expressions and provided data of some texts use."""
 
     def __init__(self, bases: Iterable[rsc.Base]) -> None:
         self._touched: dict[object, list[rsc.PropertySegment | rsc.ObjectPropertyValue]] = {}
@@ -76,7 +76,7 @@ class UsedData:
                     self._read(element.eContainer(), element.condition)
 
     def uses(self, data: Carried) -> Uses:
-        """The properties that are touched of some data; enums touch what their rules read."""
+        """Return the properties of some data that are used; an enum uses those that its rules read."""
         uses: Uses = {}
         sources: dict[object, None] = dict.fromkeys([(data.communication, data.event), *_enums(data.declared)])
         pending = list(sources)
@@ -108,7 +108,7 @@ class UsedData:
 
 
 def _enums(declared: rsc.DataType | None) -> list[rsc.EnumDataType]:
-    """The enum that a type names, within arrays too; none where it names something else."""
+    """Return the enum that a type names, also within arrays, as a list; empty for any other type."""
     while isinstance(declared, rsc.Array):
         declared = declared.type
     named = declared.type if isinstance(declared, rsc.ComplexDataTypeReference) else None

@@ -1,4 +1,4 @@
-"""What of a data type does not fit the ROS type that carries its data."""
+"""Mismatches between a data type and the ROS type that carries its data."""
 
 from __future__ import annotations
 
@@ -21,36 +21,36 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Fault:
-    """A property that does not fit, or, without one, the data as a whole; `unknown`: nobody can say whether it fits."""
+    """Mismatch of a property, or of the whole data if None; `unknown`: the definition is missing or unreadable."""
 
     property: rsc.ObjectProperty | None
     message: str
     hint: str
     unknown: bool = False
-    #: What takes the place of the property, or of the data as a whole, if the hint says it.
+    #: Text that replaces the property or the whole data, if the hint proposes it.
     text: str | None = None
-    #: What the property is called, if the hint says it.
+    #: New name of the property, if the hint proposes it.
     new_name: str | None = None
-    #: The fields that are there, with their types, where the property is none of them or has no type.
+    #: Existing fields with their types, if the property is none of them or has no type.
     others: Mapping[str, str] | None = None
 
     def is_used(self, uses: Uses) -> bool:
-        """Whether it is among the uses of the data; the whole always is."""
+        """Return whether the mismatch affects used data; a mismatch of the whole data always does."""
         return self.property is None or self.property in uses
 
 
 @dataclass(frozen=True)
 class Unknown:
-    """The definition of the ROS type is missing or unreadable; says why."""
+    """Missing or unreadable definition of the ROS type, with the reason."""
 
     message: str
     hint: str
-    #: The package and the name of the type that is meant.
+    #: Package and name of the intended type.
     meant: tuple[str, str] | None = None
 
 
 def faults(data: Carried, interfaces: RosTypes, uses: Uses) -> list[Fault] | Unknown:
-    """What of some data does not fit its ROS type, in the one of the two ROS in which what is used fits best."""
+    """Return the mismatches of some data with its ROS type, in the ROS version in which the used data fits best."""
     answers = []
     try:
         for _, found in _by_distribution(data, interfaces):
@@ -66,9 +66,9 @@ def faults(data: Carried, interfaces: RosTypes, uses: Uses) -> list[Fault] | Unk
 
 
 def misfits(data: Carried, interfaces: RosTypes, uses: Uses) -> dict[str, str]:
-    """Each of the two ROS in which what is used of some data does not fit, with the reason.
+    """Return each of the two ROS versions in which the used data does not fit, with the reason.
 
-    Where nothing is known of the type's package it may fit.
+    If nothing is known of the type's package, the data may fit.
     """
     found = {}
     try:
@@ -87,7 +87,7 @@ def misfits(data: Carried, interfaces: RosTypes, uses: Uses) -> dict[str, str]:
 
 
 def _by_distribution(data: Carried, interfaces: RosTypes) -> Iterator[tuple[RosDistribution, list[Fault] | None]]:
-    """What does not fit in each of the two ROS; None where it has no such type. Raises DefinitionError."""
+    """Yield the mismatches in each ROS version; None if it has no such type. Raises DefinitionError."""
     ros_type, part = data.ros_type, data.part
     for distribution in interfaces.distributions:
         fields = distribution.fields(ros_type.package, ros_type.name, part)
@@ -108,7 +108,7 @@ class _Comparison:
         self._around: list[tuple[object, Nested]] = []
 
     def whole(self, declared: rsc.DataType, fields: Fields, name: str) -> Iterator[Fault]:
-        """The faults of a section: an object is compared field by field, a basic value with its one field."""
+        """Yield the mismatches of a section: objects field by field, a basic value with the only field."""
         carried = wire_type(declared)
         if isinstance(carried, rsc.InterfaceTypeReference) and _ros_type(carried) != self._ros_type:
             message = f"the data is {_ros_type(carried)} here, and the communication is {self._ros_type}"
@@ -123,7 +123,7 @@ class _Comparison:
                 yield Fault(None, message, _lone(fields), text=None if fields else "none")
             elif not self._holds(fields[field], carried):
                 message = f"the data is {_text(carried)} here, and {fields[field]} in `{field}` of {name}"
-                # An array and what has fields of its own stand in objects only.
+                # Arrays and types with fields of their own occur only in objects.
                 lone = isinstance(fields[field], Basic)
                 repair, text = _repair(fields[field], None if lone else field)
                 yield Fault(
@@ -170,7 +170,7 @@ class _Comparison:
 
     def _nested(self, owner: rsc.ObjectProperty, definition: rsc.ObjectDataType, wire: Nested) -> Iterator[Fault]:
         if (definition, wire) in self._around:
-            return  # A type that contains itself; ROS has none, and for models `data-type` says so.
+            return  # ROS has no type that contains itself, and `data-type` reports such a model.
         try:
             fields = self._distribution.fields(wire.package, wire.name, Section.MESSAGE)
         except DefinitionError as fault:
@@ -185,7 +185,7 @@ class _Comparison:
         self._around.pop()
 
     def _holds(self, wire: WireType, declared: rsc.DataType) -> bool:
-        """Whether a wire type holds values of a type; on the way into the controller integers become doubles."""
+        """Return whether a wire type holds values of a type; received integers may become doubles."""
         primitive = PRIMITIVES.get(wire.name) if isinstance(wire, Basic) else None
         if primitive is None or not isinstance(declared, rsc.BasicDataType):
             return False
@@ -198,7 +198,7 @@ def _name(ros_type: Nested, part: Section) -> str:
 
 
 def wire_type(declared: rsc.DataType | None) -> rsc.DataType | None:
-    """An enum has the wire type of its base; the type itself for any other."""
+    """Return the wire type: the base type of an enum, or the type itself."""
     seen: list[rsc.DataType] = []
     while (
         isinstance(declared, rsc.ComplexDataTypeReference)
@@ -215,7 +215,7 @@ def _ros_type(reference: rsc.InterfaceTypeReference) -> Nested:
 
 
 def _is_open(declared: rsc.DataType) -> bool:
-    """Whether nothing can be said: a name without definition, or no data at all."""
+    """Return whether a type is undecided: a name without definition, or no data at all."""
     return isinstance(declared, rsc.NoneDataType) or (
         isinstance(declared, rsc.ComplexDataTypeReference) and not isinstance(declared.type, rsc.ObjectDataType)
     )
@@ -234,7 +234,7 @@ def _lone(fields: Fields) -> str:
 
 
 def _repair(wire: WireType, name: str | None) -> tuple[str, str | None]:
-    """A hint, and the text that does what it says."""
+    """Return a hint and the text that it proposes."""
     fitting = _type_for(wire)
     if fitting is None:
         return f"leave it out: no data type fits {wire}" if name else f"write `none`: no data type fits {wire}", None

@@ -1,17 +1,18 @@
-"""From plants and requirements to the supervisor, over decision diagrams.
+"""Symbolic supervisor synthesis with decision diagrams.
 
     synthesis = synthesize(model)
     if synthesis.supervisor is not None:
         model.supervisor = synthesis.supervisor
 
-`solve` lets its caller look at the decision diagrams, too; `encoded` makes those of a model without synthesis. Why a
-supervisor is empty and what is doubtful about one is found by `robosc.analysis`.
+`solve` also gives its caller the decision diagrams; `encoded` builds those of a model without synthesis.
+`robosc.analysis` explains why a supervisor is empty and reports what is suspicious about one.
 
-The modules, from the lowest up: `bdd` wraps the library of decision diagrams; `order` puts variables in order;
+The modules, from the lowest up: `bdd` wraps the library of decision diagrams; `order` computes the variable order;
 `arithmetic` computes with vectors of diagrams; `encoding` maps elements and expressions to diagrams, and `decoding` and
-`cover` back; `relation` is what an event does; `fixpoint` closes sets of states, in small steps or by `acceleration`;
-`guards` says in expressions what the fixpoint found, as seen from few elements by `projection`, and `simplification`
-makes requirements shorter; `run_to_completion` bounds internal events.
+`cover` map them back; `relation` holds the transition relation of each event; `fixpoint` closes sets of states, in
+single steps or by `acceleration`; `guards` writes the result of the fixpoint as expressions, using `projection` to
+restrict state sets to few elements and `simplification` to shorten requirements; `run_to_completion` bounds sequences
+of internal events.
 """
 
 from __future__ import annotations
@@ -55,21 +56,22 @@ __all__ = [
     "synthesize",
 ]
 
-#: How many bytes decision diagrams may take where nothing else is said.
+#: Default memory limit of the decision diagrams, in bytes.
 MEMORY = 4 << 30
-#: What may be spent on the bound on internal events, in nodes looked at: some tenths of a second.
+#: Effort limit for the bound on internal events, in visited nodes. It takes some tenths of a second.
 COMPLETION_EFFORT = 2_000_000
 
 
 @dataclass(frozen=True)
 class Synthesis:
-    """The result of synthesis. All but the seconds is the same on every run.
+    """Result of synthesis. Every run gives the same result, except for the seconds.
 
-    `supervisor` is None where it is empty. A state is an assignment of locations and variables: `controlled_states`
-    counts those under the supervisor, `uncontrolled_states` those that the plants reach without requirements, None for
-    a model from CIF: plants that only requirements keep together can have diagrams that no controlled system has.
-    `bdd_nodes` are the nodes of the diagrams of the controlled states and of what says of each controllable event where
-    it is allowed; `statistics`, what it cost.
+    `supervisor` is None if the supervisor is empty. A state is an assignment of locations and variables.
+    `controlled_states` is the number of states under the supervisor. `uncontrolled_states` is the number of states that
+    the plants reach without requirements. It is None for a model from CIF: if only requirements keep plants together,
+    the diagrams of the uncontrolled states can be far larger than those of any controlled system. `bdd_nodes` counts
+    the nodes of the diagram of the controlled states and of the diagrams in which each controllable event is allowed.
+    `statistics` holds the costs.
     """
 
     supervisor: sct.Supervisor | None
@@ -77,21 +79,21 @@ class Synthesis:
     controlled_states: int
     bdd_nodes: int
     statistics: Statistics
-    #: The events that can happen under the supervisor, in the order of the plants.
+    #: Events that can happen under the supervisor, in the order of the plants.
     possible: tuple[sct.Event, ...] = ()
-    #: The events of which the supervisor does not say what synthesis added, since that takes more than the effort
-    #: allowed, each with the nodes of the diagram that says so.
+    #: Events whose synthesized condition is missing from the supervisor because it exceeds the effort limit. Each event
+    #: comes with the number of nodes of the diagram of that condition.
     unwritten: Mapping[sct.Event, int] = field(default_factory=dict)
 
     @property
     def seconds(self) -> float:
-        """How long it took."""
+        """Total wall-clock time in seconds."""
         return sum(self.statistics.seconds.values())
 
 
 @dataclass(frozen=True)
 class Counts:
-    """How many states there are, as `Synthesis` counts them, and the nodes of the diagram of the controlled ones."""
+    """State counts as in `Synthesis`, and the node count of the diagram of the controlled states."""
 
     uncontrolled_states: int | None
     controlled_states: int
@@ -100,7 +102,7 @@ class Counts:
 
 @dataclass(frozen=True)
 class _Found:
-    """What the fixpoint found, with what it was found by; None where `uncontrolled` states are not counted."""
+    """Result of the fixpoint with its encoding; `uncontrolled` is None if these states are not counted."""
 
     encoding: Encoding
     relations: Sequence[EventRelation]
@@ -110,11 +112,11 @@ class _Found:
 
 @dataclass(frozen=True)
 class Solution:
-    """The result of synthesis with the decision diagrams that it was found with.
+    """Result of synthesis with its decision diagrams.
 
-    `relations` are those of all events, in the order of the plants, `permissions` those of the controllable ones: none
-    where the supervisor is empty. `states` is what the fixpoint found, `uncontrolled` what the plants reach without
-    requirements, None where that is not counted.
+    `relations` are those of all events, in the order of the plants. `permissions` are those of the controllable events;
+    it is empty if the supervisor is empty. `states` is the result of the fixpoint. `uncontrolled` holds the states that
+    the plants reach without requirements; it is None if these are not counted.
     """
 
     synthesis: Synthesis
@@ -128,21 +130,24 @@ class Solution:
 def synthesize(
     model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistics: Statistics | None = None
 ) -> Synthesis:
-    """The maximally permissive, controllable, non-blocking supervisor of a valid model, which stays as it is.
+    """Synthesize the maximally permissive, controllable, non-blocking supervisor of a valid model.
 
-    Plants, events, expressions mean what the documentation of `sct.ecore` says; inputs are parameters of their event:
-    an uncontrollable event is controllable for all of their values, a marked state is reachable for some. `memory`
-    bounds the bytes for decision diagrams: they grow as needed, and MemoryError is raised beyond. New `statistics` that
-    are handed in tell another thread how far it is. Raises ModelError,
-    located, for what no synthesis can be made of: doubles, strings, and data that comes with a controllable event.
+    The model is not changed. `sct.ecore` documents the meaning of plants, events and expressions. Inputs are parameters
+    of their event: an uncontrollable event stays controllable for all of their values; a marked state is reachable for
+    some of them. `memory` is the limit of the decision diagrams in bytes. The diagrams grow as needed; beyond the
+    limit, MemoryError is raised. Pass new `statistics` to follow the progress from another thread.
+
+    Raises a located ModelError if synthesis does not support the model: doubles, strings, and inputs of a controllable
+    event.
     """
     return solve(model, lambda solution: solution.synthesis, memory=memory, statistics=statistics)
 
 
 def count(model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistics: Statistics | None = None) -> Counts:
-    """How many states the supervisor of a model leaves it: 0 where there is none; its guards are not written out.
+    """Count the states under the supervisor of a model, without writing its guards.
 
-    For models with guards that take longer than all else. All else is as `synthesize` says.
+    The count is 0 if the supervisor is empty. Use it for models whose guards take longer than the rest of synthesis.
+    For the arguments and errors see `synthesize`.
     """
 
     def counted(found: _Found) -> Counts:
@@ -161,21 +166,22 @@ def solve(
     statistics: Statistics | None = None,
     effort: int | None = None,
 ) -> T:
-    """Synthesizes and returns `look(solution)`.
+    """Synthesize and return `look(solution)`.
 
-    When the decision diagrams outgrow their limit, synthesis and `look` run again with a larger one, so `look` must
-    have no lasting side effects. `effort`: most nodes visited for one guard; what synthesis added to a guard that takes
-    more is left out, and `unwritten` lists its event. All else, and errors, as `synthesize`.
+    If the decision diagrams outgrow their limit, synthesis and `look` run again with a larger one. `look` must
+    therefore have no lasting side effects. `effort` is the maximum number of nodes visited for one guard. A guard that
+    takes more is written without the condition that synthesis added, and `unwritten` lists its event. For the other
+    arguments and the errors see `synthesize`.
     """
     statistics = statistics or Statistics()
     return _with_states(model, lambda found: look(_solved(found, statistics, effort)), memory, statistics, supervise)
 
 
 def encoded(model: sct.SupervisoryControlModel, look: Callable[[Encoding], T], memory: int = MEMORY) -> T:
-    """Returns `look(encoding)`, of the decision diagrams of a model without synthesis.
+    """Return `look(encoding)` for the decision diagrams of a model, without synthesis.
 
-    When these outgrow their limit, `look` runs again with a larger one, so it must have no lasting side effects. Raises
-    MemoryError where they would take more than `memory` bytes.
+    If the diagrams outgrow their limit, `look` runs again with a larger one. `look` must therefore have no lasting side
+    effects. Raises MemoryError if the diagrams take more than `memory` bytes.
     """
     layout = Layout(model)
     return with_enough_memory(
@@ -197,7 +203,11 @@ def _refuse_data_of_controllable_events(model: sct.SupervisoryControlModel) -> N
 
 
 def _refuse_overlapping(relations: Sequence[EventRelation]) -> None:
-    """A supervisor allows an event, not one of its edges: those of a controllable event must exclude each other."""
+    """Raise ModelError if two edges of a controllable event overlap.
+
+    A supervisor allows an event, not one of its edges. The edges of a controllable event must therefore exclude each
+    other.
+    """
     edges = [edge for relation in relations if relation.event.controllable for edge in relation.overlapping()]
     if edges:
         raise ModelError(
@@ -221,7 +231,7 @@ def _with_states(
     statistics: Statistics,
     supervising: _Supervising,
 ) -> T:
-    """What `use` makes of the states that the supervisor of a model leaves it."""
+    """Compute the supervised states of a model and return the result of `use`."""
     _refuse_data_of_controllable_events(model)
     with statistics.during(Phase.ORDER):
         layout = Layout(model)
@@ -237,7 +247,7 @@ def _found(
     statistics: Statistics,
     supervising: _Supervising,
 ) -> _Found:
-    """The states, with room for so many nodes."""
+    """Compute the supervised states, with room for `capacity` nodes."""
     statistics.begin_again()
     with statistics.during(Phase.ENCODE):
         diagrams = Diagrams(layout.levels, capacity, statistics)
@@ -281,7 +291,7 @@ def _solved(all_found: _Found, statistics: Statistics, effort: int | None) -> So
         if left_out.satisfiable():
             started = encoding.initial & found.controlled
             supervisor.initial = separating_expression(encoding, started, left_out, encoding.layout.state)
-        # Within the controlled states a step leads where its guard lets it, and nowhere else.
+        # From a controlled state, an event leads to a controlled state exactly if its guard allows it.
         supervised = [(relation, relation.enabled & relation.requirement, relation.step) for relation in relations]
         unwritten = {
             permission.relation.event: permission.where.node_count()

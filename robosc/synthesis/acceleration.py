@@ -1,9 +1,9 @@
-"""Closing many small steps at once, by iterative squaring.
+"""Acceleration of long event sequences by iterative squaring.
 
-A counter that goes up by one takes as many steps as it has values. The events that move it, put into one relation, are
-squared instead until they lead as far as any number of steps would (Burch, Clarke, McMillan, Dill, Hwang: Symbolic
-model checking: 10^20 states and beyond, LICS 1990): 31 times for 2^31 values. That pays for few events over few
-elements only, so it is done where wide integers keep the search going, with the events that have to do with each other.
+A counter that increases by one takes as many steps as it has values. Instead, the relation of the events that change it
+is squared until it covers any number of steps (Burch, Clarke, McMillan, Dill, Hwang: Symbolic model checking: 10^20
+states and beyond, LICS 1990): 31 squarings for 2^31 values. This pays only for few events over few elements. It is
+therefore used only if wide integers keep the search going, and only for events that depend on each other.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ if TYPE_CHECKING:
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element, Encoding
 
-#: The nodes above which a relation is given up: then single steps are faster.
+#: Maximum number of nodes of an accelerated relation. Above it, single steps are faster.
 _LARGE = 20_000
-#: After how many turns without an end wide integers are accelerated, and after how many not even that helps.
+#: Number of turns without an end after which wide integers are accelerated, and after which synthesis gives up.
 _PATIENCE = 32
 _HOPELESS = 1 << 16
 
 
 class Acceleration:
-    """What any number of steps of a few events does, as a single step."""
+    """Closures of few events under any number of steps, each as a single step."""
 
     def __init__(self, steps: Sequence[Step], *, forwards: bool) -> None:
         self._forwards = forwards
@@ -40,15 +40,16 @@ class Acceleration:
         self._known: dict[tuple[tuple[Step, ...], Diagram], Step | None] = {}
 
     def due(self, turn: int) -> bool:
-        """Whether after so many turns of a search without an end acceleration is to be tried."""
+        """Return whether to try acceleration after this number of turns."""
         return bool(self._wide) and turn >= _PATIENCE and turn.bit_count() == 1
 
     def over(self, here: Sequence[Step], others: Sequence[Step], turn: int, within: Diagram) -> Iterator[Step]:
-        """For each wide integer in reach the closure of the steps that change it and of those that these depend on.
+        """Yield closures of steps for each wide integer in reach.
 
-        They are taken from `here`, and from `others`, the farther away the more turns were in vain. Every state on the
-        way is `within` the bound. Several wide integers move together only in further closures, which make use of those
-        before them. Raises ModelError where so many turns were in vain that acceleration does not help, either.
+        A closure covers the steps that change a wide integer and the steps that these depend on. The steps come from
+        `here`, and from `others` in a distance that grows with the number of turns. Every state on the way is `within`
+        the bound. Closures of several wide integers come last; they use those before them. Raises ModelError if `turn`
+        is so high that acceleration does not help either.
         """
         if turn >= _HOPELESS:
             raise hopeless([*here, *others])
@@ -64,7 +65,7 @@ class Acceleration:
                 yield from found
 
     def _accelerated(self, near: Sequence[Step], bundle: Sequence[Element], within: Diagram) -> Iterator[Step]:
-        """The closure of those steps that move one of the wide integers and no other; none where it gets large."""
+        """Yield the closure of the steps that change no wide integer outside `bundle`; nothing if it gets large."""
         steps = tuple(
             step for step in near if all(element in bundle for element in step.changed if element in self._wide)
         )
@@ -102,7 +103,7 @@ class Acceleration:
 
 
 class _Frame:
-    """The present, following and halfway values of some elements."""
+    """Levels of the present, following and halfway values of some elements."""
 
     def __init__(self, encoding: Encoding, elements: Iterable[Element]) -> None:
         domains = [encoding.layout.domains[element] for element in elements]
@@ -126,18 +127,18 @@ class _Frame:
             self._to_following = between.equiv(after) & self._to_following
 
     def following(self, states: Diagram) -> Diagram:
-        """The states as a condition on the following values."""
+        """Return the states as a condition on the following values."""
         return and_exists(states, self.same, self.present_cube)
 
     def composed(self, relation: Diagram) -> Diagram:
-        """The relation twice in a row."""
+        """Return the composition of the relation with itself."""
         first = and_exists(relation, self._to_following, self.following_cube)
         second = and_exists(relation, self._from_present, self.present_cube)
         return and_exists(first, second, self._halfway_cube)
 
 
 def hopeless(steps: Iterable[Step]) -> ModelError:
-    """What is raised where steps neither end nor can be accelerated: located at the widest integer that they touch."""
+    """Return the error for steps that neither end nor can be accelerated, located at their widest integer."""
     variables = [element for step in steps for element in step.touched if isinstance(element, sct.DiscreteVariable)]
     widest = max(variables, key=domain_size)
     message = (
@@ -149,7 +150,7 @@ def hopeless(steps: Iterable[Step]) -> ModelError:
 
 
 def _with_neighbours(here: Sequence[Step], others: Sequence[Step], hops: int) -> tuple[list[Step], dict[Element, None]]:
-    """The steps, those that change what they touch, and so on; with all that these touch."""
+    """Return the steps with those that change what they touch, up to `hops` times, and all elements they touch."""
     near = list(here)
     touched = dict.fromkeys(element for step in near for element in step.touched)
     rest = list(others)

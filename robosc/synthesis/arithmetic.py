@@ -1,7 +1,7 @@
 """Exact integer arithmetic on vectors of decision diagrams.
 
-A vector holds the bits of an integer in two's complement, least significant first; the last is the sign. A vector is
-as wide as its values need, so nothing ever overflows.
+A vector holds the bits of an integer in two's complement, least significant first; the last bit is the sign. A vector
+is as wide as its values need, so nothing overflows.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ Vector: TypeAlias = "tuple[Diagram, ...]"
 
 
 def constant(diagrams: Diagrams, value: int) -> Vector:
-    """The vector of one value."""
+    """Return the vector of a constant."""
     width = (value if value >= 0 else ~value).bit_length() + 1
     return tuple(diagrams.true if value >> bit & 1 else diagrams.false for bit in range(width))
 
 
 def value_of(vector: Vector) -> int | None:
-    """The value of a vector that is the same everywhere; None where it is not."""
+    """Return the value of a constant vector, or None if the vector depends on the state."""
     if not all(bit.valid() or not bit.satisfiable() for bit in vector):
         return None
     *bits, sign = (int(bit.valid()) for bit in vector)
@@ -31,27 +31,27 @@ def value_of(vector: Vector) -> int | None:
 
 
 def choose(condition: Diagram, then: Vector, otherwise: Vector) -> Vector:
-    """`then` where the condition holds, else `otherwise`."""
+    """Return `then` in the states of the condition and `otherwise` elsewhere."""
     return _trimmed([condition.ite(a, b) for a, b in zip(*_aligned(then, otherwise), strict=True)])
 
 
 def add(left: Vector, right: Vector) -> Vector:
-    """The sum."""
+    """Return the sum."""
     return _sum(left, right, _false(left))
 
 
 def negate(vector: Vector) -> Vector:
-    """The value with the other sign."""
+    """Return the negated value."""
     return subtract((_false(vector),), vector)
 
 
 def subtract(left: Vector, right: Vector) -> Vector:
-    """The difference."""
+    """Return the difference."""
     return _sum(left, tuple(~bit for bit in right), ~_false(left))
 
 
 def multiply(left: Vector, right: Vector) -> Vector:
-    """The product: shifted sums, the sign's place counting negative."""
+    """Return the product: the sum of shifted copies of `left`, the copy of the sign bit subtracted."""
     false = _false(left)
     result: Vector = (false,)
     for place, bit in enumerate(right):
@@ -61,7 +61,7 @@ def multiply(left: Vector, right: Vector) -> Vector:
 
 
 def equal(left: Vector, right: Vector) -> Diagram:
-    """Where both have the same value."""
+    """Return the states in which both vectors have the same value."""
     result = None
     for a, b in zip(*_aligned(left, right), strict=True):
         same = a.equiv(b)
@@ -71,7 +71,7 @@ def equal(left: Vector, right: Vector) -> Diagram:
 
 
 def less(left: Vector, right: Vector) -> Diagram:
-    """Where the left value is the smaller one."""
+    """Return the states in which the left value is smaller than the right one."""
     (*lefts, left_sign), (*rights, right_sign) = _aligned(left, right)
     result = _false(left)
     for a, b in zip(lefts, rights, strict=True):

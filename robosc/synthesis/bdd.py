@@ -1,4 +1,4 @@
-"""The one place that knows the library of decision diagrams: `oxidd.bcdd`, on one thread."""
+"""Wrapper of the library of decision diagrams, `oxidd.bcdd`, on one thread; no other module uses the library."""
 
 from __future__ import annotations
 
@@ -18,27 +18,28 @@ if TYPE_CHECKING:
 
     T = TypeVar("T")
 
-#: A boolean function over the variables of its `Diagrams`; equal functions are equal and hash alike. It offers
-#: `& | ^ ~`, `equiv`, `imp`, `ite`, `exists(cube)`, `satisfiable`, `valid`, `sat_count`, `node_count`.
+#: Boolean function over the variables of its `Diagrams`. Equal functions compare equal and have the same hash. It
+#: offers `& | ^ ~`, `equiv`, `imp`, `ite`, `exists(cube)`, `satisfiable`, `valid`, `sat_count`, `node_count`.
 Diagram: TypeAlias = BCDDFunction
 
-#: What a node and its share of the operation cache take, measured.
+#: Measured size of a node with its share of the operation cache, in bytes.
 _BYTES_PER_NODE = 40
-#: The addresses that the library takes beside the nodes, most of them for the stack of its one thread, measured.
+#: Measured address space of the library without nodes, in bytes. Most of it is the stack of its thread.
 _LIBRARY = (1 << 30) + (192 << 20)
 _FIRST_CAPACITY = 1 << 18
-#: Up to so many levels a diagram is small, and so is the room that is made first, since making it takes its time; from
-#: so many on it is large.
+#: Allocating room takes time: diagrams of at most `_FEW_LEVELS` levels begin with `_SMALL_CAPACITY` nodes. Diagrams of
+#: at least `_MANY_LEVELS` levels begin with `_LARGE_CAPACITY` nodes.
 _FEW_LEVELS, _SMALL_CAPACITY, _MANY_LEVELS, _LARGE_CAPACITY = 64, 1 << 15, 512, 1 << 20
-#: What comes again from the start takes longer than room that stays empty.
+#: Growth factor of the capacity. A restart takes more time than unused room, so the factor is high.
 _GROWTH = 8
-#: The share of the room at which the library would collect garbage, a little less, and the one that may be in use then.
+#: Share of the capacity shortly before the library collects garbage by itself, and the largest share that may still be
+#: in use after a collection.
 _FULL = 0.94
 _TOO_FULL = 0.75
 
 
 class _Conjunction:
-    """The operator as the library looks at it, without what an `Enum` takes to tell its value: a third of the time."""
+    """Conjunction operator with a plain `value`. The `value` of an `Enum` takes a third of the time of a call."""
 
     value = BooleanOperator.AND.value
 
@@ -50,7 +51,10 @@ class Diagrams:
     """Decision diagrams over a fixed number of variables; a variable's number is its level, 0 at the top."""
 
     def __init__(self, levels: int, capacity: int, statistics: Statistics | None = None) -> None:
-        """Room for `capacity` nodes; an operation that needs more raises DDMemoryError. `statistics` are kept."""
+        """Allocate room for `capacity` nodes; an operation that needs more raises DDMemoryError.
+
+        The diagrams update `statistics`.
+        """
         _refuse_where_addresses_lack(capacity)
         self._manager = BCDDManager(capacity, capacity, 1)
         self._manager.add_vars(levels)
@@ -65,29 +69,29 @@ class Diagrams:
         self.false = self._manager.false()
 
     def variable(self, level: int) -> Diagram:
-        """True where the variable is."""
+        """Return the function of one variable."""
         return self._variables[level]
 
     def all_of(self, parts: Iterable[Diagram]) -> Diagram:
-        """The conjunction, from the first part to the last; true of none."""
+        """Return the conjunction, from the first part to the last; true for no parts."""
         return reduce(and_, parts, self.true)
 
     def any_of(self, parts: Iterable[Diagram]) -> Diagram:
-        """The disjunction, from the first part to the last; false of none."""
+        """Return the disjunction, from the first part to the last; false for no parts."""
         return reduce(or_, parts, self.false)
 
     def cube(self, levels: Iterable[int]) -> Diagram:
-        """The conjunction of the variables: how quantification is told what to quantify."""
+        """Return the conjunction of the variables. Quantification takes its variables in this form."""
         result = self.true
         for level in sorted(levels, reverse=True):
             result = self.variable(level) & result
         return result
 
     def tidy(self) -> None:
-        """To be called between operations, every now and then: counts the nodes, and collects garbage in good time.
+        """Count the nodes and collect garbage early. Call it regularly between operations.
 
-        Where room gets really short the library would collect garbage on a thread of its own: then no two runs would be
-        the same. So that counts as too little room, and DDMemoryError is raised.
+        If room gets really short, the library collects garbage on a thread of its own, and runs are no longer
+        reproducible. DDMemoryError is raised before that.
         """
         manager, statistics = self._manager, self.statistics
         nodes = manager.approx_num_inner_nodes()
@@ -104,23 +108,23 @@ class Diagrams:
             self._crowded = (left + self._capacity) // 2
 
     def node(self, level: int, high: Diagram, low: Diagram) -> Diagram:
-        """`high` where the variable is true, else `low`."""
+        """Return `high` for a true variable and `low` for a false one."""
         return self._variables[level].ite(high, low)
 
 
 def and_exists(left: Diagram, right: Diagram, cube: Diagram) -> Diagram:
-    """The conjunction, its variables in `cube` quantified existentially, in one pass."""
+    """Return the conjunction, with the variables of `cube` quantified existentially, in one pass."""
     return left.apply_exists(_AND, right, cube)
 
 
 def split(diagram: Diagram, level: int) -> tuple[Diagram, Diagram]:
-    """The function where the variable is true and where it is false; no variable above it may occur."""
+    """Return the cofactors for a true and a false variable; no variable above it may occur."""
     cofactors = diagram.cofactors() if diagram.node_level() == level else None
     return cofactors or (diagram, diagram)
 
 
 def _refuse_where_addresses_lack(capacity: int) -> None:
-    """The library would end the process."""
+    """Raise TooFewAddressesError if the address space is too small: the library would end the process."""
     wanted, left = _LIBRARY + capacity * _BYTES_PER_NODE, address_space()
     if left is not None and left < wanted:
         raise TooFewAddressesError(
@@ -129,12 +133,10 @@ def _refuse_where_addresses_lack(capacity: int) -> None:
 
 
 def with_enough_memory(run: Callable[[int], T], memory: int, levels: int | None = None) -> T:
-    """`run` with room for a number of nodes, again from the start with more room each time that it did not suffice.
+    """Run `run` with a capacity in nodes; restart it with a larger one as long as it runs out of room.
 
-    There is less room at first where diagrams are known to have few `levels`, and more where they have many.
-
-    `memory` bounds the bytes that the nodes may take, and those of the whole process; raises MemoryError beyond it, and
-    where the system allows too few addresses.
+    The first capacity is smaller for few `levels` and larger for many. `memory` bounds the bytes of the nodes and those
+    of the whole process. Raises MemoryError beyond it, and if the system allows too few addresses.
     """
     most = memory // _BYTES_PER_NODE
     capacity = _FIRST_CAPACITY

@@ -1,8 +1,8 @@
-"""From a set of states to a short expression that tells it from another set.
+"""Short expressions that separate two sets of states.
 
-A cover is a sum of products over finite domains: each product says of some elements which values they have. Products
-are grown from single states as far as the other set allows, as in espresso (Rudell, Sangiovanni-Vincentelli:
-Multiple-valued minimization for PLA optimization, TCAD 1987), but over decision diagrams.
+A cover is a sum of products over finite domains. Each product restricts some elements to sets of values. Products grow
+from single states until they meet the other set, as in espresso (Rudell, Sangiovanni-Vincentelli: Multiple-valued
+minimization for PLA optimization, TCAD 1987), but over decision diagrams.
 """
 
 from __future__ import annotations
@@ -21,22 +21,21 @@ if TYPE_CHECKING:
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Domain, Element, Encoding
 
-#: For each element that a product speaks of, the codes it may have.
+#: Allowed codes of each element that a product restricts.
 Product: TypeAlias = "dict[Domain, Ranges]"
-#: An element with one value, and where it has it.
+#: An element with one value, and the states in which it has that value.
 _Literal: TypeAlias = "tuple[Domain, Diagram]"
-#: What finding a product costs beside the nodes of the states.
+#: Constant cost of a product, in nodes, in addition to the nodes of the states.
 _OVERHEAD = 2000
 
 
 def separating_expression(
     encoding: Encoding, inside: Diagram, outside: Diagram, domains: Sequence[Domain], effort: int | None = None
 ) -> ex.Expression | None:
-    """An expression that is true in all states of `inside` and false in all of `outside`; both have states.
+    """Return an expression that is true in all states of `inside` and false in all of `outside`.
 
-    They depend on the given domains only. `effort` bounds the work, in nodes looked at: None is returned beyond it.
-
-    Either the products of `inside`, or those of `outside` negated, whichever is shorter.
+    Neither set is empty, and both depend on `domains` only. `effort` is the maximum number of visited nodes; beyond it,
+    the result is None. The expression is a cover of `inside` or a negated cover of `outside`, whichever is shorter.
     """
     product = _OVERHEAD + inside.node_count() + outside.node_count()
     covers = _shorter_covers(
@@ -56,7 +55,7 @@ def separating_expression(
 
 
 class _Cover:
-    """The products that cover `wanted` and spare `spared`, found one by one."""
+    """Products that cover `wanted` and exclude `spared`, computed one by one."""
 
     def __init__(self, encoding: Encoding, wanted: Diagram, spared: Diagram, domains: Sequence[Domain]) -> None:
         self._encoding = encoding
@@ -64,11 +63,11 @@ class _Cover:
         self._spared = spared
         self._cube = encoding.diagrams.cube(level for domain in domains for level in domain.levels)
         self._domains = sorted(domains, key=_telling)
-        #: For each domain the variables of the others.
+        #: For each domain, the variables of the other domains.
         self._others: dict[Domain, Diagram] = {}
 
     def products(self) -> Iterator[Product]:
-        """Every product covers some state that those before it do not; after the last all are covered."""
+        """Yield products that cover the wanted states; each covers a state that those before it do not."""
         left = self._wanted
         while left.satisfiable():
             product = self._widened(self._grown(pick(left, self._domains)))
@@ -76,7 +75,7 @@ class _Cover:
             left &= ~self._states(product)
 
     def tidied(self, products: list[Product]) -> list[Product]:
-        """The products without those whose states the others cover too, each no wider than it reads well."""
+        """Return the products without the redundant ones, each restricted to its most readable form."""
         behind = [self._encoding.diagrams.false]
         for product in reversed(products):
             behind.append(behind[-1] | self._states(product))
@@ -89,23 +88,24 @@ class _Cover:
         return kept
 
     def _narrowed(self, product: Product, states: Diagram) -> Product:
-        """The product with values for each element that read best, between those of `states` and those it has."""
+        """Return the product with the most readable values: at least those of `states`, at most its own."""
         return {
             domain: _readable(domain, self._values_in(states, domain), free)
             for domain, free in sorted(product.items(), key=lambda item: item[0].rank)
         }
 
     def _grown(self, state: Mapping[Element, int]) -> Product:
-        """The state's product without the elements that need not be spoken of."""
+        """Return the product of the state without the elements that are not needed to exclude `spared`."""
         elements = ((domain, domain.element) for domain in self._domains)
         literals = [(domain, self._encoding.has_code(element, state[element])) for domain, element in elements]
         kept = self._needed(literals, self._spared)
         return {domain: [(state[domain.element],) * 2] for domain, _ in kept}
 
     def _needed(self, literals: Sequence[_Literal], spared: Diagram) -> list[_Literal]:
-        """Of literals that leave none of some states those that are left when each is dropped that need not be there.
+        """Return a minimal part of `literals` that excludes all states of `spared`.
 
-        From the first to the last, half by half: most are dropped many at once (Junker: QuickXplain, AAAI 2004).
+        The search drops literals from the first to the last, by halves: it drops most of them many at once (Junker:
+        QuickXplain, AAAI 2004).
         """
         if not spared.satisfiable():
             return []
@@ -117,12 +117,12 @@ class _Cover:
         return kept + self._needed(last, spared & self._all(kept))
 
     def _all(self, literals: Sequence[_Literal]) -> Diagram:
-        """Where all of them hold: from the bottom, so that each conjunction makes but one level anew."""
+        """Return the conjunction of the literals, from the bottom, so that each step builds only one level."""
         ascending = sorted(literals, key=lambda literal: literal[0].levels, reverse=True)
         return self._encoding.diagrams.all_of(holds for _, holds in ascending)
 
     def _widened(self, product: Product) -> Product:
-        """The product with all values for each element that the other elements leave free."""
+        """Return the product with every value that the other elements allow."""
         all_after = [self._encoding.diagrams.true]
         for domain in reversed(product):
             all_after.append(all_after[-1] & self._values(domain, product[domain]))
@@ -133,7 +133,7 @@ class _Cover:
         return product
 
     def _values_in(self, states: Diagram, domain: Domain) -> Ranges:
-        """The codes that an element has in the states."""
+        """Return the codes of an element in the states."""
         others = self._others.get(domain)
         if others is None:
             others = self._others[domain] = self._cube.exists(self._encoding.diagrams.cube(domain.levels))
@@ -148,7 +148,10 @@ class _Cover:
 
 
 def _telling(domain: Domain) -> int:
-    """What says least about the robot is dropped first: data, communication, variables, then states of components."""
+    """Return the sort key of a domain. The least informative domains come first and are dropped first.
+
+    The order is: data, communication, variables, states of components.
+    """
     match domain.element:
         case sct.Plant(kind=sct.PlantKind.data):
             return 0
@@ -160,7 +163,7 @@ def _telling(domain: Domain) -> int:
 
 
 def _readable(domain: Domain, needed: Ranges, free: Ranges) -> Ranges:
-    """Of all codes that hold the needed ones and are free those that are shortest to write; of equals the fewest."""
+    """Return the shortest set of codes between `needed` and `needed` plus `free`; of equals, the smallest."""
     candidates = [needed, free]
     for first, last in free:
         within = [span for span in needed if first <= span[0] and span[1] <= last]
@@ -174,9 +177,9 @@ def _readable(domain: Domain, needed: Ranges, free: Ranges) -> Ranges:
 def _shorter_covers(
     positive: _Cover, negative: _Cover, most: int | None
 ) -> tuple[list[Product] | None, list[Product] | None] | None:
-    """Both covers, found in turns: None for one that has more products than the other altogether.
+    """Compute both covers in turns; None for a cover with more products than the other.
 
-    None where both have more than `most`.
+    Returns None if both have more than `most` products.
     """
     found: tuple[list[Product], list[Product]] = ([], [])
     sources = positive.products(), negative.products()

@@ -1,4 +1,4 @@
-"""From decision diagrams back to values and to expressions that a person reads."""
+"""Conversion of decision diagrams to values and readable expressions."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 #: Codes of a domain as ranges, both ends included, ascending, with gaps between them.
 Ranges: TypeAlias = "list[tuple[int, int]]"
-#: A value outside of the model: a location or a literal by its name.
+#: Value outside of the model: a location or a literal by its name.
 Value: TypeAlias = bool | int | str
 
 
 def codes(diagram: Diagram, domain: Domain) -> Ranges:
-    """The codes for which a function of one domain is true."""
+    """Return the codes for which a function of one domain is true."""
     found: Ranges = []
     _collect(diagram, domain.levels, 0, found)
     return [(first, min(last, domain.size - 1)) for first, last in found if first < domain.size]
@@ -44,14 +44,14 @@ def _collect(diagram: Diagram, levels: Sequence[int], first: int, found: Ranges)
 
 
 def complement(ranges: Ranges, size: int) -> Ranges:
-    """The codes 0 … size-1 that are in none of the ranges."""
+    """Return the codes 0 … size-1 that are in none of the ranges."""
     edges = [-1, *(end for span in ranges for end in span), size]
     gaps = zip(edges[::2], edges[1::2], strict=True)
     return [(before + 1, after - 1) for before, after in gaps if before + 1 < after]
 
 
 def value(element: Element, code: int) -> Value:
-    """What a code stands for: a location's or literal's name, a boolean, an integer."""
+    """Return the value of a code: the name of a location or literal, a boolean or an integer."""
     if isinstance(element, sct.Plant):
         return element.locations[code].name
     match element.type:
@@ -63,12 +63,12 @@ def value(element: Element, code: int) -> Value:
 
 
 def text(chosen: Value) -> str:
-    """A value as expressions write it."""
+    """Return a value in the syntax of expressions."""
     return str(chosen).lower() if isinstance(chosen, bool) else str(chosen)
 
 
 def is_one_of(domain: Domain, ranges: Ranges) -> ex.Expression:
-    """An expression for: the element's code is in the ranges, which are neither empty nor all."""
+    """Return an expression for "the element's code is in the ranges", which are neither empty nor full."""
     rest = complement(ranges, domain.size)
     if _is_integer(domain.element):
         if _size(rest) == 1:
@@ -81,7 +81,7 @@ def is_one_of(domain: Domain, ranges: Ranges) -> ex.Expression:
 
 
 def cost(domain: Domain, ranges: Ranges) -> int:
-    """How many comparisons that expression has."""
+    """Return the number of comparisons of that expression."""
     rest = complement(ranges, domain.size)
     if not _is_integer(domain.element):
         return min(_size(ranges), _size(rest))

@@ -1,10 +1,10 @@
 """Locations, variables, inputs and expressions of an SCT model as decision diagrams.
 
-Everything that has a state is a finite domain: the location of a plant, a discrete variable, an input. A value's code
-is its index in the domain, in binary, the most significant bit on top. Each bit of the state has a copy for the next
-state right below it, and with wide integers in the model one in between, for a state halfway. Wide integers that are
-computed from each other or compared, or are counted by the same event, take turns bit by bit: apart, the diagram of
-`x = y` has a node for every value.
+Each element with a state is a finite domain: the location of a plant, a discrete variable, an input. The code of a
+value is its index in the domain, in binary, with the most significant bit on top. Each bit of the state has a copy for
+the next state directly below it. In a model with wide integers, there is one more copy in between, for a state halfway.
+The bits of wide integers are interleaved if these are computed from each other, compared, or counted by the same event.
+Without that, the diagram of `x = y` has a node for every value.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ if TYPE_CHECKING:
     from robosc.synthesis.arithmetic import Vector
     from robosc.synthesis.bdd import Diagram, Diagrams
 
-#: What a domain is of. A plant stands for its location.
+#: Element with a finite domain. A plant stands for its location.
 Element: TypeAlias = "sct.Plant | sct.DiscreteVariable | sct.Input"
-#: The number of values from which on an integer is wide.
+#: Minimum number of values of a wide integer.
 _WIDE = 1 << 10
 _LOGICAL: Mapping[type[ex.Expression], Callable[..., Diagram]] = {
     ex.Negation: lambda operand: ~operand,
@@ -58,7 +58,7 @@ _ARITHMETIC: Mapping[type[ex.Expression], Callable[..., Vector]] = {
 
 @dataclass(frozen=True, eq=False)
 class Domain:
-    """A finite set of values, coded 0 … size-1, and the levels of its bits, most significant first.
+    """Finite set of values, coded 0 … size-1, with the levels of its bits, most significant first.
 
     `rank` is its place in the model's text.
     """
@@ -72,9 +72,9 @@ class Domain:
 
 
 class Layout:
-    """Which element takes which levels: the static order of a model's domains.
+    """Static order of a model's domains: the levels of each element.
 
-    `wide` are the wide integers of the state, each with those that its bits take turns with, itself included.
+    `wide` maps each wide integer of the state to the integers that its bits are interleaved with, itself included.
     """
 
     def __init__(self, model: sct.SupervisoryControlModel) -> None:
@@ -97,11 +97,11 @@ class Layout:
         for vertex in order:
             if elements[vertex] not in self.domains:
                 self._add([(element, index[element]) for element in together.get(elements[vertex], [elements[vertex]])])
-        #: The domains that make up the state, from the top.
+        #: Domains of the state, from the top.
         self.state = [domain for domain in self.domains.values() if not isinstance(domain.element, sct.Input)]
 
     def _add(self, elements: Sequence[tuple[Element, int]]) -> None:
-        """Domains whose bits take turns, those of the same weight side by side."""
+        """Add domains with interleaved bits: bits of the same weight are neighbors."""
         bits = {element: (domain_size(element) - 1).bit_length() for element, _ in elements}
         levels: dict[Element, list[int]] = {element: [] for element, _ in elements}
         for weight in reversed(range(max(bits.values()))):
@@ -124,23 +124,23 @@ class Layout:
 
 
 def foreign(expression: ex.Expression) -> ModelError:
-    """What is raised at an expression that no sct model holds."""
+    """Return the error for an expression that no SCT model contains."""
     message = f"a {type(expression).__name__} has no place in an sct model"
     return ModelError([Diagnostic(*place(expression), Severity.ERROR, "type", message)])
 
 
 def domain_size(element: Element) -> int:
-    """The number of an element's values."""
+    """Return the number of values of an element."""
     return domains.domain(element if isinstance(element, sct.Plant) else element.type).size
 
 
 def smallest(element: Element) -> int:
-    """The integer that code 0 stands for; 0 for what has no integers."""
+    """Return the integer of code 0; 0 for an element without integers."""
     return domains.domain(element if isinstance(element, sct.Plant) else element.type).low
 
 
 def referenced(expression: ex.Expression | None) -> Iterator[Element]:
-    """The elements whose values the expression reads, once per reference."""
+    """Yield the elements whose values the expression reads, once per reference."""
     for _, node in tree(expression) if expression is not None else ():
         match node:
             case sct.LocationReference():
@@ -152,14 +152,14 @@ def referenced(expression: ex.Expression | None) -> Iterator[Element]:
 
 
 class Encoding:
-    """The decision diagrams of a model's elements and expressions."""
+    """Decision diagrams of a model's elements and expressions."""
 
     def __init__(self, layout: Layout, diagrams: Diagrams) -> None:
         self.layout = layout
         self.diagrams = diagrams
         self._model = layout.model
         self._codes: dict[tuple[Element, int], Diagram] = {}
-        #: Of locations and literals, among those beside them.
+        #: Indices of locations and literals among their siblings.
         self._places: dict[ex.NamedElement, int] = {}
         self._between: dict[tuple[Element, int, int], Diagram] = {}
         self._vectors: dict[ex.Expression, Vector] = {}
@@ -168,15 +168,15 @@ class Encoding:
         self._next: dict[sct.Location, Diagram] = {}
 
     def bits(self, element: Element) -> tuple[Diagram, ...]:
-        """The bits of an element's code, least significant first."""
+        """Return the bits of an element's code, least significant first."""
         return tuple(self.diagrams.variable(level) for level in reversed(self.layout.domains[element].levels))
 
     def next_bits(self, element: Element) -> tuple[Diagram, ...]:
-        """The same of the next state."""
+        """Return the bits of an element's next code, least significant first."""
         return tuple(self.diagrams.variable(level) for level in reversed(self.layout.domains[element].next_levels))
 
     def has_code(self, element: Element, code: int) -> Diagram:
-        """Where the element has the value with that code."""
+        """Return the states in which the element has the value with that code."""
         known = self._codes.get((element, code))
         if known is None:
             known = self._codes[element, code] = self._same(
@@ -185,17 +185,17 @@ class Encoding:
         return known
 
     def in_domain(self, element: Element) -> Diagram:
-        """Where the element's bits are a code at all."""
+        """Return the assignments in which the element's bits form a valid code."""
         size = self.layout.domains[element].size
         code = (*self.bits(element), self.diagrams.false)
         return arithmetic.less(code, arithmetic.constant(self.diagrams, size))
 
     def whole(self, elements: Iterable[Element]) -> Diagram:
-        """Where the bits of all these elements are codes."""
+        """Return the assignments in which the bits of all these elements form valid codes."""
         return self.diagrams.all_of(map(self.in_domain, dict.fromkeys(elements)))
 
     def between(self, element: Element, first: int, last: int) -> Diagram:
-        """Where the element's code is one of first … last."""
+        """Return the states in which the element's code is one of first … last."""
         known = self._between.get((element, first, last))
         if known is None:
             code = (*self.bits(element), self.diagrams.false)
@@ -205,11 +205,11 @@ class Encoding:
         return known
 
     def becomes(self, element: Element, code: Vector) -> Diagram:
-        """Where the element's next code is the given one."""
+        """Return the condition that the element's next code equals `code`."""
         return self._same(self.next_bits(element), code)
 
     def keeps(self, element: Element) -> Diagram:
-        """Where the element's next value is its present one."""
+        """Return the condition that the element keeps its value."""
         if element not in self._kept:
             self._kept[element] = self.becomes(element, self.bits(element))
         return self._kept[element]
@@ -222,37 +222,37 @@ class Encoding:
         return result
 
     def location(self, location: sct.Location) -> Diagram:
-        """Where the location's plant is in it."""
+        """Return the states in which the location's plant is in this location."""
         return self.has_code(location.eContainer(), self.location_code(location))
 
     def source(self, edge: sct.Edge) -> Diagram:
-        """Where the edge's plant is in a location that the edge leaves."""
+        """Return the states in which the edge's plant is in a location that the edge leaves."""
         around = edge.eContainer()
         return self.in_domain(around) if isinstance(around, sct.Plant) else self.location(around)
 
     def next_location(self, location: sct.Location) -> Diagram:
-        """Where the location's plant will be in it."""
+        """Return the condition that the location's plant is in this location next."""
         if location not in self._next:
             code = arithmetic.constant(self.diagrams, self.location_code(location))
             self._next[location] = self.becomes(location.eContainer(), code)
         return self._next[location]
 
     def marked(self, plant: sct.Plant) -> Diagram:
-        """Where the plant is in a marked location."""
+        """Return the states in which the plant is in a marked location."""
         marked = (code for code, location in enumerate(plant.locations) if location.marked)
         return self.diagrams.any_of(self.has_code(plant, code) for code in marked)
 
     def state(self, codes: Mapping[Element, int]) -> Diagram:
-        """The one state in which every element has the given code."""
+        """Return the single state in which every element has the given code."""
         elements = [domain.element for domain in reversed(self.layout.state)]
         return self.diagrams.all_of(self.has_code(element, codes[element]) for element in elements)
 
     def count(self, states: Diagram) -> int:
-        """How many states there are in a set of them."""
+        """Return the number of states of a set."""
         return states.sat_count(sum(len(domain.levels) for domain in self.layout.state))
 
     def count_plants(self, states: Diagram) -> int:
-        """How many states of the plants there are in a set, wherever requirement automata are."""
+        """Return the number of states of a set, ignoring the locations of requirement automata."""
         watching = {plant for plant in self.layout.plants if plant.kind == sct.PlantKind.requirement}
         others = [domain for domain in self.layout.state if _plant(domain.element) in watching]
         states = states.exists(self.diagrams.cube(level for domain in others for level in domain.levels))
@@ -261,24 +261,24 @@ class Encoding:
 
     @cached_property
     def initial(self) -> Diagram:
-        """The initial states."""
+        """Initial states."""
         elements = [domain.element for domain in reversed(self.layout.state)]
         return self._narrowed(self.diagrams.all_of(map(self._starts, elements)), self._model.initialPredicates)
 
     @cached_property
     def all_marked(self) -> Diagram:
-        """The states in which every plant is in a marked location, and all marker predicates hold."""
-        # From the bottom: each conjunction makes the diagram above it anew.
+        """States in which every plant is in a marked location and all marker predicates hold."""
+        # From the bottom: each conjunction rebuilds the diagram above it.
         plants = sorted(self.layout.plants, key=lambda plant: self.layout.domains[plant].levels, reverse=True)
         return self._narrowed(self.diagrams.all_of(map(self.marked, plants)), self._model.markerPredicates)
 
     @cached_property
     def initial_codes(self) -> dict[Element, int]:
-        """The code of every element of the state in an initial state, always the same one."""
+        """Codes of all elements in one initial state, always the same one."""
         return pick(self.initial, self.layout.state)
 
     def _starts(self, element: Element) -> Diagram:
-        """Where an element has a value with which it may start."""
+        """Return the states in which an element has one of its initial values."""
         if isinstance(element, sct.Plant):
             initial = (code for code, location in enumerate(element.locations) if location.initial)
             return self.diagrams.any_of(self.has_code(element, code) for code in initial)
@@ -288,13 +288,13 @@ class Encoding:
         return self._same(self.bits(element), self.code(element.initial, element))
 
     def _narrowed(self, states: Diagram, conditions: Iterable[ex.Expression]) -> Diagram:
-        """Those of some states in which conditions hold."""
+        """Return those of `states` in which all conditions hold."""
         for condition in conditions:
             states &= self.holds(condition)
         return states
 
     def code(self, value: ex.Expression, element: sct.DiscreteVariable) -> Vector:
-        """The code that the variable has after it was given the value: an integer saturates at its range."""
+        """Return the code of the variable after the assignment of `value`; an integer saturates at its range."""
         vector = self.vector(value)
         if not isinstance(element.type, ex.IntegerType):
             return vector
@@ -305,24 +305,24 @@ class Encoding:
         return arithmetic.choose(arithmetic.less(last, code), last, code)
 
     def holds(self, expression: ex.Expression | None) -> Diagram:
-        """Where a boolean expression is true; an absent one is true everywhere."""
+        """Return the states in which a boolean expression is true; all states for None."""
         return self.diagrams.true if expression is None else self.vector(expression)[0]
 
     def permits(self, requirement: sct.Requirement) -> Diagram:
-        """Where a requirement lets its event happen."""
+        """Return the states in which a requirement allows its event."""
         holds = self.holds(requirement.condition)
         return ~holds if requirement.kind == sct.RequirementKind.disables else holds
 
     def vector(self, expression: ex.Expression) -> Vector:
-        """The value of an expression: an integer's own, else its code; a boolean's is 0 or 1.
+        """Return the value of an expression: the integer itself, a code, or 0 or 1 for a boolean.
 
-        Known from the first time that it is asked for, but for sums and products: who asks for all parts of an
-        expression looks at each operator once.
+        The value is cached, except for sums and products. A caller that requests all parts of an expression therefore
+        visits each operator once.
         """
         return fold(self._combined, expression, lambda part: () if part in self._vectors else operands(part))
 
     def _combined(self, expression: ex.Expression, parts: Sequence[Vector]) -> Vector:
-        """The value of an expression from those of its operands."""
+        """Return the value of an expression, computed from those of its operands."""
         known = self._vectors.get(expression)
         if known is not None:
             return known
@@ -346,7 +346,7 @@ class Encoding:
         return vector
 
     def _called(self, function: str, value: Vector, *others: Vector) -> Vector:
-        """A function of its arguments."""
+        """Return the value of a function call."""
         match function:
             case "mod":
                 return self._divided(value, *others)[1]
@@ -358,9 +358,10 @@ class Encoding:
         return arithmetic.choose(arithmetic.less(least, most), value, other)
 
     def _divided(self, value: Vector, divisor: Vector) -> tuple[Vector, Vector]:
-        """How often a constant goes into what is not negative, and the remainder of whatever sign.
+        """Divide a value by a positive constant; return the quotient and the remainder.
 
-        From the sign down, each bit doubles what is left of those above it.
+        The quotient is right only for a non-negative value, the remainder for any value. From the sign down, each step
+        doubles the remainder and adds a bit.
         """
         number = arithmetic.value_of(divisor)
         assert number is not None
@@ -398,7 +399,7 @@ class Encoding:
         return self._reads[element]
 
     def location_code(self, location: sct.Location) -> int:
-        """The code of a location among those of its plant."""
+        """Return the code of a location among those of its plant."""
         return self._place(location, location.eContainer().locations)
 
     def _code_of(self, literal: ex.EnumerationLiteral) -> int:
@@ -411,7 +412,7 @@ class Encoding:
 
 
 def pick(diagram: Diagram, domains: Iterable[Domain]) -> dict[Element, int]:
-    """The codes in one of the diagram's satisfying assignments, always the same: small codes first, from the top."""
+    """Return the codes of one satisfying assignment, always the same: small codes first, from the top."""
     true = set()
     while (cofactors := diagram.cofactors()) is not None:
         high, low = cofactors
@@ -436,7 +437,10 @@ def _elements(plant: sct.Plant) -> Iterator[Element]:
 
 
 def _couplings(model: sct.SupervisoryControlModel, index: Mapping[Element, int]) -> Iterable[list[Element]]:
-    """Which elements meet: for each event, all that its edges and requirements touch; what each predicate reads."""
+    """Return the sets of elements that occur together.
+
+    There is one set for each event, with all that its edges and requirements touch, and one for each predicate.
+    """
     touched: dict[sct.Event, dict[Element, None]] = {}
     for plant in model.plants:
         for edge in edges_of(plant):
@@ -455,7 +459,7 @@ def _couplings(model: sct.SupervisoryControlModel, index: Mapping[Element, int])
 
 
 def _groups_of_wide(model: sct.SupervisoryControlModel) -> dict[Element, list[Element]]:
-    """The wide integers that are compared or computed together, directly or through others, for each of them."""
+    """Return, for each wide integer, those that it is compared or computed with, directly or indirectly."""
     groups: dict[Element, list[Element]] = {}
     for together in _computations(model):
         wide = dict.fromkeys(element for element in together if domain_size(element) >= _WIDE)
@@ -465,7 +469,7 @@ def _groups_of_wide(model: sct.SupervisoryControlModel) -> dict[Element, list[El
 
 
 def _computations(model: sct.SupervisoryControlModel) -> Iterator[list[Element]]:
-    """What each comparison reads, what each assignment reads and writes, and what each edge counts."""
+    """Yield the elements of each comparison, of each assignment, and those that each edge counts."""
     inner: set[object] = set()
     for _, node in tree(model):
         if isinstance(node, sct.Update):
@@ -473,6 +477,6 @@ def _computations(model: sct.SupervisoryControlModel) -> Iterator[list[Element]]
         elif isinstance(node, sct.Edge):
             yield [update.variable for update in node.updates if update.variable in referenced(update.value)]
         elif type(node) in _COMPARISON and node not in inner:
-            # It reads what the comparisons in it read: they need no look of their own.
+            # The outer comparison reads all that the inner ones read, so these are skipped.
             inner.update(operand for _, operand in tree(node) if type(operand) in _COMPARISON)
             yield list(referenced(node))

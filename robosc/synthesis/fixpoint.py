@@ -1,12 +1,12 @@
 """Reachability and the synthesis fixpoint, by saturation.
 
-Saturation (Ciardo, Lüttgen, Siminiceanu: Saturation: an efficient iteration strategy for symbolic state-space
-generation, TACAS 2001; on decision diagrams of relations: van Dijk, van de Pol: Sylvan, STTT 2017) closes every node
-of the state set under the events that touch nothing above it before it goes on upwards, so that an event costs as much
-as what it touches, not as much as the whole set.
+Saturation closes every node of the state set under the events that touch nothing above it before it moves upwards
+(Ciardo, Lüttgen, Siminiceanu: Saturation: an efficient iteration strategy for symbolic state-space generation, TACAS
+2001; on decision diagrams of relations: van Dijk, van de Pol: Sylvan, STTT 2017). The cost of an event depends on the
+part that it touches, not on the whole set.
 
-The synthesis is that of Ouedraogo, Kumar, Malik, Åkesson: Nonblocking and safe control of discrete-event systems
-modeled as extended finite automata, T-ASE 2011, on reachable states only.
+The synthesis algorithm is that of Ouedraogo, Kumar, Malik, Åkesson: Nonblocking and safe control of discrete-event
+systems modeled as extended finite automata, T-ASE 2011, on reachable states only.
 """
 
 from __future__ import annotations
@@ -27,28 +27,29 @@ if TYPE_CHECKING:
     from robosc.synthesis.encoding import Element, Encoding
     from robosc.synthesis.relation import Move
 
-    #: States, the bound that they stay within, and the number of the first group of steps that they are closed under.
+    #: States, their bound, and the number of the first group of steps that they are closed under.
     Part = tuple[Diagram, Diagram, int]
 
 _PAIR = 2
-#: The nodes up to which a relation of present and next values costs no more than two steps without next values.
+#: Maximum number of nodes of a relation with next values that costs no more than two steps without next values.
 _SMALL = 40
-#: How many times as large as several relations together may be the one of all of them.
+#: Maximum size of a joined relation, relative to the sum of the sizes of its parts.
 _LARGER = 8
-#: The nodes of a relation above which it stays a step of its own: there, following it costs more than calling it.
+#: Maximum number of nodes of a relation that is joined with others. Above it, following the relation costs more than
+#: calling it.
 _LARGE = 256
-#: The level of what depends on no variable: no states, or all.
+#: Level of a constant diagram: no states, or all.
 _TERMINAL = sys.maxsize
 
 
 @dataclass(frozen=True)
 class SupervisedStates:
-    """The result of the fixpoint.
+    """Result of the fixpoint.
 
-    `rounds` are the states still held to be good, from all that are reachable under the requirements to the final ones;
-    `alive` of the same round those from which a marked state can be reached within them and without one that violates
-    an invariant: no such state is itself among them. Both are empty where nobody asks for
-    explanations. `controlled` are the states that are reachable under the supervisor: none if the supervisor is empty.
+    `rounds` are the remaining good states of each round, from all that are reachable under the requirements to the
+    final ones. `alive` are, for the same round, the states that reach a marked state within the good ones without a
+    state that violates an invariant; a violating state is never alive. Both lists are empty if no explanations are
+    needed. `controlled` are the states that are reachable under the supervisor; none if the supervisor is empty.
     """
 
     rounds: list[Diagram]
@@ -57,19 +58,22 @@ class SupervisedStates:
 
 
 class _Firing:
-    """The closing of some states under a group of steps: all that lies below is closed before each turn of these."""
+    """Closing of some states under a group of steps. All parts below are closed before each turn of the group."""
 
     __slots__ = ("idle", "part", "states", "turn")
 
     def __init__(self, part: Part) -> None:
-        """`idle` is what was done without need to be done again, one after the other: closings below, and steps."""
+        """Begin without a turn.
+
+        `idle` counts consecutive closings below and steps that added no state.
+        """
         self.part = part
         self.states = part[0]
         self.idle = self.turn = 0
 
 
 class _Saturation:
-    """The closure of a state set under steps, forwards or backwards, within a bounding set."""
+    """Closure of a state set under steps, forwards or backwards, within a bounding set."""
 
     def __init__(self, diagrams: Diagrams, steps: Sequence[Step], *, forwards: bool) -> None:
         self._diagrams = diagrams
@@ -81,17 +85,19 @@ class _Saturation:
         self._follow = Step.image if forwards else Step.preimage
 
     def closure(self, states: Diagram, within: Diagram) -> Diagram:
-        """The least set that holds `states` and whatever the steps add within the bound, which holds them, too.
+        """Return the least set that holds `states` and is closed under the steps within the bound.
 
-        The search is a loop with a stack of its own: this is where synthesis spends its time, and diagrams are deep.
+        The bound holds `states`, too. The search is a loop with its own stack: synthesis spends its time here, and
+        diagrams are deep.
         """
         levels, last, node = self._levels, len(self._levels), self._diagrams.node
         known: dict[Part, Diagram] = {}
-        #: What fires; and halves: at which level, the one above once it is closed, and the one below.
+        #: Firings and halves. A half has its level, the closed diagram of the upper half, and the part of the lower
+        #: half.
         waiting: list[_Firing | tuple[Part, int, Diagram | None, Part]] = []
         part: Part = states, within, 0
         while True:
-            # Down to what is closed already, or at a glance.
+            # Descend to a part that is known to be closed or closed by definition.
             while True:
                 states, within, group = part
                 level = states.node_level()
@@ -108,7 +114,7 @@ class _Saturation:
                     above, below = _halves(part, level, bound)
                     waiting.append((part, min(level, bound), None, below))
                     part = above
-            # Up to what has more to be closed.
+            # Ascend to a part that needs more closing.
             while waiting:
                 upper = waiting.pop()
                 if isinstance(upper, tuple):
@@ -125,13 +131,13 @@ class _Saturation:
                         part = upper.states, own[1], own[2] + 1
                         break
                     closed = upper.states
-                # What is closed stays as it is: it comes again as a part of what has grown elsewhere.
+                # A closed part stays closed, and it occurs again as a part of sets that grew elsewhere.
                 known[own] = known[closed, own[1], own[2]] = closed
             else:
                 return closed
 
     def _is_closed_after_turn(self, firing: _Firing, closed: Diagram) -> bool:
-        """Fires the steps of a group, once each, at states that are closed below: whether it has all that it wants."""
+        """Fire each step of a group once at states that are closed below; return whether these are now closed."""
         _, within, group = firing.part
         here = self._groups[group]
         turns = len(here) + 1
@@ -171,9 +177,9 @@ class _Saturation:
 
 
 def _halves(part: Part, own: int, bound: int) -> tuple[Part, Part]:
-    """Some states where the variable of their first level is true, and where it is false.
+    """Return the parts of the states for a true and for a false variable at their first level.
 
-    The states begin at the level `own`, and what they stay within at `bound`.
+    The states begin at the level `own`, their bound begins at `bound`.
     """
     states, within, group = part
     high, low = (own <= bound and states.cofactors()) or (states, states)
@@ -182,10 +188,11 @@ def _halves(part: Part, own: int, bound: int) -> tuple[Part, Part]:
 
 
 def _merged(steps: Sequence[Step]) -> list[Step]:
-    """The steps, some of those with one level joined: most images and preimages add no state.
+    """Join some of the steps of each level: most images and preimages add no state.
 
-    Only steps that change the element at that level are joined: after one of them the others start from another place.
-    Steps that leave it alone can mostly happen beside each other, and each is followed best from where the last led.
+    Only steps that change the element at that level are joined: after one of them, the others start from another place.
+    Steps that leave it unchanged can mostly happen side by side. It is best to follow each of them from the result of
+    the last.
     """
     found: list[Step] = []
     by_level: dict[tuple[int, bool], list[Step]] = {}
@@ -198,9 +205,10 @@ def _merged(steps: Sequence[Step]) -> list[Step]:
 
 
 def _joined_where_it_pays(steps: Sequence[Step]) -> Sequence[Step]:
-    """The steps, those with a small relation joined if one of them needs next values.
+    """Join the steps with a small relation if one of them needs next values.
 
-    Steps that are `apart` need none, their join does: each of its images costs more than theirs together.
+    Steps that are `apart` need no next values, but their join does: each of its images costs more than the separate
+    ones.
     """
     small: list[Step] = []
     large: list[Step] = []
@@ -212,10 +220,13 @@ def _joined_where_it_pays(steps: Sequence[Step]) -> Sequence[Step]:
 
 
 def _as_one(steps: Sequence[Step]) -> Sequence[Step]:
-    """Steps as a single one, or as they are if its relation gets large: it keeps what only others change."""
+    """Join the steps into one; each part keeps the elements that only the other parts change.
+
+    Returns the steps unchanged if the joined relation gets large.
+    """
     most = _LARGER * sum(step.relation.node_count() for step in steps)
     parts = steps
-    # By halves, so that what is in between is small, too.
+    # Join by halves to keep intermediate results small.
     while len(parts) > 1:
         parts = [reduce(joined, parts[start : start + _PAIR]) for start in range(0, len(parts), _PAIR)]
         parts[0].encoding.diagrams.tidy()
@@ -225,9 +236,9 @@ def _as_one(steps: Sequence[Step]) -> Sequence[Step]:
 
 
 def _merged_alike(steps: Sequence[Step]) -> list[Step]:
-    """The steps, those of one level that change the same elements as one.
+    """Merge steps of one level that change the same elements.
 
-    A pair is not, where that makes a large relation of next values of two that have none.
+    A pair of steps without next values is not merged if the result is a large relation with next values.
     """
     alike: dict[tuple[int, frozenset[Element]], list[Step]] = {}
     for step in steps:
@@ -243,19 +254,19 @@ def _merged_alike(steps: Sequence[Step]) -> list[Step]:
 
 
 def reachable(diagrams: Diagrams, steps: Sequence[Step], states: Diagram, within: Diagram) -> Diagram:
-    """All states that the steps reach from `states` without leaving `within`."""
+    """Return all states that the steps reach from `states` without leaving `within`."""
     return _Saturation(diagrams, steps, forwards=True).closure(states, within)
 
 
 def coreachable(diagrams: Diagrams, steps: Sequence[Step], states: Diagram, within: Diagram) -> Diagram:
-    """All states from which the steps reach `states` without leaving `within`."""
+    """Return all states from which the steps reach `states` without leaving `within`."""
     return _Saturation(diagrams, steps, forwards=False).closure(states, within)
 
 
 def supervise(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> SupervisedStates:
-    """The states of the maximally permissive, controllable, non-blocking supervisor.
+    """Compute the states of the maximally permissive, controllable, non-blocking supervisor.
 
-    `moves` are all events under the requirements, `violating` the states that none may come to.
+    `moves` are all events under the requirements. `violating` are the forbidden states.
     """
     steps = [step for _, step in moves]
     uncontrollable = [step for relation, step in moves if not relation.event.controllable]
@@ -268,7 +279,7 @@ def supervise(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> 
         statistics.rounds += 1
         statistics.states = encoding.count(good)
         kept = good & ~violating
-        # All that is left of what was alive is alive: it needs no state that is given up to reach a marked one.
+        # If all remaining states were alive, they still are: none needs a removed state to reach a marked one.
         alive.append(good if alive and good == alive[-1] else coreachable(diagrams, steps, marked & kept, kept))
         blocked = good & ~alive[-1]
         if not blocked.satisfiable():
@@ -283,10 +294,10 @@ def supervise(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> 
 
 
 def supervise_only(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> SupervisedStates:
-    """The same controlled states with less work, without the rounds that explanations go back through.
+    """Compute the same controlled states faster, without the rounds that explanations need.
 
-    What violates an invariant is given up before anybody asks what reaches a marked state: what is left is most often
-    final.
+    States that violate an invariant are removed before the first search for states that reach a marked one. The
+    remaining states are mostly final.
     """
     steps = [step for _, step in moves]
     uncontrollable = [step for relation, step in moves if not relation.event.controllable]
@@ -299,12 +310,12 @@ def supervise_only(encoding: Encoding, moves: Sequence[Move], violating: Diagram
         statistics.states = encoding.count(good)
         if bad.satisfiable():
             good &= ~coreachable(diagrams, uncontrollable, bad, good)
-        # What was alive still is: it needs no state that is given up to reach a marked one.
+        # The states that were alive still are: none needs a removed state to reach a marked one.
         if good == alive:
             break
         alive = coreachable(diagrams, steps, encoding.all_marked & good, good)
         bad = good & ~alive
         if not bad.satisfiable():
             break
-    # What can still be reached is as good as before: whatever follows of it can be reached, too.
+    # The set of reachable states stays good: all successors of a reachable state are reachable.
     return SupervisedStates([], [], good if good == reached else reachable(diagrams, steps, initial & good, good))

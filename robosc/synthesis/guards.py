@@ -1,4 +1,4 @@
-"""What the supervisor says of each controllable event, as expressions that a person reads."""
+"""Guards of the supervisor for each controllable event, as readable expressions."""
 
 from __future__ import annotations
 
@@ -22,11 +22,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Permission:
-    """In which of the controlled states a controllable event may happen, and how the supervisor says so.
+    """Controlled states in which a controllable event is allowed, and its guard.
 
-    Of the controlled states it may in those of `where`, which may lie outside of them. There are some if `where` has
-    any, or any with a condition on what the event touches. `unwritten`: the guard would have taken too much effort,
-    and does not say what synthesis added.
+    A controlled state allows the event exactly if it is in `where`; `where` may contain other states, too. If `where`
+    is satisfiable, some controlled state allows the event; the same is true of `where` with a condition on the elements
+    that the event touches. If `unwritten`, the guard exceeds the effort limit and lacks the condition that synthesis
+    added.
     """
 
     relation: EventRelation
@@ -37,20 +38,20 @@ class Permission:
 
     @cached_property
     def allowed(self) -> Diagram:
-        """The controlled states in which the event may happen."""
+        """Controlled states in which the event is allowed."""
         return self.controlled & self.where
 
 
 def permission(
     relation: EventRelation, controlled: Projection, encoding: Encoding, *, restricts: bool, effort: int | None = None
 ) -> Permission:
-    """The guard of a controllable event, over the states that are reachable under the supervisor.
+    """Return the guard of a controllable event over the states that are reachable under the supervisor.
 
-    `restricts` says whether synthesis gave up any state at all: if not, it added nothing to any event. `effort` bounds
-    the work for what it added.
+    `restricts`: whether synthesis removed any state. If not, it added nothing to any event. `effort` bounds the work
+    for the condition that synthesis adds.
 
-    In each of these states: the plants enable the event and both parts of the guard hold exactly where the event leads
-    to such a state again and its requirements hold.
+    In each of these states, the plants enable the event and both parts of the guard hold exactly if the requirements
+    hold and the event leads to such a state again.
     """
     step = relation.step if restricts else None
     states, domains = controlled.factor(relation.concerned)
@@ -80,7 +81,7 @@ def permission(
 
 
 def _condition(requirement: sct.Requirement) -> ex.Expression:
-    """A copy of what must hold for the event."""
+    """Return a copy of the condition that must hold for the event."""
     condition = copied(requirement.condition)
     if requirement.kind == sct.RequirementKind.needs:
         return condition

@@ -1,4 +1,4 @@
-"""Bounds the memory of the whole process, whoever takes it."""
+"""Memory limit for the whole process."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ if sys.platform != "win32":
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-#: So much more than the process has already may be taken in any case.
+#: Minimum additional memory that the process may take, in bytes.
 _LEAST = 64 << 20
 _SECONDS = 0.05
 _PAGE = 4096 if sys.platform == "win32" else resource.getpagesize()
 
 
 class TooFewAddressesError(MemoryError):
-    """The system allows the process too few addresses, however much memory there is."""
+    """The address space limit of the process is too small, regardless of the available memory."""
 
 
 class _TooMuchError(MemoryError):
-    """Raised from outside, so without a message."""
+    """Asynchronous error without a message, raised by the watching thread."""
 
 
 @contextmanager
 def bounded(memory: int, what: str) -> Iterator[None]:
-    """MemoryError in the `with` block soon after the whole process takes more bytes than `memory`.
+    """Raise MemoryError in the `with` block soon after the whole process takes more bytes than `memory`.
 
-    The message says that it was during `what`. Where the system does not tell what a process takes, nothing is bounded.
-    The block must not have to be ended in order: the error may come anywhere in it.
+    The message names the activity `what`. If the system does not report the memory of a process, nothing is bounded.
+    The error may come anywhere in the block, so the block must not need an orderly end.
     """
     start = resident()
     if start is None:
@@ -68,16 +68,16 @@ def bounded(memory: int, what: str) -> Iterator[None]:
 
 
 def resident() -> int | None:
-    """The bytes of memory that the process has now; None where the system does not tell."""
+    """Return the current memory of the process in bytes, or None if the system does not report it."""
     try:
-        with open("/proc/self/statm", encoding="ascii") as file:  # noqa: PTH123  # no path that somebody names
+        with open("/proc/self/statm", encoding="ascii") as file:  # noqa: PTH123  # no path of the user
             return int(file.read().split()[1]) * _PAGE
     except OSError:
         return None
 
 
 def address_space() -> int | None:
-    """How many bytes of addresses the process may still take; None where nothing bounds them."""
+    """Return the remaining address space of the process in bytes, or None if it is unlimited."""
     if sys.platform == "win32":
         return None
     most = resource.getrlimit(resource.RLIMIT_AS)[0]
@@ -91,7 +91,7 @@ def address_space() -> int | None:
 
 
 def _raise_in(thread: int, error: type[BaseException] | None) -> None:
-    """Raises an error in a thread before its next step; None takes back one that is not raised yet."""
+    """Raise an error in a thread before its next step; None cancels an error that is still pending."""
     ctypes.pythonapi.PyThreadState_SetAsyncExc(
         ctypes.c_ulong(thread), ctypes.py_object(error) if error is not None else None
     )

@@ -1,9 +1,10 @@
-"""The static variable order: things that occur together stand close together.
+"""Static variable order that keeps related variables close together.
 
-From the given order and from one by breadth (Cuthill, McKee: Reducing the bandwidth of sparse symmetric matrices, ACM
-1969), FORCE (Aloul, Markov, Sakallah: FORCE, a fast and easy-to-implement variable-ordering heuristic, GLSVLSI 2003),
-then a sliding window that tries all permutations of a few neighbours, as CIF does (Lousberg, Thuijsman, Reniers:
-DSM-based variable ordering heuristic for reduced computational effort of symbolic supervisor synthesis, WODES 2020).
+The search starts from the given order and from an order by breadth (Cuthill, McKee: Reducing the bandwidth of sparse
+symmetric matrices, ACM 1969). It improves each with FORCE (Aloul, Markov, Sakallah: FORCE, a fast and easy-to-implement
+variable-ordering heuristic, GLSVLSI 2003), and then with a sliding window that tries all permutations of a few
+neighbors, as CIF does (Lousberg, Thuijsman, Reniers: DSM-based variable ordering heuristic for reduced computational
+effort of symbolic supervisor synthesis, WODES 2020).
 """
 
 from __future__ import annotations
@@ -17,20 +18,20 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    #: The members of an edge in a window, and whether it goes on above and below.
+    #: Members of an edge in a window, and whether it continues above and below.
     _Kind = tuple[int, bool, bool]
     _Places = Callable[[Sequence[int]], Sequence[int]]
 
 _WINDOW = 4
-#: How many times as long the total span of the order by breadth may be.
+#: Maximum total span of the order by breadth, relative to that of the given order.
 _LONGER = 1.25
 
 
 def variable_order(size: int, edges: Sequence[Sequence[int]]) -> list[int]:
-    """An order of the vertices 0 … size-1 of a hypergraph with a small total span; the same for the same input.
+    """Order the vertices 0 … size-1 of a hypergraph with a small total span; deterministic.
 
-    What begins with the order by breadth is taken where it is not much longer: it costs least in practice. Of equally
-    long ones, the one whose edges lie farther up.
+    The result of the order by breadth is preferred if it is not much longer: in practice it costs least. Of two orders
+    with equal span, the one whose edges lie farther up wins.
     """
     graph = _Hypergraph(size, edges)
     given, broad = _improved(list(range(size)), graph), _improved(_by_breadth(graph), graph)
@@ -41,10 +42,10 @@ def variable_order(size: int, edges: Sequence[Sequence[int]]) -> list[int]:
 
 
 class _Hypergraph:
-    """The edges that join at least two vertices, equal ones once, with how many of each there are."""
+    """Edges that join at least two vertices. Equal edges are stored once with their number as weight."""
 
     def __init__(self, size: int, edges: Iterable[Sequence[int]]) -> None:
-        """`edges_of` are the edges of each vertex, by their index."""
+        """Count the edges; `edges_of` holds the indices of the edges of each vertex."""
         found = Counter(tuple(edge) for edge in edges if len(edge) > 1)
         self.edges, self.weights = list(found), list(found.values())
         self.edges_of: list[list[int]] = [[] for _ in range(size)]
@@ -54,23 +55,23 @@ class _Hypergraph:
         self.places_of: list[_Places] = [itemgetter(*edge) for edge in self.edges]
 
     def span(self, place: Sequence[int]) -> int:
-        """The total span."""
+        """Return the total span."""
         ends = (own(place) for own in self.places_of)
         return sum(weight * (max(places) - min(places)) for weight, places in zip(self.weights, ends, strict=True))
 
     def ends(self, edge: int, place: Sequence[int]) -> tuple[int, int]:
-        """The first and the last place of an edge."""
+        """Return the first and the last place of an edge."""
         places = self.places_of[edge](place)
         return min(places), max(places)
 
 
 def _improved(start: list[int], graph: _Hypergraph) -> list[int]:
-    """The best that comes of an order."""
+    """Return the best order that the search reaches from `start`."""
     return _slide(min(start, _force(start, graph), key=lambda order: graph.span(_places(order))), graph)
 
 
 def _weighted_span(order: Sequence[int], graph: _Hypergraph) -> int:
-    """The same sum as the total span, each distance times how far down its edge ends."""
+    """Return the total span with each distance weighted by how far down its edge ends."""
     place = _places(order)
     ends = (graph.ends(edge, place) for edge in range(len(graph.edges)))
     return sum(
@@ -86,7 +87,7 @@ def _places(order: Sequence[int]) -> list[int]:
 
 
 def _by_breadth(graph: _Hypergraph) -> list[int]:
-    """Layer by layer from one end of each connected part to the other."""
+    """Order each connected part layer by layer from one end to the other."""
     degree = [sum(graph.weights[edge] * len(graph.edges[edge]) for edge in incident) for incident in graph.edges_of]
     order: list[int] = []
     placed = [False] * len(degree)
@@ -101,7 +102,7 @@ def _by_breadth(graph: _Hypergraph) -> list[int]:
 
 
 def _layers(start: int, graph: _Hypergraph, degree: Sequence[int]) -> list[int]:
-    """All vertices connected with one, the near ones first, of equally near ones those with few neighbours."""
+    """Return all vertices connected with `start`, the near ones first; at equal distance by ascending degree."""
     order, seen_edges = [start], set[int]()
     seen = {start}
     for vertex in order:
@@ -116,26 +117,26 @@ def _layers(start: int, graph: _Hypergraph, degree: Sequence[int]) -> list[int]:
 
 
 def _force(order: list[int], graph: _Hypergraph) -> list[int]:
-    """Moves every vertex to the mean of the centres of its edges, again and again, as long as orders are new."""
-    # An edge pulls as often as it is there.
+    """Move every vertex to the mean of the centers of its edges, repeatedly, until an order recurs."""
+    # An edge pulls once for each of its copies.
     pulling = [[edge for edge in own for _ in range(graph.weights[edge])] for own in graph.edges_of]
     place = _places(order)
     best, least = order, graph.span(place)
     seen = {tuple(order)}
     for _ in range(10 * max(1, len(order).bit_length())):
         centre = [sum(places) / len(places) for places in (own(place) for own in graph.places_of)]
-        # Not `sum`, which rounds otherwise from Python 3.12 on: the order is to be the same.
+        # Not `sum`: it rounds differently from Python 3.12 on, and the order must be the same in all versions.
         pull = [
             reduce(add, map(centre.__getitem__, own)) / len(own) if own else float(place[vertex])
             for vertex, own in enumerate(pulling)
         ]
-        # Of vertices that are pulled alike, the order stays.
+        # The sort is stable: vertices with equal pull keep their order.
         order = sorted(order, key=pull.__getitem__)
         place = _places(order)
         span = graph.span(place)
         if span < least:
             best, least = order, span
-        # From here on it goes round in a circle.
+        # This order occurred before, so the sequence repeats from here.
         if tuple(order) in seen:
             break
         seen.add(tuple(order))
@@ -144,9 +145,10 @@ def _force(order: list[int], graph: _Hypergraph) -> list[int]:
 
 @cache
 def _permutations(size: int) -> tuple[list[tuple[int, ...]], Mapping[_Kind, list[int]]]:
-    """Each order of so many neighbours, and for each kind of edge how long it is in each of these orders.
+    """Return all orders of `size` neighbors, and the span of each kind of edge in each of these orders.
 
-    The members of an edge are given by their bits. What goes on above and below is as long in each order, and left out.
+    The members of an edge are a bit set. An edge that continues above and below has the same span in each order and is
+    left out.
     """
     orders = list(permutations(range(size)))
     spans: dict[_Kind, list[int]] = {}
@@ -160,7 +162,7 @@ def _permutations(size: int) -> tuple[list[tuple[int, ...]], Mapping[_Kind, list
 
 
 def _shortest(size: int, edges: Iterable[tuple[_Kind, int]]) -> tuple[int, ...]:
-    """The first of the orders of a window in which the edges, so many of each kind, have the least total span."""
+    """Return the first order of a window with the least total span of the edges, given with their numbers."""
     orders, spans = _permutations(size)
     rows = [
         spans[kind] if number == 1 else [number * span for span in spans[kind]]
@@ -174,9 +176,9 @@ def _shortest(size: int, edges: Iterable[tuple[_Kind, int]]) -> tuple[int, ...]:
 
 
 def _slide(order: list[int], graph: _Hypergraph) -> list[int]:
-    """Puts the vertices of each window in their best order, window by window, until none changes.
+    """Put the vertices of each window in their best order, window by window, until none changes.
 
-    A window stays as it is, and is not looked at, as long as nothing in those changes that overlap with it.
+    A window is skipped until a window that overlaps with it changes.
     """
     order = list(order)
     place = _places(order)
@@ -190,7 +192,7 @@ def _slide(order: list[int], graph: _Hypergraph) -> list[int]:
             pending[start] = False
             window = order[start : start + _WINDOW]
             members = _members(window, graph.edges_of)
-            # What matters of an edge: its members in the window, and whether it goes on above and below.
+            # The kind of an edge: its members in the window, and whether it continues above and below.
             end = start + len(window)
             alike: dict[_Kind, int] = {}
             for edge, inside in members.items():
@@ -213,7 +215,7 @@ def _slide(order: list[int], graph: _Hypergraph) -> list[int]:
 
 
 def _members(window: Sequence[int], edges_of: Sequence[Sequence[int]]) -> dict[int, int]:
-    """The edges of the vertices in a window, each with those by their bits."""
+    """Return the edges of the vertices in a window, each with its members as a bit set."""
     members: dict[int, int] = {}
     for index, vertex in enumerate(window):
         for edge in edges_of[vertex]:

@@ -1,8 +1,8 @@
-"""A large set of states, seen from a few elements.
+"""Large sets of states, restricted to few elements.
 
-What an event is allowed to do depends on what it touches. To ask a set of all states about that means to walk through,
-and often to make anew, the part of its diagram that lies above: with n events over n components that takes n² steps. So
-what is above and what is below is left out; both are found once for all events.
+The permission of an event depends on the elements that it touches. An operation on the set of all states walks through,
+and often rebuilds, the part of its diagram that lies above these elements: with n events over n components, that takes
+n² steps. A projection leaves out the parts above and below. Both are computed once for all events.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Domain, Element, Encoding
 
-#: Up to how many different subdiagrams are looked at below one level: with more, little is left out.
+#: Maximum number of different subdiagrams examined below one level. With more, little can be left out.
 _WIDEST = 64
 
 
 class Projection:
-    """A set of states and what is seen of it. Inputs are no part of a state: they don't matter.
+    """A set of states and its projections. Inputs are no part of a state and have no effect here.
 
-    Levels are numbered here from 0 at the top, those of the state alone.
+    Levels are numbered from 0 at the top and count only those of the state.
     """
 
     def __init__(self, states: Diagram, encoding: Encoding) -> None:
@@ -36,17 +36,17 @@ class Projection:
         self._levels = sorted(level for domain in self._domains for level in domain.levels)
 
     def onto(self, elements: Iterable[Element]) -> Diagram:
-        """A superset of the states: all elements whose levels lie between those of the given ones have the same values.
+        """Return a superset of the states that agrees with them between the levels of the elements.
 
-        The levels above the first of them are quantified, and those below the last.
+        The levels above the first of these elements and those below the last are quantified.
         """
         first, last = self._range(elements)
         return self._below[first].exists(self._cubes[last]) if first < len(self._below) else self.states
 
     def factor(self, elements: Iterable[Element]) -> tuple[Diagram, Sequence[Domain]]:
-        """Some domains that hold the elements, and the states as far as these are concerned.
+        """Return a small list of domains that contains the elements, and the states restricted to it.
 
-        All states are the combinations of these with what the other domains may have. As few domains as are found.
+        The set of states is the product of this restriction and a set over the other domains.
         """
         first, last = self._range(elements)
         first = self._cut_levels[bisect_right(self._cut_levels, first) - 1]
@@ -56,7 +56,7 @@ class Projection:
         return self._below[first].exists(self._cubes[last]), domains
 
     def _range(self, elements: Iterable[Element]) -> tuple[int, int]:
-        """The first level of the elements and the one after their last."""
+        """Return the first level of the elements and the level after their last."""
         ranges = [self._ranges[element] for element in elements if element in self._ranges]
         return min((first for first, _ in ranges), default=0), max((last for _, last in ranges), default=0)
 
@@ -71,7 +71,7 @@ class Projection:
 
     @cached_property
     def _starts(self) -> list[int]:
-        """The first level of each domain, in ascending order: of one without levels that of the one before."""
+        """First level of each domain, ascending; a domain without levels has that of the one before."""
         starts = [0]
         for domain in self._domains:
             starts.append(self._ranges.get(domain.element, (starts[-1],))[0])
@@ -79,7 +79,7 @@ class Projection:
 
     @cached_property
     def _frontiers(self) -> list[tuple[Diagram, ...]]:
-        """The subdiagrams of the states that begin at each level or below, down to a level where they are too many."""
+        """Subdiagrams of the states at each level or below, down to the level with too many of them."""
         frontiers = []
         frontier: tuple[Diagram, ...] = (self.states,)
         for level in self._levels:
@@ -92,19 +92,19 @@ class Projection:
 
     @cached_property
     def _below(self) -> list[Diagram]:
-        """For each of these levels the states with all levels above it quantified."""
+        """For each of these levels, the states with all levels above it quantified."""
         return list(map(self._encoding.diagrams.any_of, self._frontiers)) or [self.states]
 
     @cached_property
     def _cut_levels(self) -> list[int]:
-        """The levels at which the states are a product of a set above and one below, no domain having bits in both."""
+        """Levels at which the states are a product of a set above and one below, with no domain in both."""
         torn = {level for first, last in self._ranges.values() for level in range(first + 1, last)}
         alone = (level for level, frontier in enumerate(self._frontiers) if len(frontier) == 1)
         return [level for level in alone if level not in torn] or [0]
 
     @cached_property
     def _cubes(self) -> list[Diagram]:
-        """For each level all variables from there on; at the end none."""
+        """For each level, all variables from there on; at the end, none."""
         cubes = [self._encoding.diagrams.true]
         for level in reversed(self._levels):
             cubes.append(self._encoding.diagrams.variable(level) & cubes[-1])

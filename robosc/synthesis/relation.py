@@ -1,4 +1,4 @@
-"""Transition relations: one for each event, over no more than the event touches."""
+"""Transition relations of the events, each over only the elements that the event touches."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Step:
-    """All that an event can do under some condition, its inputs quantified: each value of theirs may come.
+    """All moves of an event under a condition. Its inputs are quantified: each of their values may occur.
 
-    `relation` speaks of present and next values. `present` and `following` are the variables of what it changes, and
-    `same` says that these are equal: renaming by a conjunction, unlike by substitution, leaves alone what is below.
-    `changed` are the elements that it changes; `touched`, those and what the plants read, are told only where some
-    integer is wide.
+    `relation` is over present and next values. `present` and `following` are the variables of the changed elements.
+    `same` states that these are equal: renaming by conjunction, unlike substitution, does not touch the diagram below.
+    `changed` are the changed elements. `touched` are these and the elements that the plants read; it is only filled in
+    if some integer is wide.
     """
 
     level: int
@@ -40,16 +40,16 @@ class Step:
     touched: tuple[Element, ...]
 
     def image(self, states: Diagram) -> Diagram:
-        """The states after the event in one of `states`."""
+        """Return the states after the event in one of `states`."""
         apart = self.apart
         moved = and_exists(states, self.relation if apart is None else apart[0], self.present)
-        # Most often there are none.
+        # Most images are empty.
         if not moved.satisfiable():
             return moved
         return and_exists(moved, self.same, self.following) if apart is None else moved & apart[1]
 
     def preimage(self, states: Diagram) -> Diagram:
-        """The states in which the event can lead to one of `states`."""
+        """Return the states in which the event can lead to one of `states`."""
         apart = self.apart
         moved = and_exists(states, self.same if apart is None else apart[1], self.present)
         if not moved.satisfiable():
@@ -58,9 +58,9 @@ class Step:
 
     @cached_property
     def apart(self) -> tuple[Diagram, Diagram] | None:
-        """Where it can happen and where it leads, as sets of states; None where it leads elsewhere from elsewhere.
+        """Source and target as sets of states, or None if the target depends on the source.
 
-        Most events are so. To follow them takes no next values, and once: twice in a row, it leads nowhere else.
+        Most events are `apart`. Following such an event takes no next values, and a second time adds no state.
         """
         source, target = self.relation.exists(self.following), self.relation.exists(self.present)
         if source & target != self.relation:
@@ -69,10 +69,10 @@ class Step:
 
 
 def joined(first: Step, second: Step) -> Step:
-    """A step that does what one of the two does, at the level of the first; neither touches a wide integer."""
+    """Return a step that does one of the two, at the level of the first; neither touches a wide integer."""
 
     def framed(step: Step) -> Diagram:
-        # From the bottom: each conjunction makes the diagram above it anew.
+        # From the bottom: each conjunction rebuilds the diagram above it.
         kept = sorted(set(changed) - set(step.changed), key=lambda element: domains[element].levels, reverse=True)
         return all_of(map(encoding.keeps, kept)) & step.relation
 
@@ -90,7 +90,7 @@ def joined(first: Step, second: Step) -> Step:
 
 
 class EventRelation:
-    """One event: where the plants enable it, what the requirements ask, what it changes."""
+    """Relation of one event: the states in which plants enable it and requirements allow it, and its changes."""
 
     def __init__(
         self,
@@ -99,9 +99,10 @@ class EventRelation:
         requirements: Sequence[sct.Requirement],
         encoding: Encoding,
     ) -> None:
-        """`edges` are those with the event, plant by plant, `requirements` those on it.
+        """Compute the conditions of the event from its edges, grouped by plant, and its requirements.
 
-        `enabled_by` says of each of these plants where it enables the event, `asked` where each requirement lets it.
+        `enabled_by` maps each of these plants to the states in which it enables the event. `asked` maps each
+        requirement to the states in which it allows the event.
         """
         self.event = event
         self.requirements = requirements
@@ -115,7 +116,7 @@ class EventRelation:
         self.requirement = encoding.diagrams.all_of(self.asked.values())
 
     def _permitted(self, requirement: sct.Requirement) -> Diagram:
-        """The states in which a requirement lets the event happen, with all data with which the plants enable it."""
+        """Return the states in which a requirement allows the event with all inputs for which the plants enable it."""
         permits = self._encoding.permits(requirement)
         if not any(isinstance(element, sct.Input) for element in referenced(requirement.condition)):
             return permits
@@ -132,7 +133,7 @@ class EventRelation:
         return ~(happens & ~permits).exists(self._inputs)
 
     def with_inputs(self) -> Diagram:
-        """The relation of present, inputs and next values, without the requirements."""
+        """Return the relation over present values, inputs and next values, without the requirements."""
         return self._encoding.diagrams.all_of(
             [
                 *(self._encoding.in_domain(parameter) for parameter in self.event.inputs),
@@ -141,7 +142,7 @@ class EventRelation:
         )
 
     def between(self, before: Mapping[Element, int], after: Mapping[Element, int]) -> Diagram:
-        """The values of the event's inputs with which it leads from one state to another, given by their codes."""
+        """Return the input values with which the event leads from one state to another, both given by codes."""
         encoding = self._encoding
         result = self.with_inputs() & encoding.state(before)
         for element in self.changed:
@@ -151,12 +152,15 @@ class EventRelation:
         return result.exists(encoding.diagrams.cube(levels))
 
     def may_lead_to(self, codes: Mapping[Element, int]) -> bool:
-        """False only where the event leads to the state with these codes from nowhere: a quick look at its plants."""
+        """Return whether the event can lead to a state with these codes. Checks only the plants' locations.
+
+        The answer may be True for a state that the event does not lead to; False is exact.
+        """
         return all(codes[plant] in targets for plant, targets in self._targets)
 
     @cached_property
     def _targets(self) -> list[tuple[sct.Plant, frozenset[int]]]:
-        """For each plant that takes part, the codes of the locations to which the event leads it."""
+        """For each plant that takes part, the codes of the target locations of the event."""
         return [
             (plant, frozenset(self._encoding.location_code(edge.target) for edge in edges))
             for plant, edges in zip(self.enabled_by, self._edges, strict=True)
@@ -164,17 +168,17 @@ class EventRelation:
 
     @cached_property
     def plant_step(self) -> Step | None:
-        """The step of the event where the plants enable it; None where it changes nothing at all."""
+        """Step of the event in the states in which the plants enable it; None if it changes nothing."""
         return self.step_where(self._encoding.diagrams.true)
 
     @cached_property
     def step(self) -> Step | None:
-        """The step of the event where the requirements allow it, too."""
+        """Step of the event in the states in which the requirements allow it, too."""
         return self.plant_step if self.requirement.valid() else self.step_where(self.requirement)
 
     @cached_property
     def touched(self) -> frozenset[Element]:
-        """The elements that the plants read or change when it happens, or read to decide whether it can."""
+        """Elements that the plants read or change during the event, or read to enable it."""
         touched = {*self.enabled_by, *self.changed}
         for edge in (edge for edges in self._edges for edge in edges):
             touched.update(referenced(edge.guard))
@@ -184,11 +188,11 @@ class EventRelation:
 
     @cached_property
     def concerned(self) -> frozenset[Element]:
-        """The same, and what its requirements read."""
+        """The elements of `touched` and those that the requirements read."""
         return self.touched.union(*(referenced(requirement.condition) for requirement in self.requirements))
 
     def step_where(self, condition: Diagram) -> Step | None:
-        """The step of the event where the plants enable it and the condition holds; None where it changes nothing."""
+        """Return the step of the event under a condition; None if the event changes nothing."""
         if not self.changed:
             return None
         domains = self._encoding.layout.domains
@@ -211,14 +215,14 @@ class EventRelation:
 
     @property
     def _inputs(self) -> Diagram:
-        """The variables of its inputs."""
+        """Variables of the inputs of the event."""
         domains = self._encoding.layout.domains
         return self._encoding.diagrams.cube(
             level for parameter in self.event.inputs for level in domains[parameter].levels
         )
 
     def taken(self, edges: Sequence[sct.Edge]) -> Diagram:
-        """Where one of these edges of a plant can be taken with some data."""
+        """Return the states in which one of these edges of a plant can be taken with some inputs."""
         encoding = self._encoding
         enabled = encoding.diagrams.any_of(encoding.source(edge) & encoding.holds(edge.guard) for edge in edges)
         if not any(edge.guard is not None for edge in edges):
@@ -226,7 +230,7 @@ class EventRelation:
         return and_exists(enabled, encoding.whole(self.event.inputs), self._inputs)
 
     def overlapping(self) -> list[sct.Edge]:
-        """The edges that can be taken where one before them in the text can, in the same plant."""
+        """Return the edges that overlap with an earlier edge of the same plant."""
         found = []
         for edges in self._edges:
             if len(edges) > len({edge.eContainer() for edge in edges}):
@@ -240,7 +244,7 @@ class EventRelation:
         return found
 
     def _moves(self, edges: Sequence[sct.Edge]) -> Diagram:
-        """One plant's part in the event."""
+        """Return the part of one plant in the relation."""
         encoding = self._encoding
         result = encoding.diagrams.false
         changed = _changed(edges)
@@ -260,7 +264,7 @@ class EventRelation:
 
 
 def event_relations(model: sct.SupervisoryControlModel, encoding: Encoding) -> list[EventRelation]:
-    """The relations of all events, in the order of the plants."""
+    """Return the relations of all events, in the order of the plants."""
     edges, requirements = edges_by_event(model.plants), requirements_by_event(model.requirements)
     return [
         EventRelation(event, list(edges.get(event, {}).values()), requirements.get(event, []), encoding)
@@ -272,10 +276,10 @@ def event_relations(model: sct.SupervisoryControlModel, encoding: Encoding) -> l
 def violations(
     model: sct.SupervisoryControlModel, relations: Iterable[EventRelation], encoding: Encoding
 ) -> dict[sct.StatedRequirement, Diagram]:
-    """The states that violate a requirement whatever a supervisor does.
+    """Return, for each requirement, the states that violate it independently of the supervisor.
 
-    They are those where an invariant does not hold, and those where an uncontrollable event can happen that is
-    forbidden.
+    These are the states in which an invariant does not hold, and those in which a forbidden uncontrollable event can
+    happen.
     """
     found: dict[sct.StatedRequirement, Diagram] = {
         invariant: ~encoding.holds(invariant.condition) for invariant in model.invariants
@@ -287,7 +291,7 @@ def violations(
 
 
 def requirements_by_event(requirements: Iterable[sct.Requirement]) -> dict[sct.Event, list[sct.Requirement]]:
-    """The requirements on each event that has any."""
+    """Return the requirements of each event that has any."""
     found: dict[sct.Event, list[sct.Requirement]] = {}
     for requirement in requirements:
         found.setdefault(requirement.event, []).append(requirement)
@@ -295,22 +299,22 @@ def requirements_by_event(requirements: Iterable[sct.Requirement]) -> dict[sct.E
 
 
 def plant_moves(relations: Iterable[EventRelation]) -> list[Move]:
-    """The events that change something, with what they do where the plants enable them."""
+    """Return the events that change something, with their steps under the plants."""
     return [(relation, relation.plant_step) for relation in relations if relation.plant_step is not None]
 
 
 def required_moves(relations: Iterable[EventRelation]) -> list[Move]:
-    """The events that change something, with what they do where the requirements allow them too."""
+    """Return the events that change something, with their steps under plants and requirements."""
     return [(relation, relation.step) for relation in relations if relation.step is not None]
 
 
 def steps(moves: Iterable[Move]) -> list[Step]:
-    """The steps of the events."""
+    """Return the steps of the events."""
     return [step for _, step in moves]
 
 
 def _changed(edges: Sequence[sct.Edge]) -> list[Element]:
-    """The plant, where some edge leaves its location, and the variables that some edge updates."""
+    """Return the plant if some edge leaves its location, and the variables that some edge updates."""
     changed: dict[Element, None] = {}
     for edge in edges:
         if edge.target is not edge.eContainer():

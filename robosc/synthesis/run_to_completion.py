@@ -1,4 +1,4 @@
-"""Run to completion: how many internal events may happen in a row until a state is quiescent, if one ever is."""
+"""Run to completion: the maximum number of consecutive internal events before a state is quiescent."""
 
 from __future__ import annotations
 
@@ -17,15 +17,16 @@ if TYPE_CHECKING:
     from robosc.synthesis.encoding import Element
     from robosc.synthesis.relation import EventRelation, Step
 
-#: What looking at a step costs beside the nodes of the states.
+#: Constant cost of examining a step, in nodes, in addition to the nodes of the states.
 _OVERHEAD = 100
 
 
 @dataclass(frozen=True)
 class InternalEvent:
-    """An internal event under its supervisor.
+    """Internal event under its supervisor.
 
-    `allowed` is where it can happen, `step` what it does there (None: nothing), `touched` all that it reads or changes.
+    `allowed` are the states in which it can happen. `step` is its effect there; None for no effect. `touched` are all
+    elements that it reads or changes.
     """
 
     relation: EventRelation
@@ -34,14 +35,14 @@ class InternalEvent:
     touched: frozenset[Element]
 
     def before(self, states: Diagram) -> Diagram:
-        """Those states in which the event can happen so that one of them follows."""
+        """Return the states among `states` in which the event can happen and lead to one of `states`."""
         return states & (self.allowed if self.step is None else self.step.preimage(states))
 
 
 def internal_events(
     events: Iterable[tuple[EventRelation, Diagram, Step | None]], guards: Iterable[sct.EventGuard]
 ) -> list[InternalEvent]:
-    """The internal ones of events, each given with where it can happen under its guard and what it does there."""
+    """Return the internal events; each of `events` comes with its allowed states and its step."""
     guard_of = {guard.event: guard for guard in guards}
     found = []
     for relation, allowed, step in events:
@@ -55,10 +56,10 @@ def internal_events(
 
 @dataclass(frozen=True)
 class Completion:
-    """Whether internal events come to an end.
+    """Bound on sequences of internal events.
 
-    `bound`: so many can happen in a row at most; None where there is no bound, or none was found with the effort
-    allowed. `divergent` are the states from which they can happen for ever.
+    `bound` is the maximum number of consecutive internal events. It is None if there is no bound, or if the effort
+    limit is reached first. `divergent` are the states from which internal events can happen for ever.
     """
 
     bound: int | None
@@ -66,10 +67,10 @@ class Completion:
 
 
 def completion(diagrams: Diagrams, events: Sequence[InternalEvent], states: Diagram, effort: int) -> Completion:
-    """What can happen in a row from the states, which hold all that the events lead to.
+    """Bound the sequences of internal events from `states`, a set that the events do not leave.
 
-    Events that have nothing to do with each other don't delay each other: the longest run of all is no longer than
-    those of the groups together, and it is endless where one of these is. `effort` bounds the work, in nodes looked at.
+    Independent events do not delay each other. The longest sequence is therefore no longer than those of the groups
+    together, and it is endless if that of a group is. `effort` is the maximum number of visited nodes.
     """
     bound, divergent = 0, diagrams.false
     for group in independent_groups(events):
@@ -93,9 +94,10 @@ def completion(diagrams: Diagrams, events: Sequence[InternalEvent], states: Diag
 
 
 def _longest_anywhere(diagrams: Diagrams, group: Sequence[InternalEvent]) -> int | None:
-    """How many can happen in a row from any state, reachable or not, unless it is more than there are events.
+    """Return the maximum number of consecutive events from any state, reachable or not.
 
-    That is mostly so, and seen without the large diagram of the reachable states.
+    Returns None if it exceeds the number of events. Mostly it does not, and the check does not need the large diagram
+    of the reachable states.
     """
     for length, longer in enumerate(islice(runs(diagrams, group, diagrams.true), len(group) + 1)):
         if not longer.satisfiable():
@@ -104,7 +106,7 @@ def _longest_anywhere(diagrams: Diagrams, group: Sequence[InternalEvent]) -> int
 
 
 def runs(diagrams: Diagrams, events: Sequence[InternalEvent], states: Diagram) -> Iterator[Diagram]:
-    """The states from which one event can happen, two in a row, three and so on: each set holds the next one."""
+    """Yield the states in which one event can happen, two in a row, three and so on; each set holds the next."""
     while True:
         before = diagrams.false
         for event in events:
@@ -115,7 +117,7 @@ def runs(diagrams: Diagrams, events: Sequence[InternalEvent], states: Diagram) -
 
 
 def independent_groups(events: Sequence[InternalEvent]) -> list[list[InternalEvent]]:
-    """The events so that those of one group change nothing that those of another touch."""
+    """Group the events so that no event changes an element that an event of another group touches."""
     changed = {element for event in events for element in event.relation.changed}
     known: dict[Element, Element] = {}
 

@@ -1,4 +1,4 @@
-"""Requirements made shorter by what is known of the states in which they are asked."""
+"""Simplification of requirements under the states in which they matter."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
 
 def simplified(expression: ex.Expression, states: Diagram, encoding: Encoding) -> ex.Expression:
-    """A copy of a boolean expression that has the same value in all of `states`, without the parts that say nothing.
+    """Return a copy of a boolean expression without its redundant parts, equal to it in all of `states`.
 
-    Each operand is simplified in the states in which it matters beside the other: of two that say the same the first
-    stays. Where nothing can be left out the copy is the expression as it stands.
+    Each operand is simplified in the states in which the other operand does not decide the result. Of two equivalent
+    operands, the first stays. If nothing is redundant, the copy is identical to the expression.
     """
 
     def step(part: Part) -> Generator[Part, ex.Expression, ex.Expression]:
@@ -35,12 +35,13 @@ def simplified(expression: ex.Expression, states: Diagram, encoding: Encoding) -
             case ex.Negation():
                 return _negated((yield whole.operand, where))
             case ex.Conjunction() | ex.Disjunction() | ex.Implication():
-                # In these states the left operand does not decide, and then the right one does not.
+                # Simplify the right operand where the left one does not decide, then the left one where the right does
+                # not.
                 decides = encoding.holds(whole.left)
                 right = yield whole.right, where & (~decides if isinstance(whole, ex.Disjunction) else decides)
                 decides = encoding.holds(right)
                 left = yield whole.left, where & (decides if isinstance(whole, ex.Conjunction) else ~decides)
-                # The whole is neither true nor false everywhere: at most one operand is constant, and it never decides.
+                # The whole is neither true nor false everywhere. At most one operand is constant, and it never decides.
                 if isinstance(left, ex.BooleanLiteral):
                     return right
                 if isinstance(right, ex.BooleanLiteral):

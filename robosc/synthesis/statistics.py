@@ -13,33 +13,34 @@ if TYPE_CHECKING:
 
 
 class Phase(StrEnum):
-    """The phases of synthesis, in this order."""
+    """Phases of synthesis, in this order."""
 
-    #: Puts the variables in order.
+    #: Computes the variable order.
     ORDER = "order"
-    #: Makes decision diagrams of the plants, the requirements and the relation of each event.
+    #: Builds the decision diagrams of the plants, the requirements and the relation of each event.
     ENCODE = "encode"
-    #: Finds the states that can be reached without requirements, and the controlled ones.
+    #: Computes the states that are reachable without requirements, and the controlled ones.
     FIXPOINT = "fixpoint"
-    #: Says in expressions when each event is allowed; or why there is no supervisor.
+    #: Writes the guards as expressions, or explains why there is no supervisor.
     GUARDS = "guards"
-    #: Looks for what is allowed, but hardly meant.
+    #: Searches for behavior that is allowed but probably not intended.
     OBSERVE = "observe"
 
 
 @dataclass
 class Statistics:
-    """The costs of one synthesis, to be handed to it; another thread may read them at any time.
+    """Costs of one synthesis; another thread may read them at any time.
 
-    statistics = Statistics()
-    synthesize(model, statistics=statistics)
-    print(statistics.seconds[Phase.FIXPOINT], statistics.peak_nodes)
+        statistics = Statistics()
+        synthesize(model, statistics=statistics)
+        print(statistics.seconds[Phase.FIXPOINT], statistics.peak_nodes)
 
-    `phase` is what it is at. `seconds` and `processor_seconds` are the costs of each phase that has ended: wall-clock
-    time, and the processor time of the whole process. `rounds` counts the rounds of the fixpoint, `operations` the
-    images and preimages of an event, `states` those that the last ended search of a round has found. `peak_nodes` is
-    the most nodes that were there at once, garbage included. Where more memory is needed synthesis begins again
-    (`attempts`): the seconds add up, all else begins anew. But for the seconds all of it is the same on every run.
+    `phase` is the current phase. `seconds` and `processor_seconds` are the costs of each phase that has ended:
+    wall-clock time, and the processor time of the whole process. `rounds` counts the rounds of the fixpoint,
+    `operations` the images and preimages of an event. `states` is the number of states at the end of the last search of
+    a round. `peak_nodes` is the maximum number of nodes at a time, garbage included. If more memory is needed,
+    synthesis restarts (`attempts`): the seconds add up, everything else starts again at 0. Every run gives the same
+    values, except for the seconds.
     """
 
     phase: Phase | None = None
@@ -64,6 +65,6 @@ class Statistics:
             self.processor_seconds[phase] = self.processor_seconds.get(phase, 0.0) + processor
 
     def begin_again(self) -> None:
-        """A new attempt."""
+        """Start a new attempt."""
         self.attempts += 1
         self.rounds = self.operations = self.states = self.peak_nodes = 0

@@ -1,9 +1,9 @@
-"""Says why an event can't happen, or never, or why nothing can, in the words of its model, and what would help.
+"""Explanations why an event is impossible now or ever, or why a supervisor is empty, with possible repairs.
 
     answer = explored(model, lambda system: possibility(system, event_named(model, "move")))
 
-`explaining` answers, `obstacles` finds what stands in the way, `names` finds what a user names. Answers (`answers`) are
-rendered `as_text` for a person and `as_json` for programs.
+`explaining` computes the answers, `obstacles` finds the obstacles to an event, and `names` resolves the names that a
+user writes. Answers (`answers`) are rendered `as_text` for users and `as_json` for programs.
 """
 
 from robosc.analysis.explain.answers import Emptiness, Explanation, Possibility

@@ -1,4 +1,4 @@
-"""What can be said about an event in a state, about one that never happens, and about a robot without a supervisor."""
+"""Answers about an event in a state, about an impossible event, and about an empty supervisor."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ if TYPE_CHECKING:
 
 
 class Reach(StrEnum):
-    """How a robot gets into a state."""
+    """Reachability of a state by a robot."""
 
     SUPERVISED = "supervised"
-    #: Its plants do, but the supervisor keeps them from it.
+    #: The plants reach the state, but the supervisor prevents it.
     UNSUPERVISED = "unsupervised"
     NEVER = "never"
 
 
 @dataclass(frozen=True)
 class Note:
-    """A sentence, without its full stop, about an element of the model; `details` are further ones."""
+    """A sentence, without its full stop, about an element of the model; `details` are further sentences."""
 
     element: Any
     text: str
@@ -38,7 +38,7 @@ class Note:
 
 @dataclass(frozen=True)
 class Situation:
-    """A state, and a shortest trace to it from the initial one, under the supervisor if that is possible."""
+    """A state, and a shortest trace to it from the initial one, under the supervisor if possible."""
 
     codes: Mapping[Element, int]
     state: Mapping[str, Value]
@@ -48,15 +48,16 @@ class Situation:
 
 @dataclass(frozen=True)
 class Explanation:
-    """Whether an event can happen in a situation, and why not.
+    """Answer whether an event can happen in a situation, with the reasons if it cannot.
 
-    `by` is the first of what forbids it: the plants, requirements, synthesis; None where nothing does, or, in a state
-    that the supervisor never lets the robot get to, where neither plants nor requirements do. `plants` and
-    `requirements` say all that forbids it, `counterexample` what would follow if synthesis did not; there `blamed` are
-    the requirements that forbid something from the end of that counterexample on. `changes` are the transitions of
-    those events that can happen now and after which it can. `way` is a shortest trace from here, under the supervisor,
-    to where the event can happen: empty if that is here, None if there is none. `refusal` is about the
-    first event on the trace that the supervisor forbids, where it never lets the robot get to this state.
+    `by` is the first cause that forbids it: plants, requirements or synthesis. It is None if nothing forbids the event.
+    It is also None if the supervisor never lets the robot reach the state and neither plants nor requirements forbid
+    the event. `plants` and `requirements` are all obstacles. `counterexample` is the consequence if synthesis did not
+    forbid the event; `blamed` are then the requirements that forbid something after the end of that counterexample.
+    `changes` are transitions of the events that can happen now and after which the event can happen. `way` is a
+    shortest trace from here, under the supervisor, to a state that allows the event: empty if this state allows it,
+    None if there is none. `refusal` explains the first event of the trace that the supervisor forbids, if it never lets
+    the robot reach this state.
     """
 
     event: sct.Event
@@ -77,15 +78,15 @@ class Explanation:
 
     @property
     def needless(self) -> bool:
-        """Whether the model's supervisor forbids it, and the one that synthesis finds would not."""
+        """Whether the model's supervisor forbids the event, but a newly synthesized one would not."""
         return self.by is Blocked.SYNTHESIS and self.counterexample is None
 
 
 @dataclass(frozen=True)
 class Loosening:
-    """A requirement of the text, as the requirements of the model that it became, whose absence would help.
+    """Requirement of the text, as requirements of the model, whose removal would help.
 
-    `states` are then left under the supervisor.
+    `states` is the number of states under the supervisor without it.
     """
 
     requirements: tuple[sct.StatedRequirement, ...]
@@ -94,11 +95,11 @@ class Loosening:
 
 @dataclass(frozen=True)
 class Emptiness:
-    """Why a supervisor is empty.
+    """Explanation of an empty supervisor.
 
-    `stuck` are the plants that can't be in a marked state any more where the reason's trace ends, `blamed` the
-    requirements that forbid something from there on. `loosenings`: the requirements each of which, left out alone,
-    would give a supervisor; None: there would be none even without any requirement.
+    `stuck` are the plants that can no longer reach a marked state at the end of the reason's trace. `blamed` are the
+    requirements that forbid something after it. `loosenings` are the requirements each of which, left out alone, would
+    give a supervisor. None: there would be none even without any requirement.
     """
 
     reason: Reason
@@ -109,13 +110,14 @@ class Emptiness:
 
 @dataclass(frozen=True)
 class Possibility:
-    """Whether an event can ever happen, explained in the nearest state where most of what it takes is there.
+    """Answer whether an event can ever happen, explained in the nearest state with the fewest obstacles.
 
-    `nearest` is a state where it is allowed; else where only synthesis forbids it; else only requirements; else one
-    that the supervisor never lets the robot get to, where the plants allow it. None where they never do: `plants` says
-    why. `beyond` is, where its requirements forbid it, the nearest state in which they would not; None where there is
-    none, whatever the supervisor does; then `conflict` are the requirements on it that allow it nowhere, alone or
-    together. `loosenings` are requirements without which it could happen, as for `Emptiness`.
+    `nearest` is a state that allows it. If there is none, only synthesis forbids it there; if that is impossible, only
+    requirements; otherwise, it is a state that the plants allow but the supervisor never lets the robot reach. It is
+    None if the plants never allow the event; `plants` then has the reasons. If its requirements forbid the event,
+    `beyond` is the nearest state in which they would not. `beyond` is None if there is none independently of the
+    supervisor; `conflict` are then the requirements on the event that allow it nowhere, alone or together. `loosenings`
+    are requirements without which it could happen, as in `Emptiness`.
     """
 
     event: sct.Event

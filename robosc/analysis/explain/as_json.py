@@ -1,4 +1,4 @@
-"""Answers as JSON data; `at` says where an element stands: an object with `file`, `line` and `column`."""
+"""Answers as JSON data; `at` returns the place of an element: an object with `file`, `line` and `column`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def data_of(told: Answer | None, at: At) -> dict[str, Any]:
-    """The data of an answer; None answers why a supervisor is empty that is not."""
+    """Return the data of an answer; None is the answer for a supervisor that is not empty."""
     match told:
         case Explanation():
             return _explanation(told, at)
@@ -31,7 +31,7 @@ def data_of(told: Answer | None, at: At) -> dict[str, Any]:
 
 
 def _explanation(told: Explanation, at: At) -> dict[str, Any]:
-    """An event in a state."""
+    """Return the data about an event in a state."""
     counterexample = told.counterexample
     return {
         "event": event_name(told.event),
@@ -57,7 +57,7 @@ def _explanation(told: Explanation, at: At) -> dict[str, Any]:
 
 
 def _possibility(told: Possibility, at: At) -> dict[str, Any]:
-    """An event that may never happen."""
+    """Return the data about an event that may never happen."""
     return {
         "event": event_name(told.event),
         "possible": told.possible,
@@ -70,7 +70,7 @@ def _possibility(told: Possibility, at: At) -> dict[str, Any]:
 
 
 def _emptiness(told: Emptiness, at: At) -> dict[str, Any]:
-    """A robot without a supervisor."""
+    """Return the data about an empty supervisor."""
     return {
         "empty": True,
         "message": blocking(told.reason),
@@ -87,7 +87,7 @@ def _notes(notes: Iterable[Note], at: At) -> list[dict[str, Any]]:
 
 
 def _loosenings(loosenings: tuple[Loosening, ...] | None, at: At) -> list[dict[str, Any]] | None:
-    """None: not even all requirements left out would help."""
+    """Return the data of requirements to loosen; None means that no removal of requirements would help."""
     if loosenings is None:
         return None
     return [

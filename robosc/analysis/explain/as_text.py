@@ -1,4 +1,4 @@
-"""Answers as text for a person; `at` says where an element stands: `file:line:column`."""
+"""Answers as text for users; `at` returns the place of an element: `file:line:column`."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ _BY = {
     Blocked.REQUIREMENT: "its requirements forbid it",
     Blocked.SYNTHESIS: "no requirement forbids it, but synthesis does, because of what could follow",
 }
-#: The plants of what components send, call and start.
+#: Plants of the communications that components send, call and start.
 _COMMUNICATIONS = {sct.PlantKind.message, sct.PlantKind.service, sct.PlantKind.action}
-#: Of a supervisor of another tool.
+#: For a supervisor from another tool.
 NEEDLESS = "only this supervisor forbids it, neither the robot nor a requirement, nor would synthesis"
 _ELSE = "Without requirements it would, after"
 
@@ -40,7 +40,7 @@ def _because(told: Explanation) -> str:
 
 
 class Renderer:
-    """Renders answers about one model as text."""
+    """Text renderer for answers about one model."""
 
     def __init__(self, model: sct.SupervisoryControlModel, at: At) -> None:
         self._model = model
@@ -48,7 +48,7 @@ class Renderer:
         self._events = {event_name(event): event for event in Roles(model).events}
 
     def answer(self, told: Answer | None) -> str:
-        """The text of an answer, without a line end; None answers why a supervisor is empty that is not."""
+        """Return the text of an answer, without a line end; None is the answer for a nonempty supervisor."""
         match told:
             case Explanation():
                 lines = self._explained(told)
@@ -90,7 +90,7 @@ class Renderer:
         yield from self._state(situation)
 
     def _state(self, situation: Situation) -> Iterator[str]:
-        """The state: first components and requirement automata, then services and actions; idle ones in one line."""
+        """Yield the state: components and requirement automata first, idle services and actions last in one line."""
         others, idle = [], []
         for plant in self._model.plants:
             if plant.kind == sct.PlantKind.data:
@@ -204,7 +204,7 @@ class Renderer:
             yield from self._section("What requirements forbid from there on:", self._notes(told.blamed))
         yield from self._loosened(told.loosenings)
 
-    # What they share
+    # Shared parts
 
     def _loosened(self, loosenings: tuple[Loosening, ...] | None) -> Iterator[str]:
         if loosenings is None:

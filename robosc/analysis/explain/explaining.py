@@ -1,7 +1,7 @@
-"""Answers to: why can an event not happen in a state, or never, why has the robot no supervisor, what would help?
+"""Answers to questions about events that cannot happen and about empty supervisors.
 
-The answer to each question is a function of the system that synthesis finds, or of that under the supervisor that the
-model has already; none of them changes the model.
+The answer to each question is a function of the system that synthesis computes, or of the system under the supervisor
+that the model already has. No function changes the model.
 """
 
 from __future__ import annotations
@@ -39,15 +39,15 @@ if TYPE_CHECKING:
 
     T = TypeVar("T")
 
-#: How many requirements are tried: each takes as long as a synthesis.
+#: Maximum number of requirements to try: each takes as long as a synthesis.
 _TRIED = 24
 
 
 def explored(model: sct.SupervisoryControlModel, look: Callable[[SynthesizedSystem], T], memory: int = MEMORY) -> T:
-    """What `look` sees in the system under the model's supervisor, or, where it has none, that of synthesis.
+    """Return the result of `look` for the system under the model's supervisor, or under a synthesized one.
 
-    It may run several times, with more memory each time. Raises MemoryError where the decision diagrams would take more
-    bytes than `memory`.
+    `look` may run several times, with more memory each time. Raises MemoryError if the decision diagrams take more than
+    `memory` bytes.
     """
     system = SynthesizedSystem if model.supervisor is None else ExplainedSystem
     return encoded(model, lambda encoding: look(system(model, encoding)), memory)
@@ -57,10 +57,10 @@ def explored(model: sct.SupervisoryControlModel, look: Callable[[SynthesizedSyst
 
 
 def explain(system: SynthesizedSystem, event: sct.Event, given: Codes) -> Explanation:
-    """Whether an event can happen in the nearest state that has these codes, and why not; the supervisor is not empty.
+    """Explain whether an event can happen in the nearest state with these codes; the supervisor is not empty.
 
-    Where the supervisor lets the robot get to no such state, it is the nearest that the plants get to; where they get
-    to none either, the initial one with these codes.
+    If the supervisor lets the robot reach no such state, the answer is about the nearest state that the plants reach.
+    If they reach none either, it is about the initial state with these codes.
     """
     encoding = system.encoding
     goal = encoding.diagrams.all_of(encoding.has_code(element, code) for element, code in given.items())
@@ -74,12 +74,12 @@ def explain(system: SynthesizedSystem, event: sct.Event, given: Codes) -> Explan
 
 
 def explain_after(system: SynthesizedSystem, event: sct.Event, way: Path) -> Explanation:
-    """Whether the event can happen after a way through controlled states."""
+    """Explain whether the event can happen after a path through controlled states."""
     return _explained(system, event, _situation(system, way.states[-1], Reach.SUPERVISED, system.trace(way)))
 
 
 def explain_beyond(system: SynthesizedSystem, event: sct.Event, way: Path) -> Explanation:
-    """Whether it could happen after a way of the plants that the supervisor does not let the robot go to its end."""
+    """Explain whether the event could happen after a path of the plants that leaves the controlled states."""
     refused = next(
         number
         for number, ((relation, _), state) in enumerate(zip(way.moves, way.states, strict=False))
@@ -123,7 +123,7 @@ def _explained(
 
 
 def _harmless(system: SynthesizedSystem, event: sct.Event, codes: Codes) -> bool:
-    """Whether synthesis has nothing against what an event leads to: then only another supervisor forbids it."""
+    """Return whether synthesis accepts the target of an event: then only another tool's supervisor forbids it."""
     step = system.relations[event].step
     rounds = system.found.rounds
     given_up = rounds[0] & ~rounds[-1]
@@ -146,7 +146,7 @@ def _way(system: SynthesizedSystem, start: Codes, allowed: Diagram) -> tuple[Tra
 
 
 def blamed(system: SynthesizedSystem, end: Codes) -> list[Note]:
-    """The invariants that a state violates, else the requirements that forbid something from it on."""
+    """Return the invariants that a state violates, else the requirements that forbid something after it."""
     violated = [
         Note(requirement, requirement.text or "a requirement", ("forbids this state",))
         for requirement in system.violated(end)
@@ -161,7 +161,7 @@ def blamed(system: SynthesizedSystem, end: Codes) -> list[Note]:
 
 
 def possibility(system: SynthesizedSystem, event: sct.Event) -> Possibility:
-    """Whether the event can ever happen under the supervisor, which is not empty, and if not, why."""
+    """Explain whether the event can ever happen under the supervisor, which is not empty."""
     relation, controlled = system.relations[event], system.controlled
     goals = (
         system.allowed(event),
@@ -188,13 +188,13 @@ def possibility(system: SynthesizedSystem, event: sct.Event) -> Possibility:
 
 
 def _conflict(system: SynthesizedSystem, relation: EventRelation) -> tuple[Note, ...]:
-    """The requirements that allow an event in no state in which the plants do, with or without a supervisor."""
+    """Return the requirements that disable an event in every state in which the plants enable it."""
     at_fault = forbidding(relation, system.uncontrolled & relation.enabled)
     return tuple(Note(requirement, requirement.text or "a requirement") for requirement in at_fault)
 
 
 def _beyond(system: SynthesizedSystem, event: sct.Event, wanted: Diagram) -> Explanation | None:
-    """The nearest state in which the plants allow the event and this holds, out of reach under the supervisor."""
+    """Return the nearest state that enables the event and satisfies `wanted`, unreachable under the supervisor."""
     goal = system.uncontrolled & system.relations[event].enabled & wanted
     way = shortest_path(system.encoding, system.plant_moves, system.encoding.initial, goal, system.uncontrolled)
     return None if way is None else explain_beyond(system, event, way)
@@ -205,7 +205,7 @@ def _loosenings(system: SynthesizedSystem, event: sct.Event) -> tuple[Loosening,
 
 
 def _never(system: SynthesizedSystem, event: sct.Event) -> list[Note]:
-    """Why the plants never let an event happen: those that never take part in it, else all that have to, at once."""
+    """Return why the plants never enable an event: those that never take part, else all participants."""
     relation, reached = system.relations[event], system.uncontrolled
     notes = []
     for plant, where in relation.enabled_by.items():
@@ -237,7 +237,7 @@ def _never_takes_part(system: SynthesizedSystem, plant: sct.Plant, event: sct.Ev
 
 
 def emptiness(system: SynthesizedSystem) -> Emptiness | None:
-    """Why the supervisor is empty; None where it is not."""
+    """Explain why the supervisor is empty; None if it is not."""
     if system.controlled.satisfiable():
         return None
     reason = reason_of_emptiness(system)
@@ -267,9 +267,10 @@ def _stuck(reason: Reason) -> list[Note]:
 def loosenings(
     system: SynthesizedSystem, helps: Callable[[SynthesizedSystem], bool], first: Iterable[sct.StatedRequirement] = ()
 ) -> tuple[Loosening, ...] | None:
-    """The requirements of the text each of which helps if it alone is left out: first that which leaves most states.
+    """Return the requirements of the text that each help if left out alone, those that leave most states first.
 
-    Those of `first` are tried before the others. None where it does not even help to leave out all of them.
+    The requirements of `first` are tried before the others. The result is None if even leaving out all of them does not
+    help.
     """
     texts = system.stated(first)
     if not helps(system.without(frozenset(requirement for text in texts for requirement in text))):

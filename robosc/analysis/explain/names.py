@@ -1,4 +1,4 @@
-"""Finds what a user names: events and states, by the names of the robot model or by those of its plants."""
+"""Events and states by the names of the robot model or those of its plants."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
     from robosc.synthesis.encoding import Element
 
-#: The event that a communication's bare name means: what it is there for.
+#: Event that the bare name of a communication refers to.
 _MEANT = (sct.EventKind.trigger, sct.EventKind.response)
-#: An event as a model and an answer name it.
+#: Event in the words of models and answers.
 _IN_WORDS = re.compile(r"(request|response|error|feedback|canceled|cancel) +(?:to|from|of) +(\S+)")
 
 
 class NamingError(ValueError):
-    """A name that means nothing, or too much; `hint` says what could be meant."""
+    """Unknown or ambiguous name; `hint` proposes alternatives."""
 
     def __init__(self, message: str, hint: str) -> None:
         super().__init__(f"{message}; {hint}" if hint else message)
@@ -36,9 +36,10 @@ class NamingError(ValueError):
 
 
 def event_named(model: sct.SupervisoryControlModel, name: str) -> sct.Event:
-    """The event of a name: `message_move.c_trigger`, `move`, `Platform.move`, `drive.cancel`, `cancel from drive`.
+    """Return the event of a name.
 
-    Raises NamingError where there is none or the name fits several.
+    Examples of names are `message_move.c_trigger`, `move`, `Platform.move`, `drive.cancel` and `cancel from drive`.
+    Raises NamingError if there is no such event or the name fits several.
     """
     meant: dict[str, list[sct.Event]] = {}
     for event in Roles(model).events:
@@ -74,16 +75,16 @@ def _event_names(event: sct.Event) -> Iterator[str]:
 
 
 def _plant_names(plant: sct.Plant) -> list[str]:
-    """What the robot model calls a plant: `Base`; `Base.drive` and `drive`."""
+    """Return the names of a plant in the robot model: `Base`; `Base.drive` and `drive`."""
     return [plant.origin, plant.origin.rpartition(".")[2]] if plant.origin else []
 
 
 def state_given(model: sct.SupervisoryControlModel, given: str) -> dict[Element, int]:
-    """The codes of the elements that a state names.
+    """Return the codes of the elements that a state names.
 
-    It is given as `Door=open,Gauge.level=3`, as JSON that `robosc simulate` prints, or as what a node tells on
-    `~/state` or `~/blocked`, bare or as ROS prints it. Raises NamingError where the text is nothing of that, or names
-    what is not there.
+    The state is text such as `Door=open,Gauge.level=3`, JSON as `robosc simulate` prints it, or a message that a node
+    publishes on `~/state` or `~/blocked`, bare or as ROS prints it. Raises NamingError for any other text, and if the
+    text names an unknown element.
     """
     elements = _elements(model)
     codes: dict[Element, int] = {}
@@ -108,7 +109,7 @@ def _whole_name(element: Element) -> str:
 
 
 def _elements(model: sct.SupervisoryControlModel) -> dict[str, list[Element]]:
-    """The parts of the state by each of their names; a name of a plant goes before a shorter form of another."""
+    """Return the parts of the state by each of their names; a full name hides the short form of another."""
     exact: dict[str, list[Element]] = {}
     short: dict[str, list[Element]] = {}
     for plant in model.plants:
@@ -124,7 +125,10 @@ def _elements(model: sct.SupervisoryControlModel) -> dict[str, list[Element]]:
 
 
 def _echoed(given: str) -> str:
-    """The data of the last `std_msgs/String` that `ros2 topic echo` or `rostopic echo` printed; other text as it is."""
+    """Return the data of the last `std_msgs/String` in the output of `ros2 topic echo` or `rostopic echo`.
+
+    Other text is returned unchanged.
+    """
     printed = [document.strip() for document in re.split(r"^---\s*$", given, flags=re.MULTILINE)]
     last = next((document for document in reversed(printed) if document), "")
     if last.startswith("data:"):
@@ -161,7 +165,7 @@ def _pairs(model: sct.SupervisoryControlModel, given: str) -> list[tuple[str, An
 
 
 def _reported(model: sct.SupervisoryControlModel, report: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """What a node tells of its components; variables that only the node has say nothing of what can happen."""
+    """Yield the state of components in a node's report, without variables that are unknown to the supervisor."""
     robot = report.get("robot", model.name)
     if robot != model.name:
         raise NamingError(f"the state is one of the robot `{robot}`", f"the model is `{model.name}`")
@@ -180,7 +184,7 @@ def _reported(model: sct.SupervisoryControlModel, report: Mapping[str, Any]) -> 
 
 
 def _code(element: Element, given: Any, name: str) -> int:
-    """The code of a value, given as such or as text."""
+    """Return the code of a value, which is given directly or as text."""
     size = domain_size(element)
     if not isinstance(element, sct.Plant) and isinstance(element.type, ex.IntegerType):
         last = smallest(element) + size - 1

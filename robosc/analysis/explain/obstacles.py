@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element
 
-#: How many states a sentence names.
+#: Maximum number of states that a sentence names.
 _NAMED = 4
 _CALLS = (sct.PlantKind.service, sct.PlantKind.action)
-#: What a service or action does in each of its locations.
+#: Description of a service or action in each of its locations.
 _PHASES = {
     IDLE: "is not under way",
     WAITING: "still waits for its answer",
@@ -46,7 +46,7 @@ _WAITING = {
 
 
 class Obstacles:
-    """The obstacles to one event in one state."""
+    """Obstacles to one event in one state."""
 
     def __init__(self, system: SynthesizedSystem, event: sct.Event, codes: Codes) -> None:
         self._system = system
@@ -55,12 +55,15 @@ class Obstacles:
         self._print = RobotPrinter()
 
     def plants(self) -> list[Note]:
-        """A note on each plant that can't take part in it: at its location, or at the transition whose guard fails."""
+        """Return a note on each plant that cannot take part.
+
+        The note is at the plant's location, or at the transition with a false guard.
+        """
         enabled = self._system.relations[self._event].enabled_by
         return [self._plant(plant) for plant, where in enabled.items() if not self._system.is_in(self._codes, where)]
 
     def requirements(self) -> list[Note]:
-        """A note on each requirement that forbids it, with the parts that fail."""
+        """Return a note on each requirement that forbids the event, with the parts that fail."""
         relation = self._system.relations[self._event]
         return [
             Note(
@@ -73,9 +76,9 @@ class Obstacles:
         ]
 
     def changes(self, allowed: Diagram) -> list[Note]:
-        """What makes it possible at once: each event that can happen here and leads to one of the states `allowed`.
+        """Return the events that can happen here and lead to one of the states `allowed`.
 
-        It is told at the transitions with which it changes what stands in the way.
+        The notes are at the transitions of these events that change an obstacle.
         """
         encoding = self._system.encoding
         here = encoding.state(self._codes)
@@ -96,7 +99,7 @@ class Obstacles:
         return edges_from(self._here(plant), self._event)
 
     def _guard(self, plant: sct.Plant) -> ex.Expression | None:
-        """The guards of the plant's edges for the event here; None where one edge has no guard."""
+        """Return the guards of the plant's edges for the event here; None if one edge has no guard."""
         guards = [edge.guard for edge in self._edges(plant)]
         return None if None in guards else disjunction(copied(guard) for guard in guards if guard is not None)
 
@@ -122,7 +125,7 @@ class Obstacles:
         return Note(here, f"`{name(plant)}` is in `{here.name}`, without {self._transition(plant)}: {elsewhere}")
 
     def _transition(self, plant: sct.Plant) -> str:
-        """The text with which a component takes part in the event."""
+        """Return the text with which a component takes part in the event."""
         owner: sct.Plant = self._event.eContainer()
         if plant.kind == sct.PlantKind.data:
             return "this `provide`"
@@ -137,7 +140,7 @@ class Obstacles:
         return self._failing(requirement.condition, wanted=requirement.kind == sct.RequirementKind.needs)
 
     def _failing(self, condition: ex.Expression | None, *, wanted: bool) -> list[tuple[ex.Expression, bool]]:
-        """The smallest parts of a condition that would all have to change, each with the value that it should have."""
+        """Return the smallest parts of a condition that would all have to change, each with its required value."""
         failing = []
         pending = [] if condition is None else [(condition, wanted)]
         while pending:
@@ -165,7 +168,7 @@ class Obstacles:
     # Changes
 
     def _changing(self, move: Move, after: Codes) -> list[Note]:
-        """The transitions of an event from here to the state `after` that change something of what is in the way."""
+        """Return the transitions of an event from here to the state `after` that change an obstacle."""
         relation = move[0]
         steps = trace(self._system.encoding, Path([dict(self._codes), dict(after)], [move]))
         by = in_words(steps, self._system.model)
@@ -180,7 +183,7 @@ class Obstacles:
 
     @cached_property
     def _in_the_way(self) -> set[Element]:
-        """The plants that can't take part, and what the guards and requirements read that fail."""
+        """Plants that cannot take part, and the elements that the false guards and requirements read."""
         found: set[Element] = set()
         relation = self._system.relations[self._event]
         for plant, where in relation.enabled_by.items():
@@ -193,7 +196,7 @@ class Obstacles:
 
 
 def _change(element: Element, edge: sct.Edge, here: sct.Location, after: Codes, by: str) -> Note:
-    """The value of a plant or a variable after an edge is taken from here."""
+    """Return a note on the value of a plant or a variable after an edge is taken from here."""
     if isinstance(element, sct.Plant):
         return Note(edge, f"`{name(element)}` goes from `{here.name}` to `{edge.target.name}` by {by}")
     whole = f"`{name(element.eContainer())}.{element.name}`"

@@ -1,12 +1,13 @@
-"""Proves or refutes that a supervised system keeps its promises, and that its outputs are what it is.
+"""Verification of a supervised system, and validation of its generated artifacts.
 
     verdicts = verify(Models(model_with_supervisor), Configuration())
 
-`properties` and `response` are about the supervised system, on decision diagrams; the states that the control loop
-comes to are found in `loop`. `c_validation` and `cif_validation` are translation validation: they do not ask how a text
-was made, but read it anew, the C with a compiler, the CIF with a grammar of its own, and compare it with the model
-(Pnueli, Siegel, Singerman: Translation validation, TACAS 1998). `model_reading` does so the other way: it reads the
-text of the robot anew, and holds the plants and the engine model that were made of it against that.
+`properties` and `response` check the supervised system on decision diagrams; `loop` computes the states that the
+control loop reaches. `c_validation` and `cif_validation` do translation validation (Pnueli, Siegel, Singerman:
+Translation validation, TACAS 1998): independently of the generator, they read the generated text again and compare it
+with the model. They read C with a compiler and CIF with a grammar of its own. `model_reading` and `controller_reading`
+do the same in the other direction: they read the text of the robot again and compare the plants and the engine model
+with it.
 """
 
 from __future__ import annotations
@@ -54,13 +55,14 @@ __all__ = [
 def verify(
     models: Models, configuration: Configuration, begin: Callable[[str], None] = lambda _: None
 ) -> list[Verdict]:
-    """Examine a supervised model, and give a verdict for each property.
+    """Verify a supervised model, and return a verdict for each property.
 
-    `begin` is called with the name of each step before it.
+    `begin` is called with the name of each step before the step starts.
 
-    Examined are the model's properties (`verify_system`), its plants and its controller against the robot's text
-    (skipped where `models.robosc` is None), and the C and CIF that are generated with this configuration (`validate`).
-    Raises ValueError without a supervisor, MemoryError where decision diagrams take more than 4 GB.
+    The verdicts are about the model's properties (`verify_system`), its plants and its controller compared with the
+    robot's text (skipped if `models.robosc` is None), and the C and CIF that are generated with this configuration
+    (`validate`). Raises ValueError if the model has no supervisor, and MemoryError if decision diagrams take more than
+    4 GB.
     """
     begin(model_reading.PROPERTY)
     read = timed(validate_model, models.robosc, models.sct)
@@ -73,10 +75,10 @@ def verify(
 
 
 def verify_system(model: sct.SupervisoryControlModel, *, memory: int = MEMORY) -> list[Verdict]:
-    """The verdicts on a model under its supervisor, whatever it was made from, the model left as it is.
+    """Return the verdicts on a model under its supervisor, without changing the model.
 
-    All but the seconds is the same on every run. `memory` bounds the bytes for decision diagrams: MemoryError is raised
-    beyond. Raises ValueError where the model has no supervisor.
+    Every run gives the same verdicts, except for the seconds. `memory` is the limit of the decision diagrams in bytes;
+    beyond it, MemoryError is raised. Raises ValueError if the model has no supervisor.
     """
 
     def look(encoding: Encoding) -> list[Verdict]:
@@ -86,9 +88,9 @@ def verify_system(model: sct.SupervisoryControlModel, *, memory: int = MEMORY) -
 
 
 def validate(models: Models, configuration: Configuration) -> list[Verdict]:
-    """The verdicts on the C, its control loop too, and on the CIF that are generated from a model with its supervisor.
+    """Return the verdicts on the C with its control loop and on the CIF that are generated from a model.
 
-    Raises ValueError where the model has no supervisor, MemoryError where decision diagrams take more than 4 GB.
+    Raises ValueError if the model has no supervisor, and MemoryError if decision diagrams take more than 4 GB.
     """
     targets: list[tuple[Sequence[str], Any, Callable[..., list[Verdict]]]] = [
         (c_validation.PROPERTIES[: 1 if is_from_cif(models.sct) else None], supervisor, validate_generated_c),

@@ -1,4 +1,4 @@
-"""Plays the generated C against the supervised model, state by state."""
+"""Comparison of the generated C with the supervised model, state by state."""
 
 from __future__ import annotations
 
@@ -29,9 +29,10 @@ PROPERTY = "c-translation"
 
 @dataclass(frozen=True)
 class Effort:
-    """How far to go: all states are explored up to so many, with up to so many steps from them, else a walk is taken.
+    """Limits of the exploration: all states are explored up to these limits, else a random walk is taken.
 
-    A step is an event with values of its inputs. `walk` is the number of random steps, always the same ones.
+    `states` is the maximum number of states, and `steps` that of steps from them. A step is an event with values of its
+    inputs. `walk` is the number of random steps, which are the same on every run.
     """
 
     states: int = 1_000_000
@@ -40,9 +41,9 @@ class Effort:
 
 
 def explore_events(program: CProgram, effort: Effort | None = None) -> Verdict:
-    """Whether the compiled C does what its model says with its supervisor.
+    """Return whether the events of the compiled C agree with the model under its supervisor.
 
-    Raises CompileError where it is no C, MemoryError where the decision diagrams take more than 4 GB.
+    Raises CompileError if the text is not valid C, and MemoryError if the decision diagrams take more than 4 GB.
     """
     try:
         return with_enough_memory(_Trial(program, effort or Effort()).run, MEMORY)
@@ -51,7 +52,7 @@ def explore_events(program: CProgram, effort: Effort | None = None) -> Verdict:
 
 
 class _Trial:
-    """An explorer of one model's engine."""
+    """Comparison run of one model's engine."""
 
     def __init__(self, program: CProgram, effort: Effort) -> None:
         self._program = program
@@ -61,12 +62,12 @@ class _Trial:
         self._cells, self._inputs, self._events = program.cells, program.inputs, program.events
 
     def run(self, capacity: int) -> Verdict:
-        """What the explorer finds, with so many nodes for the decision diagrams."""
+        """Return the verdict, with room for `capacity` nodes in the decision diagrams."""
         encoding = Encoding(self._layout, Diagrams(self._layout.levels, capacity))
         system = GuardedSystem(self._model, encoding)
         (self._program.folder / "reference").write_text("\n".join(self._reference(system)), encoding="ascii")
         effort = self._effort
-        # The supervisor knows how many states there are; the explorer gives up by itself where it should be wrong.
+        # The supervisor holds the number of states. If it is wrong, the explorer stops at its limit.
         known = system.supervisor.controlledStates or 0
         widest = max((prod(map(domain_size, event.inputs)) for event in self._events), default=1)
         states = effort.states if known <= effort.states and known * widest <= effort.steps else 0
@@ -78,7 +79,7 @@ class _Trial:
         return self._verdict(system, word, list(map(int, numbers)))
 
     def _reference(self, system: GuardedSystem) -> Iterator[str]:
-        """What `load` in the explorer reads."""
+        """Yield the lines that `load` in the explorer reads."""
         encoding = system.encoding
         nodes = _Nodes(encoding.diagrams)
         effects = list(self._effects(system, nodes))
@@ -137,19 +138,19 @@ class _Trial:
 
 
 def _start(model: sct.SupervisoryControlModel) -> dict[Element, int]:
-    """The code of each element at the start."""
+    """Return the code of each element at the start."""
     return {cell: value - smallest(cell) for cell, value in first_state(model).items()}
 
 
 class _Nodes:
-    """The nodes of decision diagrams, numbered: false is 0, true 1, and of each other the children come first."""
+    """Numbered nodes of decision diagrams: false is 0, true is 1, and children come before their parents."""
 
     def __init__(self, diagrams: Diagrams) -> None:
         self.lines: list[str] = []
         self._numbers = {diagrams.false: 0, diagrams.true: 1}
 
     def number(self, diagram: Diagram) -> int:
-        """The number of a diagram's root."""
+        """Return the number of a diagram's root."""
         pending = [diagram]
         while pending:
             top = pending[-1]

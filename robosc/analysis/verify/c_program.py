@@ -1,4 +1,4 @@
-"""A generated C engine, compiled with a program that tries it."""
+"""Generated C engine, compiled with a program that runs it."""
 
 from __future__ import annotations
 
@@ -28,25 +28,25 @@ if TYPE_CHECKING:
 
 TEXT = "the generated C"
 COMPILERS = ("cc", "gcc", "clang")
-#: What a compiler says that lacks room, and not an understanding of its text.
+#: Messages of a compiler that lacks room, as opposed to a compiler that rejects its text.
 _SHORTAGE = re.compile(
     "|".join([*map(os.strerror, (errno.ENOSPC, errno.EDQUOT, errno.ENOMEM)), "Killed signal", "memory exhausted"])
 )
 
 
 def c_compiler() -> str | None:
-    """The C compiler that is found."""
+    """Return the first C compiler on the path, or None."""
     return next(filter(shutil.which, COMPILERS), None)
 
 
 class CompileError(Exception):
-    """The generated text is no C, as its message says."""
+    """The generated text is not valid C; the message has the compiler's error."""
 
 
 class CProgram:
-    """A model's engine in a folder, and what it is made of, in the order in which programs speak of it.
+    """Engine of a model in a folder, and its parts in the order that the programs use.
 
-    Raises CompileError where the text is none, OSError where it can't be compiled for another reason.
+    Raises CompileError if the text is not valid C, and OSError if it cannot be compiled for another reason.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class CProgram:
         self.model = model
         self.folder = folder
         self._compiler = compiler
-        #: What the engine's state holds, and then its inputs.
+        #: Elements of the engine's state, and its inputs.
         self.cells: list[Element] = []
         for plant in model.plants:
             self.cells += [*([plant] if len(plant.locations) > 1 else []), *plant.variables]
@@ -69,12 +69,12 @@ class CProgram:
 
     @cached_property
     def explorer(self) -> str:
-        """The command that compares the events of the engine with their decision diagrams."""
+        """Command that compares the events of the engine with their decision diagrams."""
         return self._linked("explorer")
 
     @cached_property
     def follower(self) -> str:
-        """The command that runs the engine's control loop."""
+        """Command that runs the engine's control loop."""
         return self._linked("follower")
 
     def _linked(self, name: str) -> str:
@@ -93,14 +93,14 @@ class CProgram:
         raise CompileError(f"{self._compiler} does not compile {TEXT}: {first}")
 
     def done(self, command: Sequence[str]) -> subprocess.CompletedProcess[str]:
-        """As `subprocess.run` in the folder; but where that is interrupted, what the command has begun ends, too."""
+        """Run a command in the folder as `subprocess.run` does; an interrupt also ends its child processes."""
         with self.running(command) as process:
             output, errors = process.communicate()
         return subprocess.CompletedProcess(command, process.returncode, output, errors)
 
     @contextmanager
     def running(self, command: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
-        """The command, begun in the folder; where it is not waited for to the end, it ends with what it has begun."""
+        """Start a command in the folder; an exception in the `with` block ends it with its child processes."""
         with subprocess.Popen(  # noqa: S603
             command,
             cwd=self.folder,
@@ -122,7 +122,7 @@ class CProgram:
                 raise
 
     def _header(self, names: CNames) -> str:
-        """What of `explorer.c` the model decides; `explorer.c` says what each macro is."""
+        """Return the part of `explorer.c` that depends on the model; `explorer.c` documents each macro."""
 
         def for_all(elements: Sequence[Element]) -> str:
             told = (

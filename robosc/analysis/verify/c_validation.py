@@ -1,4 +1,4 @@
-"""Compares the generated C with the model: its events with their diagrams, its control loop with the one in Python."""
+"""Validation of the generated C: its events by diagrams, its control loop by the one in Python."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ if TYPE_CHECKING:
 
     from robosc.metamodel import sct
 
-    #: What examines a program, by the name of the property.
+    #: Functions that examine a program, by the name of the property.
     Examinations = Mapping[str, Callable[[CProgram], Verdict]]
 
-#: The properties, in the order of their verdicts.
+#: Names of the properties, in the order of their verdicts.
 PROPERTIES = (c_exploration.PROPERTY, loop_exploration.PROPERTY)
 
 
 def validate_generated_c(model: sct.SupervisoryControlModel, files: Mapping[str, str]) -> list[Verdict]:
-    """The verdicts on the C in these files (relative path to text): on its events, and on its control loop if any.
+    """Return the verdicts on the C in these files: on its events, and on its control loop if any.
 
-    Raises MemoryError where decision diagrams take more than 4 GB.
+    `files` maps relative paths to texts. Raises MemoryError if decision diagrams take more than 4 GB.
     """
     loop: Examinations = {} if is_from_cif(model) else {loop_exploration.PROPERTY: explore_loop}
     return _examined(model, files, {c_exploration.PROPERTY: explore_events, **loop})
 
 
 def validate_c(model: sct.SupervisoryControlModel, files: Mapping[str, str], effort: Effort | None = None) -> Verdict:
-    """Whether the events of the C in these files, compiled, do what the model says with its supervisor.
+    """Return whether the events of the compiled C agree with the model under its supervisor.
 
-    Raises MemoryError where the decision diagrams take more than 4 GB.
+    Raises MemoryError if the decision diagrams take more than 4 GB.
     """
     return _examined(model, files, {c_exploration.PROPERTY: lambda program: explore_events(program, effort)})[0]
 
@@ -45,14 +45,14 @@ def validate_c(model: sct.SupervisoryControlModel, files: Mapping[str, str], eff
 def validate_loop(
     model: sct.SupervisoryControlModel, files: Mapping[str, str], effort: LoopEffort | None = None
 ) -> Verdict:
-    """Whether the control loop of the C in these files, compiled, does what the one in Python does."""
+    """Return whether the control loop of the compiled C agrees with the one in Python."""
     return _examined(model, files, {loop_exploration.PROPERTY: lambda program: explore_loop(program, effort)})[0]
 
 
 def _examined(
     model: sct.SupervisoryControlModel, files: Mapping[str, str], examinations: Examinations
 ) -> list[Verdict]:
-    """The verdicts on one compiled program."""
+    """Return the verdicts on one compiled program."""
 
     def skipped(reason: str) -> list[Verdict]:
         return [Verdict(question, Outcome.SKIPPED, "", reason) for question in examinations]
@@ -67,5 +67,5 @@ def _examined(
                 return [timed(examine, program) for examine in examinations.values()]
             except CompileError as error:
                 return [refuted(question, str(error)) for question in examinations]
-    except OSError as error:  # that says nothing about the C
+    except OSError as error:  # The C is not the cause.
         return skipped(f"it can't be tried in the folder for temporary files: {error}")

@@ -1,6 +1,6 @@
-"""CIF's expressions as far as generated specifications have them: how they are read, and what they mean.
+"""Expressions in generated CIF: their syntax and meaning.
 
-By CIF's language reference and tutorial, and not by what is generated.
+The reader follows CIF's language reference and tutorial, not the generator.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Typed(NamedTuple):
-    """An expression with its type and the position in the text at which it begins."""
+    """Expression with its type and its start position in the text."""
 
     position: int
     expression: ex.Expression
@@ -24,7 +24,7 @@ class Typed(NamedTuple):
 
 
 class ExpressionError(ValueError):
-    """An expression that CIF refuses, at a position of the text."""
+    """Expression that CIF rejects, at a position of the text."""
 
     def __init__(self, position: int, reason: str) -> None:
         super().__init__(reason)
@@ -33,7 +33,7 @@ class ExpressionError(ValueError):
 
 @dataclass
 class _Open:
-    """What is yet to be completed: an operator, a parenthesis, an `if` with its alternatives so far."""
+    """Incomplete part: an operator, a parenthesis, or an `if` with its alternatives so far."""
 
     word: str
     position: int
@@ -42,17 +42,18 @@ class _Open:
 
 
 class ExpressionReader:
-    """Reads one expression from its tokens, without recursion (Dijkstra's shunting yard).
+    """Reader of one expression from its tokens, without recursion (Dijkstra's shunting yard).
 
-    `difference` says that the expression is all that is assigned: there alone, and last, synthesis takes a `-`.
+    `difference`: the expression is the whole assigned value. Synthesis accepts a `-` only there, and only as the
+    outermost operator.
     """
 
     def __init__(self, read: Any, value_of: Callable[[Any], Typed], *, difference: bool) -> None:
-        """`read` is an `Expression` of the grammar, `value_of` makes what an operand stands for."""
+        """Read an `Expression` of the grammar; `value_of` returns the meaning of an operand."""
         self._done: list[Typed] = []
         self._open: list[_Open] = []
         self._differences: list[tuple[int, ex.Expression]] = []
-        end = read._tx_position_end  # noqa: SLF001 - textX's own way to tell it
+        end = read._tx_position_end  # noqa: SLF001 - textX stores it there
         for word, token in _tokens(read):
             if word is None:
                 self._done.append(value_of(token))
@@ -69,7 +70,7 @@ class ExpressionReader:
                 raise ExpressionError(position, "CIF's synthesis takes a '-' at the top of an assignment only")
 
     def _take(self, word: str, position: int) -> None:
-        """Any word but an operand."""
+        """Process a token that is no operand."""
         if word in ("(", "if", "not"):
             self._open.append(_Open(word, position))
             return
@@ -97,7 +98,7 @@ class ExpressionReader:
             raise ExpressionError(position, f"Expected no '{word}'")
 
     def _reduce(self, level: int) -> None:
-        """Completes the operators that bind as tightly as this level or more, up to what is open around them."""
+        """Complete the open operators that bind at least as tightly as this level."""
         while self._open:
             top = self._open[-1]
             if top.word == "not":
@@ -131,7 +132,7 @@ class ExpressionReader:
 
 
 def _tokens(read: Any) -> Iterator[tuple[str | None, Any]]:
-    """The tokens of an expression, with their words; operands have none."""
+    """Yield the tokens of an expression with their words; operands have none."""
     further = [(None, read.first), *((other.operator, other.operand) for other in read.others)]
     for operator, operand in further:
         if operator is not None:
@@ -142,7 +143,7 @@ def _tokens(read: Any) -> Iterator[tuple[str | None, Any]]:
 
 
 def _checked(position: int, rule: Callable[..., Type], *given: Any) -> Type:
-    """The type by a rule; what is wrong with it is so at this position."""
+    """Return the type by a rule; a type error is reported at this position."""
     try:
         return rule(*given)
     except TypeError as fault:

@@ -1,7 +1,8 @@
-"""Compares the CIF that is written for a model from CIF with the model: each event, in all states, symbolically.
+"""Validation of the CIF that is written for a model from CIF: each event, in all states, symbolically.
 
-That CIF imports the text that the model was read from. It is run as CIF's explorer, simulator and code generators run
-it: supervisors and requirements restrict as plants do, and an update out of a range is an error, not a restriction.
+The generated CIF imports the text that the model was read from. It is interpreted as in CIF's explorer, simulator and
+code generators: supervisors and requirements restrict as plants do, and an update out of a range is an error, not a
+restriction.
 """
 
 from __future__ import annotations
@@ -34,10 +35,10 @@ TEXT = "the generated CIF"
 
 
 def validate_extension(model: sct.SupervisoryControlModel, text: str) -> Verdict:
-    """Return whether `<model>.supervised.cif` allows what the supervisor of a model from CIF allows, without an error.
+    """Return whether `<model>.supervised.cif` allows the same as the supervisor of a model from CIF, without errors.
 
     Every event must be enabled in the same reachable states, lead to the same ones, and leave no range. Raises
-    MemoryError where the decision diagrams take more than 4 GB.
+    MemoryError if the decision diagrams take more than 4 GB.
     """
     reading = read_supervised(model, text)
     if reading is None:
@@ -53,14 +54,14 @@ def validate_extension(model: sct.SupervisoryControlModel, text: str) -> Verdict
 
 
 class _DifferenceError(ValueError):
-    """That a specification has other plants, events or values than the model that imports it."""
+    """A specification has other plants, events or values than the model."""
 
 
 class _Comparison:
     """A model and its CIF over the same decision diagrams."""
 
     def __init__(self, model: sct.SupervisoryControlModel, specification: sct.SupervisoryControlModel) -> None:
-        """Raises _DifferenceError where the two differ in more than supervisors."""
+        """Pair the elements; raise _DifferenceError if more than the supervisors differ."""
         self._model = model
         self._specification = specification
         self._theirs: dict[Any, Any] = {}
@@ -100,7 +101,7 @@ class _Comparison:
         self._theirs.update(zip(ours, theirs, strict=True))
 
     def run(self, capacity: int) -> Verdict:
-        """Return the verdict, with so many nodes for the decision diagrams."""
+        """Return the verdict, with room for `capacity` nodes in the decision diagrams."""
         diagrams = Diagrams(self._layout.levels, capacity)
         encoding, theirs = (Encoding(layout, diagrams) for layout in (self._layout, self._their_layout))
         system = GuardedSystem(self._model, encoding)
@@ -124,7 +125,7 @@ class _Comparison:
 
     @staticmethod
     def _differ(system: GuardedSystem, event: sct.Event, relation: EventRelation) -> Diagram:
-        """The reachable states in which an event does something else in the two."""
+        """Return the reachable states in which the effects of an event differ."""
         allowed, permitted = system.allowed[event], relation.enabled & relation.requirement
         differ = (allowed ^ permitted) & system.controlled
         if differ.satisfiable():
@@ -136,7 +137,7 @@ class _Comparison:
     def _said(
         self, system: GuardedSystem, theirs: Encoding, event: sct.Event, relation: EventRelation, here: Diagram
     ) -> str:
-        """What an event does in the generated CIF and not in the model, in a state."""
+        """Return how an event differs between the generated CIF and the model in a state, as text."""
         step = event_in_words(event, {})
         happens = (relation.enabled & relation.requirement & here).satisfiable()
         for edge in (edge for edges in self._edges.get(self._theirs[event], {}).values() for edge in edges):
@@ -150,7 +151,7 @@ class _Comparison:
 
 
 def _kind(element: Any) -> tuple[Any, ...]:
-    """What two elements have in common that stand for each other."""
+    """Return the properties that corresponding elements share."""
     match element:
         case sct.DiscreteVariable() | sct.Input():
             own = domain(element.type)

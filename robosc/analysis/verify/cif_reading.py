@@ -1,7 +1,7 @@
-"""Reads generated CIF by CIF's language reference: its grammar, then names, types, and what synthesis asks for.
+"""Reader of generated CIF by CIF's language reference: grammar, names, types, and rules of synthesis.
 
-The grammar is not the importer's: it refuses by itself whatever is never generated, has the texts of annotations, and
-takes no recursion for parentheses.
+The grammar is not that of the importer. It rejects everything that is never generated, keeps the texts of annotations,
+and needs no recursion for parentheses.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ if TYPE_CHECKING:
 
 
 class CifError(ValueError):
-    """A text that is not such a specification; says where and what is wrong."""
+    """Text that is not a valid specification; the message has the place and the reason."""
 
 
 @dataclass(frozen=True)
 class Specification:
-    """What a specification says, with CIF's own names and numbers.
+    """Content of a specification, with CIF's own names and numbers.
 
-    `model` holds enumerations, plants, requirements and invariants of states; CIF knows no kinds of plants
-    and events but requirement automata,
-    nor which event carries an input. `supervisor` is the automaton with what synthesis added, in one location, None
-    where there is none; `alphabet` are its events. `invariants` are what else holds under the supervisor.
+    `model` holds enumerations, plants, requirements and invariants of states. CIF has no kinds of plants and events
+    except requirement automata, and does not relate inputs to events. `supervisor` is the automaton with the conditions
+    that synthesis added, in one location; None if there is none. `alphabet` are its events. `invariants` are the other
+    conditions under the supervisor.
     """
 
     model: sct.SupervisoryControlModel
@@ -49,7 +49,7 @@ def _grammar() -> Any:
 
 
 def read(text: str) -> Specification:
-    """The specification that a text is. Raises CifError."""
+    """Return the specification of a text. Raises CifError."""
     strange = next((place for place, character in enumerate(text) if not character.isascii()), None)
     if strange is not None:
         raise CifError(f"{_place(text, strange)}: {text[strange]!a} is no ASCII")
@@ -60,18 +60,18 @@ def read(text: str) -> Specification:
 
 
 class _Reading:
-    """From the objects of the grammar to those of the metamodel."""
+    """Conversion of grammar objects to metamodel objects."""
 
     def __init__(self, read: Any, text: str) -> None:
         self._read = read
         self._text = text
-        #: What is declared outside of automata, and in each of them.
+        #: Declarations outside of automata, and in each automaton.
         self._outer: dict[str, Any] = {}
         self._inner: dict[sct.Plant, dict[str, Any]] = {}
         self._types: dict[sct.DiscreteVariable | sct.Input, types.Type] = {}
 
     def specification(self) -> Specification:
-        """All of it. Raises CifError."""
+        """Return the whole specification. Raises CifError."""
         model = sct.SupervisoryControlModel(name="")
         self._annotated(self._read)
         automata: list[tuple[Any, sct.Plant]] = []
@@ -109,7 +109,7 @@ class _Reading:
         )
 
     def _check_kinds(self, automata: Sequence[Any], supervisor: Any) -> None:
-        """Raise CifError where a supervisor stands in the wrong place, or a requirement automaton beside one."""
+        """Raise CifError if a supervisor is in the wrong place, or a requirement automaton occurs beside one."""
         for declaration in automata:
             if supervisor is not None and declaration.kind == "requirement":
                 self._fail(declaration, "a requirement automaton stands beside a supervisor")
@@ -121,10 +121,10 @@ class _Reading:
         return [declaration for declaration in self._read.declarations if type(declaration).__name__ == rule]
 
     def _fail(self, read: Any, reason: str) -> NoReturn:
-        raise CifError(f"{_place(self._text, read._tx_position)}: {reason}")  # noqa: SLF001 - textX's own way to tell it
+        raise CifError(f"{_place(self._text, read._tx_position)}: {reason}")  # noqa: SLF001 - textX stores it there
 
     def _annotated(self, read: Any) -> Any:
-        """What is read, its annotations checked."""
+        """Check the annotations of an object and return it."""
         for annotation in read.annotations:
             if annotation.name.lstrip("@") != "doc":
                 self._fail(annotation, f"there is no annotation {annotation.name}")
@@ -149,7 +149,7 @@ class _Reading:
         return made
 
     def _declare(self, read: Any, automaton: sct.Plant) -> None:
-        """What is declared in an automaton, without what speaks of other things."""
+        """Read the declarations of an automaton that refer to nothing else."""
         self._inner[automaton] = {}
         for declaration in read.declarations:
             match type(declaration).__name__:
@@ -170,7 +170,7 @@ class _Reading:
             self._fail(read, f"'{automaton.name}' has no initial location")
 
     def _valued(self, kind: Any, name: Any, read: Any, automaton: sct.Plant) -> Any:
-        """A variable or input of the type of its declaration."""
+        """Return a variable or input with the type of its declaration."""
         made = kind(name=_plain(name), type=self._type(read.type, automaton))
         self._types[made] = _values(made.type)
         return self._define(made, name, self._inner[automaton])
@@ -208,10 +208,10 @@ class _Reading:
             self._fail(read, f"{digits} does not fit 32 bits")
         return int(digits)
 
-    # What speaks of other things
+    # References
 
     def _fill(self, read: Any, automaton: sct.Plant) -> list[sct.Event]:
-        """Initial values and edges; returns the automaton's alphabet."""
+        """Read initial values and edges; return the automaton's alphabet."""
         variables = [
             variable
             for declaration in read.declarations
@@ -254,7 +254,7 @@ class _Reading:
         return alphabet
 
     def _events(self, read: Any, rule: str, automaton: sct.Plant) -> list[sct.Event] | None:
-        """The events of such a declaration, None where there is none."""
+        """Return the events of the declaration of this kind; None if there is none."""
         found = [declaration for declaration in read.declarations if type(declaration).__name__ == rule]
         for another in found[1:]:
             self._fail(another, f"'{automaton.name}' has another {rule.lower()} before this one")
@@ -310,7 +310,7 @@ class _Reading:
         return event
 
     def _find(self, read: Any, automaton: sct.Plant | None) -> Any:
-        """What a name means inside an automaton: the nearest of its first identifier, and what is in that."""
+        """Return the element of a name inside an automaton: the nearest first identifier, then its members."""
         first, *others = read.text.replace("$", "").split(".")
         inner = {} if automaton is None else self._inner[automaton]
         found = inner.get(first) or self._outer.get(first)
@@ -333,7 +333,10 @@ class _Reading:
     def _expression(
         self, read: Any, automaton: sct.Plant | None, *, constant: bool = False, assigned: bool = False
     ) -> tuple[ex.Expression, types.Type]:
-        """An expression, read in an automaton or outside of all, and its type; constant, or all that is assigned."""
+        """Return an expression and its type; `constant` and `assigned` restrict the syntax.
+
+        `automaton` is the scope of names, None outside of automata.
+        """
 
         def value_of(operand: Any) -> Typed:
             position = operand._tx_position  # noqa: SLF001
@@ -375,12 +378,12 @@ def _automaton(read: Any) -> sct.Plant:
 
 
 def _place(text: str, position: int) -> str:
-    """A position in a text, as people count."""
+    """Return a position in a text as line and column, counted from 1."""
     return f"line {text.count(chr(10), 0, position) + 1}, column {position - text.rfind(chr(10), 0, position)}"
 
 
 def _monitor(event: sct.Event, location: sct.Location) -> None:
-    """Lets an event happen where no edge of the location lets it: CIF's monitors never block."""
+    """Allow an event also where no edge of the location does: CIF's monitors never block."""
     guards = [edge.guard for edge in location.edges if edge.event is event]
     if any(guard is None for guard in guards):
         return

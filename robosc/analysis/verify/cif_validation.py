@@ -1,4 +1,4 @@
-"""Compares both files of CIF, read back, with the model: each event, in all states, symbolically."""
+"""Validation of both generated CIF files: each event, in all states, symbolically."""
 
 from __future__ import annotations
 
@@ -39,11 +39,12 @@ UNSUPERVISED = f"{TEXT} without supervisor"
 
 
 def validate_cif(model: sct.SupervisoryControlModel, files: Mapping[str, str]) -> Verdict:
-    """Whether `<robot>.cif` means the model's plants and requirements, and `<robot>.supervised.cif` its supervisor.
+    """Return whether the generated CIF files agree with the model's plants, requirements and supervisor.
 
-    States correspond by `Correspondence`; then initial and marked states must be the same, and every event must do the
-    same in every state, reachable or not. `files` are the texts by their names. Raises MemoryError where the decision
-    diagrams take more than 4 GB. Of a model from CIF, which is not written again, `validate_extension` says what holds.
+    `<robot>.cif` must have the plants and requirements, `<robot>.supervised.cif` the supervisor. States correspond by
+    `Correspondence`. Initial and marked states must be the same, and every event must have the same effect in every
+    state, reachable or not. `files` maps names to texts. A model from CIF is not written again; `validate_extension`
+    validates it. Raises MemoryError if the decision diagrams take more than 4 GB.
     """
     if is_from_cif(model):
         return validate_extension(model, files[f"{model.name}.supervised.cif"])
@@ -68,10 +69,10 @@ def _validate(model: sct.SupervisoryControlModel, text: str, *, supervised: bool
 
 @dataclass(frozen=True)
 class _Difference:
-    """In which states, with which inputs, the model and its CIF have other bits.
+    """States and inputs in which the model and its CIF disagree about an event.
 
-    They are of an element after the event where it can happen in both, or, without an element, of whether it can: by
-    the plants, or where it is `asked`, by the requirements.
+    With an `element`, the bits are those of its code after the event, where both allow the event. Without one, the bit
+    is whether the plants enable the event, or, if `asked`, whether the requirements allow it.
     """
 
     event: sct.Event
@@ -83,9 +84,9 @@ class _Difference:
 
 
 class _Comparison:
-    """A model and its CIF over the same decision diagrams: a value has the code that its counterpart has.
+    """A model and its CIF over the same decision diagrams: corresponding values have the same code.
 
-    Under a supervisor what is asked is part of what can happen; without it, it is a question of its own.
+    Under a supervisor, the requirements are part of the enabling condition. Without one, they are compared separately.
     """
 
     def __init__(
@@ -96,7 +97,7 @@ class _Comparison:
         *,
         supervised: bool,
     ) -> None:
-        """Raises CifError where there is a supervisor and none is due."""
+        """Pair the elements; raise CifError if the text has a supervisor that it should not have."""
         if not supervised and (specification.supervisor is not None or specification.invariants):
             raise CifError("it says what a supervisor does")
         if supervised and specification.model.invariants:
@@ -115,7 +116,7 @@ class _Comparison:
         for element, domain in self._layout.domains.items():
             counterpart = correspondence.holding(element)
             self._their_layout.domains[counterpart] = replace(domain, element=counterpart)
-            if counterpart is not correspondence[element]:  # the location of such a plant is no part of its state
+            if counterpart is not correspondence[element]:  # The location of such a plant is no part of its state.
                 single = replace(
                     domain, element=correspondence[element], size=1, levels=(), halfway_levels=(), next_levels=()
                 )
@@ -126,7 +127,7 @@ class _Comparison:
         self._loops = {} if supervisor is None else edges_by_event([supervisor])
 
     def run(self, capacity: int) -> Verdict:
-        """The verdict, with so many nodes for the decision diagrams. Raises CifError, AmbiguityError, ModelError."""
+        """Return the verdict, with room for `capacity` nodes. Raises CifError, AmbiguityError, ModelError."""
         encoding, theirs = (
             Encoding(layout, diagrams)
             for diagrams in [Diagrams(self._layout.levels, capacity)]
@@ -158,7 +159,7 @@ class _Comparison:
         return refuted(PROPERTY, self._said(system, reached[0], codes), system.trace(path))
 
     def _invariants_differ(self, system: GuardedSystem, theirs: Encoding) -> Verdict | None:
-        """That the states which the invariants allow are others in CIF."""
+        """Return a refutation if the invariants allow other states in CIF; None if they agree."""
         encoding = system.encoding
         valid = encoding.diagrams.all_of(encoding.in_domain(domain.element) for domain in self._layout.state)
         ours, asked = (
@@ -177,7 +178,7 @@ class _Comparison:
 
     @staticmethod
     def _initial(counterpart: sct.DiscreteVariable, theirs: Encoding) -> int:
-        """The code of a variable's initial value in CIF."""
+        """Return the code of a variable's initial value in CIF."""
         assert counterpart.initial is not None
         value = arithmetic.value_of(theirs.vector(counterpart.initial))
         if value is None:
@@ -207,12 +208,12 @@ class _Comparison:
             for element, our_bits, their_bits, within in compared:
                 pairs = zip(our_bits, their_bits, strict=True)
                 differ = encoding.diagrams.any_of((our_bit ^ their_bit) & within for our_bit, their_bit in pairs)
-                # Most are the same even for codes without a value: then the many domains need not be looked at.
+                # Most are equal even for invalid codes. Then the many domains need not be examined.
                 if differ.satisfiable() and (differ & valid).satisfiable():
                     yield _Difference(event, element, our_bits, their_bits, differ & valid)
 
     def _their_transition(self, event: sct.Event, theirs: Encoding) -> Transition:
-        """What the event does in CIF: only automata that have it take part, and one of them at least."""
+        """Return the effect of the event in CIF; at least one automaton must have the event."""
         counterpart, diagrams = self._correspondence.event(event), theirs.diagrams
         if counterpart is None:
             return Transition(diagrams.false, {})
@@ -226,7 +227,7 @@ class _Comparison:
         return Transition(enabled, transition.after)
 
     def _said(self, system: GuardedSystem, difference: _Difference, codes: Mapping[Element, int]) -> str:
-        """The difference where state and inputs have these codes."""
+        """Return the difference in the state and inputs with these codes, as text."""
         event, element = difference.event, difference.element
         here = system.diagrams.all_of(system.encoding.has_code(cell, code) for cell, code in codes.items())
         ours, theirs = (
@@ -243,5 +244,5 @@ class _Comparison:
 
 
 def _allowed(requirements: Iterable[sct.Requirement], encoding: Encoding) -> Diagram:
-    """Where all requirements of an event let it happen."""
+    """Return the states in which all requirements of an event allow it."""
     return encoding.diagrams.all_of(encoding.permits(requirement) for requirement in requirements)

@@ -1,4 +1,4 @@
-"""What in a CIF specification stands for what in the model: by order and name, and nothing but that."""
+"""Correspondence between the elements of a CIF specification and those of the model, by order and name only."""
 
 from __future__ import annotations
 
@@ -17,18 +17,22 @@ if TYPE_CHECKING:
 
 
 class Correspondence:
-    """For each element of a model the one that stands for it in a specification, and the other way round.
+    """Pairs of corresponding elements of a model and a specification.
 
-    Plants and their members are those of the model in its order, with its names, but that underscores may follow, and
-    that a plant's only location needs none. An integer has the same range, or in place of one that begins below 0 one
-    of the same size from 0 on: then the first value stands for the first, and so on. So a last variable more, of an
-    only location, may stand for where the plant is. An event may be missing: in the specification it never happens.
+    Plants and their members have the order and the names of the model. Underscores may follow a name, and the only
+    location of a plant needs none. An integer has the same range; a range that begins below 0 may be replaced by one of
+    the same size from 0 on, with the values in the same order. A plant with a single location may have a last variable
+    more, which holds the location of the model's plant. An event may be missing: it then never happens in the
+    specification.
     """
 
     def __init__(self, model: sct.SupervisoryControlModel, specification: sct.SupervisoryControlModel) -> None:
-        """Raises CifError where anything has no counterpart, or one of another type, control or marking."""
+        """Pair all elements.
+
+        Raises CifError if an element has no counterpart, or one of another type, controllability or marking.
+        """
         self._counterparts: dict[Any, Any] = {}
-        #: The variables that stand for the locations of plants.
+        #: Variables that hold the locations of plants.
         self._numbers: dict[Any, sct.DiscreteVariable] = {}
         self._pair("enumerations", model.enumerations, specification.enumerations)
         for enumeration in model.enumerations:
@@ -42,20 +46,20 @@ class Correspondence:
         self._originals.update({theirs: ours for ours, theirs in self._numbers.items()})
 
     def __getitem__(self, ours: Any) -> Any:
-        """What stands for an element of the model."""
+        """Return the counterpart of an element of the model."""
         return self._counterparts[ours]
 
     def holding(self, ours: Element) -> Element:
-        """What holds the value of an element of the model: for a plant's location a variable, where there is one."""
+        """Return the counterpart that holds the value of an element: for a plant's location possibly a variable."""
         counterpart: Element = self._numbers.get(ours) or self._counterparts[ours]
         return counterpart
 
     def event(self, ours: sct.Event) -> sct.Event | None:
-        """What stands for an event of the model, None where it is missing."""
+        """Return the counterpart of an event of the model, or None if it is missing."""
         return self._counterparts.get(ours)
 
     def original(self, theirs: Any) -> Any:
-        """What an element of the specification stands for."""
+        """Return the element of the model for an element of the specification."""
         return self._originals[theirs]
 
     def _pair(self, what: str, ours: Sequence[ex.NamedElement], theirs: Sequence[ex.NamedElement]) -> None:
@@ -91,7 +95,7 @@ class Correspondence:
                 raise CifError(f"the values of '{member.name}' {of} are others")
 
     def _narrow(self, ours: sct.Input, plant: sct.Plant, theirs: sct.Input, automaton: sct.Plant) -> None:
-        """Give an input of CIF the literals that it can be in the model, if its automaton excludes the others."""
+        """Restrict an input of CIF to the literals that the model allows if its automaton excludes the others."""
         if not isinstance(ours.type, ex.EnumerationType) or not isinstance(theirs.type, ex.EnumerationType):
             return
         low, high = domain(ours.type)
@@ -127,7 +131,7 @@ class Correspondence:
 
 
 def _excluded(guard: ex.Expression | None, carried: sct.Input) -> set[ex.EnumerationLiteral]:
-    """The literals that an input is not where a guard holds, as far as conditions joined by `and` name them."""
+    """Return the literals that a guard excludes for an input, by inequations joined with `and`."""
     found: set[ex.EnumerationLiteral] = set()
     pending = [guard]
     while pending:

@@ -1,4 +1,4 @@
-"""What is different in a translation, in words."""
+"""Differences between a model and a translation, in words."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ if TYPE_CHECKING:
 
 
 def event_in_words(event: sct.Event, inputs: Mapping[Element, int]) -> str:
-    """The event with those of its inputs whose codes are given."""
+    """Return the event with those of its inputs whose codes are given."""
     values = {parameter.name: value(parameter, inputs[parameter]) for parameter in event.inputs if parameter in inputs}
     meaning = with_words(event).removeprefix(event_name(event))
     return f"`{TraceStep(event_name(event), values)}`{meaning}"
 
 
 def on_one_side(step: str, translation: str, *, translated: bool) -> str:
-    """That an event can happen in the translation and not in the model, or the other way round."""
+    """Return a clause which states that an event can happen only in the translation, or only in the model."""
     sides = (translation, "the model") if translated else ("the model", translation)
     return f"{step} can happen in {sides[0]} and not in {sides[1]}"
 
 
 def different(theirs: Mapping[Element, int], ours: Mapping[Element, int], translation: str) -> str:
-    """The first of the elements whose code is another one in the translation."""
+    """Return the first element whose code differs in the translation, with both values, as text."""
     element = next(cell for cell in theirs if theirs[cell] != ours[cell])
     values = [condition([(element, _value(element, codes[element]))]) for codes in (theirs, ours)]
     return f"{translation} has `{values[0]}` and the model `{values[1]}`"
@@ -43,7 +43,7 @@ def different(theirs: Mapping[Element, int], ours: Mapping[Element, int], transl
 def where(
     system: GuardedSystem, event: sct.Event, state: Mapping[Element, int], asked: Iterable[sct.Requirement] = ()
 ) -> str:
-    """As much of a state as the event has to do with, and what is asked of it."""
+    """Return the part of a state that an event and its requirements depend on, as text."""
     touched = set(system.relations[event].touched)
     if event in system.guards:
         touched.update(referenced(system.guards[event].requirement), referenced(system.guards[event].synthesis))
@@ -55,12 +55,12 @@ def where(
 
 
 def refuted(question: str, explanation: str, way: tuple[TraceStep, ...] = ()) -> Verdict:
-    """The verdict on a translation that means something else than the model."""
+    """Return the verdict on a translation that differs from the model."""
     return Verdict(question, Outcome.REFUTED, "", explanation, way)
 
 
 def _value(element: Element, code: int) -> Value:
-    """What a code stands for; a number where it is outside of the domain."""
+    """Return the value of a code, or a number if it is outside of the domain."""
     if code < domain_size(element):
         return value(element, code)
     return smallest(element) + code - (2**64 if code >= 2**63 else 0)

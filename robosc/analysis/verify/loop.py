@@ -1,4 +1,4 @@
-"""The states that the control loop comes to: between events from outside it lets internal events run to completion."""
+"""States that the control loop reaches if internal events run to completion between external events."""
 
 from __future__ import annotations
 
@@ -33,7 +33,10 @@ if TYPE_CHECKING:
 
 
 def asked_of_the_loop(name: str) -> Callable[[Property], Property]:
-    """Skips the property of this name where the states that the loop comes to are too many to be found."""
+    """Decorate a property so that it is skipped if the states of the loop cannot be computed.
+
+    `name` is the name of the property.
+    """
 
     def decorator(examine: Property) -> Property:
         @wraps(examine)
@@ -50,7 +53,7 @@ def asked_of_the_loop(name: str) -> Callable[[Property], Property]:
 
 @dataclass(frozen=True)
 class _Batch:
-    """Some of these events in their order, with nothing in between; all states, where none of them happens."""
+    """A sequence of events, each of which may be left out, with nothing in between; possibly all are left out."""
 
     moves: tuple[Move, ...]
 
@@ -65,7 +68,7 @@ class _Batch:
         return states
 
     def between(self, system: GuardedSystem, before: dict[Element, int], after: dict[Element, int]) -> Path:
-        """The way from one state to another, as few events as that takes when they are tried in their order."""
+        """Return a path between two states with few events, tried in their order."""
         goals = [system.encoding.state(after)]
         for _, step in reversed(self.moves):
             goals.append(goals[-1] | step.preimage(goals[-1]))
@@ -80,13 +83,13 @@ class _Batch:
 
 
 class ControlLoop:
-    """The order that the control loop keeps.
+    """Model of the order of events in the control loop.
 
-    Internal events and the choice of data happen at any time; requests, cancels and what comes from the robot only
-    where the loop waits. The events of one message, and the cancels of a robot that is stopped, then happen one after
-    the other, as far as they can: some may be missing, where their data can't be read. Quotas, and whether the loop
-    reacts, only delay, and are left out of account. The reset of what has failed may be held back, as `retryMs` says.
-    Where more internal events can happen in a row than the loop lets, it goes on from wherever it then is.
+    Internal events and the choice of data happen at any time. Requests, cancels and events from the robot happen only
+    in states in which the loop waits. The events of one message, and the cancels of a stopped robot, then happen one
+    after the other if they are possible; some may be missing because their data cannot be read. Quotas and disabled
+    reactions only delay events and are not modeled. The reset of a failed call may be held back, as `retryMs` defines.
+    If more internal events can happen in a row than the loop permits, the loop continues from any state in between.
     """
 
     def __init__(self, system: GuardedSystem) -> None:
@@ -108,11 +111,11 @@ class ControlLoop:
 
     @cached_property
     def states(self) -> Diagram:
-        """The states that it comes to, those in which internal events are yet to happen among them."""
+        """States that the loop reaches, including those in which internal events are pending."""
         return self._after(self.system.initial, self._waits)
 
     def after(self, codes: Mapping[Element, int]) -> Diagram:
-        """The states that it comes to from one of them, running to completion every time."""
+        """Return the states that the loop reaches from one of its states, with run to completion."""
         return self._after(self.system.encoding.state(codes), self.quiescent)
 
     def _after(self, start: Diagram, waits: Diagram) -> Diagram:
@@ -127,11 +130,11 @@ class ControlLoop:
 
     @cached_property
     def quiescent(self) -> Diagram:
-        """Those in which no internal event can happen that is not held back."""
+        """States of the loop in which no internal event can happen, unless it is held back."""
         return self.states & ~self._active
 
     def held(self, event: sct.Event) -> Diagram:
-        """The states in which an internal event may be held back: the reset of what has failed."""
+        """Return the states in which an internal event may be held back: the reset of a failed call."""
         encoding = self.system.encoding
         if event.kind != sct.EventKind.reset:
             return encoding.diagrams.false
@@ -140,7 +143,7 @@ class ControlLoop:
         return encoding.diagrams.any_of(map(encoding.location, failed))
 
     def coreachable(self, goal: Diagram) -> Diagram:
-        """The states from which it comes to some of these, running to completion every time."""
+        """Return the states from which the loop reaches one of these, with run to completion."""
         acceleration = _LoopAcceleration(self._free, self._waiting, self.quiescent, self.states, forwards=False)
         return self._closure(
             goal,
@@ -150,7 +153,7 @@ class ControlLoop:
         )
 
     def path_to(self, goal: Diagram) -> Path:
-        """A way from the initial state to one of these states: of those with the fewest batches, always the same."""
+        """Return a path from the initial state to one of these states, with the fewest batches; deterministic."""
         system = self.system
         layers, seen = [system.initial], system.initial
         batches = [(batch, system.diagrams.true) for batch in self._alone]
@@ -181,24 +184,24 @@ class ControlLoop:
 
     @cached_property
     def _waits(self) -> Diagram:
-        """Where it lets something happen that is not internal."""
+        """States in which the loop permits events that are not internal."""
         return self.system.diagrams.true if self._overruns else ~self._active
 
     @cached_property
     def _active(self) -> Diagram:
-        """Where an internal event can happen that is not held back."""
+        """States in which an internal event can happen that is not held back."""
         internal = self.system.internal
         return self.system.diagrams.any_of(event.allowed & ~self.held(event.relation.event) for event in internal)
 
     @cached_property
     def _overruns(self) -> bool:
-        """Whether more internal events can happen in a row than the loop lets."""
+        """Whether more internal events can happen in a row than the loop permits."""
         system, bound = self.system, self.system.roles.settling_bound
         if system.completion.bound is None:
             return True
         if system.completion.bound <= bound:
             return False
-        # What was found is the bound of groups of events taken together: no run need be that long.
+        # The bound adds up those of groups of events. No sequence need be that long.
         for length, states in enumerate(runs(system.diagrams, system.internal, system.controlled), 1):
             if length > bound or not states.satisfiable():
                 return states.satisfiable()
@@ -209,7 +212,7 @@ class ControlLoop:
             found = states = close(self._free, states)
             for batch, near in self._waiting:
                 more = states | fire(batch, states)
-                # Without those that are quiescent again, the states of others would be found one by one.
+                # Without this, the states in which others are quiescent again would be added one by one.
                 states = states if more == states else close(near, more)
             if states == found:
                 break
@@ -218,10 +221,10 @@ class ControlLoop:
 
 
 class _LoopAcceleration:
-    """What many turns of the loop do at once, where wide integers keep it going.
+    """Acceleration of many turns of the loop, for models whose wide integers keep it going.
 
-    An event of a batch alone is a batch, too: the others may be missing. So each state that events lead to, taken one
-    by one where the loop lets them, is one that it comes to.
+    A single event of a batch is a batch, too, because the others may be missing. Each state that events reach one by
+    one, within the conditions of the loop, is therefore a state that the loop reaches.
     """
 
     def __init__(
@@ -233,7 +236,7 @@ class _LoopAcceleration:
         *,
         forwards: bool,
     ) -> None:
-        """The batches begin `where` the loop lets them; every state is `within` the bound."""
+        """Prepare the acceleration; batches start in `where`, and every state is `within` the bound."""
         self._free = free
         self._batches = [[step for _, step in batch.moves] for batch, _ in waiting]
         self._where = where
@@ -242,7 +245,10 @@ class _LoopAcceleration:
         self._acceleration = Acceleration([*free, *chain(*self._batches)], forwards=forwards)
 
     def taken(self, states: Diagram, turn: int) -> Diagram:
-        """The states, and those that acceleration adds where it is due. Raises ModelError as that."""
+        """Return the states with those that acceleration adds if it is due.
+
+        Raises ModelError as `Acceleration` does.
+        """
         if self._acceleration.due(turn):
             for number, here in enumerate(self._restricted):
                 others = chain(*self._restricted[:number], *self._restricted[number + 1 :], self._free)
@@ -252,11 +258,11 @@ class _LoopAcceleration:
 
     @cached_property
     def _restricted(self) -> list[list[Step]]:
-        """The batches, their events only where the loop lets them."""
+        """Batches whose events are restricted to the states in which the loop permits them."""
         return [[replace(step, relation=step.relation & self._where) for step in steps] for steps in self._batches]
 
 
 def _triggers(batch: Sequence[Move], group: Sequence[InternalEvent]) -> bool:
-    """Whether the events may make internal events of the group possible."""
+    """Return whether the events may enable internal events of the group."""
     changed = {element for relation, _ in batch for element in relation.changed}
     return any(not event.touched.isdisjoint(changed) for event in group)

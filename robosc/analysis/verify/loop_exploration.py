@@ -1,4 +1,4 @@
-"""Explores the generated control loop side by side with the one in Python."""
+"""Exploration of the generated control loop side by side with the one in Python."""
 
 from __future__ import annotations
 
@@ -23,31 +23,32 @@ if TYPE_CHECKING:
     from robosc.analysis.paths import TraceStep
     from robosc.analysis.verify.c_program import CProgram
 
-    #: What is done with both loops; False where it has no meaning in the state they are in, and was not done.
+    #: Operation on both loops. It returns False, and does nothing, if it has no meaning in their state.
     Operation = Callable[[Lockstep], bool]
 
 PROPERTY = "loop-translation"
-#: The loop is explored under each: without reactions, and with quotas that are used up at once.
+#: Settings of the exploration: without reactions, and with quotas that are exhausted at once.
 _EXPLORED = (Settings(react_immediately=False), Settings(1, 1, resolution_ms=1))
-#: It is walked through under each, so often, in a part of its own that begins with some messages before the first tick.
+#: Settings of the random walk. Each is used in `_PARTS` parts, which begin with `_EARLY` batches before the first tick.
 _WALKED = (Settings(), Settings(0, 1), Settings(1, 2), Settings(2, 1), Settings(react_immediately=False))
 _PARTS, _EARLY = 4, 3
-#: Of an event with more values of its inputs, these are tried: all least, all greatest, all in the middle.
+#: Maximum number of input values of an event that are all tried. Otherwise, these are tried: all least, all middle, all
+#: greatest.
 _VALUES = 4
-#: An operation asks all events whether they can happen; so many questions are asked in the whole.
+#: Maximum number of queries whether an event is possible. An operation makes one query for each event.
 _QUESTIONS = 1_000_000
-#: So many values are near an end of an input's range.
+#: Maximum distance of a value near an end of an input's range.
 _NEAR = 3
-#: So many milliseconds go by at most where it is not known when something is up.
+#: Maximum time in milliseconds that passes if no timer is known to expire.
 _LONGEST = 10_000
 
 
 @dataclass(frozen=True)
 class LoopEffort:
-    """How many operations (batches, ticks and the like) are tried.
+    """Maximum numbers of operations (batches, ticks and the like).
 
-    `explored`: most while the loop's states are explored. `walked`: those of the random walk after it. Neither is more
-    than `_QUESTIONS` divided by the number of events.
+    `explored` is the number for the exploration of the loop's states. `walked` is that for the random walk after it.
+    Neither exceeds `_QUESTIONS` divided by the number of events.
     """
 
     explored: int = 60_000
@@ -55,10 +56,10 @@ class LoopEffort:
 
 
 def explore_loop(program: CProgram, effort: LoopEffort | None = None) -> Verdict:
-    """Whether the control loop of the compiled C does what the one in Python does.
+    """Return whether the control loop of the compiled C agrees with the one in Python.
 
-    Both are brought into each state that the loop comes to, and do there what a node can ask of it. Where that is too
-    much, the rest is sampled. What is random is the same on every run.
+    Both loops enter each state that the control loop reaches, and run there all operations that a node can request. If
+    there are too many states, the rest is sampled. Random choices are the same on every run.
     """
     effort = effort or LoopEffort()
     most = max(_QUESTIONS // max(len(program.events), 1), 1)
@@ -78,7 +79,7 @@ def explore_loop(program: CProgram, effort: LoopEffort | None = None) -> Verdict
 
 
 def _end(process: Popen[str]) -> None:
-    """Says that nothing follows, unless the process has ended by itself."""
+    """Close the input of the process, unless the process has ended."""
     assert process.stdin is not None
     try:
         process.stdin.close()
@@ -88,7 +89,7 @@ def _end(process: Popen[str]) -> None:
 
 @dataclass
 class _Seen:
-    """How many states of the loop were looked at, by how many operations, and whether these are all."""
+    """Numbers of explored states and operations, and whether the exploration is complete."""
 
     states: int = 0
     operations: int = 0
@@ -97,13 +98,13 @@ class _Seen:
 
 @dataclass(frozen=True)
 class _Node:
-    """Both loops as they were, and how they came there: from where, by what happened."""
+    """Saved state of both loops, with its predecessor."""
 
     kept: Kept
     before: _Node | None = None
 
     def way(self) -> list[TraceStep]:
-        """What happened from the start on."""
+        """Return the events from the start to this node."""
         steps: list[TraceStep] = []
         node: _Node | None = self
         while node is not None:
@@ -113,7 +114,7 @@ class _Node:
 
 
 def _explored(lockstep: Lockstep, operations: int) -> _Seen:
-    """All states breadth first, under each of the settings an equal part of the operations."""
+    """Explore all states breadth first, with an equal share of the operations for each of the settings."""
     seen = _Seen()
     for part, settings in enumerate(_EXPLORED, 1):
         lockstep.begin(settings)
@@ -123,7 +124,7 @@ def _explored(lockstep: Lockstep, operations: int) -> _Seen:
 
 
 def _breadth_first(lockstep: Lockstep, seen: _Seen, operations: int) -> None:
-    """From where both are on. A node stands where a batch has begun, which leaves least of what was before."""
+    """Explore the states from the current one; a node is the start of a batch, which has the least history."""
     tried = _operations(lockstep)
     lockstep.keep()
     pending = deque(_Node(kept) for kept in lockstep.compare())
@@ -156,14 +157,17 @@ def _breadth_first(lockstep: Lockstep, seen: _Seen, operations: int) -> None:
 
 
 def _key(kept: Kept) -> tuple[Any, ...]:
-    """What two states have in common that go on alike: times count from now."""
+    """Return a key that is equal for equivalent states: times are relative to the current time."""
     now, up = kept.saved.timers
     times = tuple((number, until - now) for number, until in sorted(up.items()))
     return kept.saved.cells, kept.saved.rest, times, kept.first
 
 
 def _operations(lockstep: Lockstep) -> list[Operation]:
-    """What is tried in each state: batches, ticks, settling, with and without events that are withheld, times."""
+    """Return the operations to try in each state.
+
+    They are batches, ticks, settling and timers, some with a withheld event.
+    """
     roles = Roles(lockstep.model)
     number = {event: place for place, event in enumerate(lockstep.events)}
     alone = [number[event] for event in (*roles.incoming, *roles.timeouts, *roles.cancels, *roles.triggers)]
@@ -187,7 +191,7 @@ def _operations(lockstep: Lockstep) -> list[Operation]:
 
 
 def _values(lockstep: Lockstep, event: int) -> list[tuple[int, ...]]:
-    """Codes for the inputs of an event: all, or the ends and the middle of each."""
+    """Return codes for the inputs of an event: all, or the ends and the middle of each."""
     sizes = lockstep.sizes(event)
     if prod(sizes) <= _VALUES:
         return list(product(*map(range, sizes)))
@@ -204,7 +208,7 @@ def _operation(names: str) -> Operation:
 
 
 def _batch(batch: Sequence[tuple[int, tuple[int, ...]]]) -> Operation:
-    """These events, where the first is possible."""
+    """Return an operation that performs these events if the first one is possible."""
 
     def perform(both: Lockstep) -> bool:
         if not both.loop.enabled(both.names[batch[0][0]]):
@@ -219,7 +223,7 @@ def _batch(batch: Sequence[tuple[int, tuple[int, ...]]]) -> Operation:
 
 
 def _impossible(both: Lockstep) -> bool:
-    """A batch of all that is not possible."""
+    """Perform a batch of all events that are not possible."""
     both.operate("b")
     for event, name in enumerate(both.names):
         if not both.loop.enabled(name):
@@ -229,7 +233,7 @@ def _impossible(both: Lockstep) -> bool:
 
 
 def _without(event: int, operation: Operation) -> Operation:
-    """The operation while an event is withheld."""
+    """Return the operation while an event is withheld."""
 
     def operate(both: Lockstep) -> bool:
         both.withhold(event)
@@ -241,7 +245,7 @@ def _without(event: int, operation: Operation) -> Operation:
 
 
 def _up(both: Lockstep) -> bool:
-    """The next time is up."""
+    """Let the next timer expire."""
     wait = both.loop.timers.wait
     if wait is not None:
         both.pass_time(wait)
@@ -250,7 +254,7 @@ def _up(both: Lockstep) -> bool:
 
 
 def _early(both: Lockstep) -> bool:
-    """It is nearly."""
+    """Let the time pass until just before the next timer expires."""
     wait = both.loop.timers.wait
     if wait:
         both.pass_time(wait - 1)
@@ -265,7 +269,7 @@ def _backwards(both: Lockstep) -> bool:
 
 
 def _walked(lockstep: Lockstep, operations: int) -> int:
-    """Random operations from the start on, with the settings in turn; says how many."""
+    """Run random operations from the start with each of the settings, and return their number."""
     walk = _Walk(lockstep)
     parts = _WALKED * _PARTS
     for part, settings in enumerate(parts, 1):
@@ -279,13 +283,13 @@ def _walked(lockstep: Lockstep, operations: int) -> int:
         try:
             lockstep.compare()
         except DifferenceError as error:
-            error.seen = ()  # What happened so far is not told: it is no shortest way.
+            error.seen = ()  # The walk is no shortest trace, so the events so far are not reported.
             raise
     return walk.operations
 
 
 class _Walk:
-    """Random operations, the same ones each time; nothing else than the model decides on them."""
+    """Random operations that depend on nothing but the model and are the same on every run."""
 
     def __init__(self, lockstep: Lockstep) -> None:
         self.operations = 0
@@ -295,13 +299,13 @@ class _Walk:
         self._incoming = [number[event] for event in Roles(lockstep.model).incoming]
 
     def step(self) -> None:
-        """One of them."""
+        """Run one random operation."""
         timed = [self._wait] * (3 * self._both.loop.timers.exist)
         batches = [self.batch] * 4
         self._random.choice((*batches, self._tick, self._settle, self._withhold, *timed))()
 
     def batch(self) -> None:
-        """A few events."""
+        """Perform a few events."""
         self._operate("b")
         for _ in range(self._random.randrange(4)):
             self._perform()
@@ -318,13 +322,13 @@ class _Walk:
         self._operate("s")
 
     def _withhold(self) -> None:
-        """Withholds one event, or the one that is withheld no longer."""
+        """Withhold one event, or stop withholding the current one."""
         withheld = self._both.withheld or range(len(self._both.events))
         if withheld:
             self._both.withhold(self._random.choice(withheld))
 
     def _wait(self) -> None:
-        """Lets time go by, mostly until something is up or nearly so, and now and then backwards; then asks once."""
+        """Change the clock, mostly to the next timer or just before it, sometimes backwards; then expire once."""
         timers = self._both.loop.timers
         for number, duration in enumerate(self._both.model.durations):
             length = self._random.choice((duration.shortest, duration.milliseconds, duration.longest))
@@ -334,7 +338,7 @@ class _Walk:
         self._operate("x")
 
     def _perform(self) -> None:
-        """Mostly something that the robot can do now, now and then anything."""
+        """Perform an event, mostly one that the robot can produce now, sometimes any."""
         both = self._both
         possible = [number for number in self._incoming if both.loop.enabled(both.names[number])]
         if not possible or self._random.random() < 0.1:

@@ -1,4 +1,4 @@
-"""The control loop in Python and the generated one, doing the same things one after the other."""
+"""Control loops in Python and in generated code that perform the same operations."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from robosc.engine.control_loop import SavedLoop
     from robosc.metamodel import sct
 
-#: What an operation is called by the follower, and by us.
+#: Operations by their letter in the follower's protocol, with their names in messages.
 OPERATIONS = {
     "p": "an event",
     "b": "the start of a batch",
@@ -32,15 +32,15 @@ OPERATIONS = {
     "x": "the end of a time",
     "r": "starting times anew",
 }
-#: Where the clock starts: it soon wraps from its largest value to 0.
+#: Start of the clock: it soon wraps from its largest value to 0.
 _START = 2**32 - 20_000
 _NEVER = 2**32 - 1
-#: So many characters fit into every pipe.
+#: Number of characters that every pipe holds.
 _PORTION = 4096
 
 
 class DifferenceError(Exception):
-    """The loops did different things, as the message says; `seen` is what happened before."""
+    """The loops behaved differently, as the message explains; `seen` are the events before that."""
 
     def __init__(self, message: str, seen: Sequence[TraceStep]) -> None:
         super().__init__(message)
@@ -49,9 +49,10 @@ class DifferenceError(Exception):
 
 @dataclass(frozen=True)
 class Kept:
-    """Both loops as they were, and what was `seen` until then.
+    """Saved state of both loops, with the events `seen` until then.
 
-    The generated one has a number; another that is like it but for the time of the clock is the first of its kind.
+    `number` identifies the state of the generated loop. `first` is the number of the first state that equals it except
+    for the clock.
     """
 
     saved: SavedLoop
@@ -62,7 +63,7 @@ class Kept:
 
 @dataclass(frozen=True)
 class _Noted:
-    """The operations, what the Python loop said in them, and how it is then."""
+    """Script of operations, output of the Python loop for them, and its state afterwards."""
 
     script: str
     said: list[str]
@@ -71,11 +72,11 @@ class _Noted:
 
 
 class Lockstep:
-    """Both loops of one model. Events are told by their number, in the order of the model, data by codes.
+    """Both loops of one model. Events are identified by number in the order of the model, data by codes.
 
-    `operate`, `perform`, `withhold`, `pass_time` and the like are done by the Python loop at once, `keep` notes how it
-    is then. `compare` lets the generated one do all of that, too, and raises DifferenceError where it did something
-    else. Whoever compares after many operations waits for the other process once.
+    The Python loop performs `operate`, `perform`, `withhold`, `pass_time` and the like at once; `keep` records its
+    state. `compare` makes the generated loop do the same, and raises DifferenceError if the results differ. Compare
+    after many operations: each comparison waits for the other process once.
     """
 
     def __init__(self, model: sct.SupervisoryControlModel, follower: Popen[str]) -> None:
@@ -90,16 +91,16 @@ class Lockstep:
         self._said: list[str] = []
         self._noted: list[_Noted] = []
         self._happened: list[str] = []
-        #: What is told of each state that was seen.
+        #: Text of the codes of each state so far.
         self._codes: dict[tuple[int, ...], str] = {}
         self._withheld: set[str] = set()
-        #: What happened since whoever reads this cleared it.
+        #: Events since the caller last cleared the list.
         self.seen: list[TraceStep] = []
-        #: The event that is performed, and with which data.
+        #: Event that is being performed, with its data.
         self._performed: tuple[str, Mapping[str, Any]] = ("", {})
 
     def begin(self, settings: Settings) -> None:
-        """Both begin anew."""
+        """Start both loops again."""
         self._withheld.clear()
         hooks = Hooks(lambda event: event not in self._withheld, self._after, lambda: self._happened.append("!"))
         self.loop = ControlLoop(self.model, settings, hooks)
@@ -114,7 +115,7 @@ class Lockstep:
         self.seen.append(TraceStep(event, data if event == performed else {}))
 
     def operate(self, operation: str) -> None:
-        """One of the operations that take nothing."""
+        """Run an operation without arguments."""
         self._script.append(operation)
         result = False
         match operation:
@@ -133,14 +134,14 @@ class Lockstep:
         self._say(operation, result)
 
     def sizes(self, number: int) -> list[int]:
-        """How many values each input of an event has."""
+        """Return the number of values of each input of an event."""
         return [domain.high - domain.low + 1 for domain in self._domains(number)]
 
     def _domains(self, number: int) -> list[Domain]:
         return [self._inputs[parameter][1] for parameter in self.events[number].inputs]
 
     def perform(self, number: int, codes: tuple[int, ...]) -> None:
-        """Performs an event, with a code for each of its inputs."""
+        """Perform an event, with a code for each of its inputs."""
         data = {}
         for parameter, code in zip(self.events[number].inputs, codes, strict=True):
             place, domain = self._inputs[parameter]
@@ -153,39 +154,39 @@ class Lockstep:
         self._say("p", result)
 
     def withhold(self, number: int) -> None:
-        """Withholds an event, or, where it is withheld, no longer."""
+        """Withhold an event, or stop withholding it."""
         self._withheld ^= {self.names[number]}
         self._script.append(f"w {number}")
 
     @property
     def withheld(self) -> list[int]:
-        """The numbers of the events that are withheld."""
+        """Numbers of the withheld events."""
         return sorted(self._numbers[name] for name in self._withheld)
 
     def set_duration(self, number: int, milliseconds: int) -> None:
-        """How long a time lasts that is set on the robot."""
+        """Set a duration that the robot configures."""
         self.loop.timers.set_duration(self.model.durations[number], milliseconds)
         self._script.append(f"d {number} {milliseconds}")
 
     def pass_time(self, milliseconds: int) -> None:
-        """Lets so much time go by, or go back."""
+        """Advance the clock, or turn it back if `milliseconds` is negative."""
         timers = self.loop.timers
         timers.at(timers.now + milliseconds)
         self._script.append(f"c {timers.now % 2**32}")
 
     def go_back(self, kept: Kept) -> None:
-        """Both are as they were when this was kept."""
+        """Restore both loops to a saved state."""
         self.loop.restore(kept.saved)
         self._script.append(f"g {kept.number}")
 
     def keep(self) -> None:
-        """Both keep how they are, to `go_back` there."""
+        """Save the state of both loops for `go_back`."""
         self._script.append("k")
         self._noted.append(_Noted("\n".join([*self._script, ""]), self._said, self.loop.saved, tuple(self.seen)))
         self._script, self._said = [], []
 
     def compare(self) -> list[Kept]:
-        """Lets the generated loop do what the Python one did; says what was kept since the last comparison."""
+        """Run the generated loop, compare it with the Python loop, and return the states saved since the last time."""
         noted, self._noted = self._noted, []
         kept: list[Kept] = []
         while len(kept) < len(noted):
@@ -193,7 +194,10 @@ class Lockstep:
         return kept
 
     def _compared(self, noted: Sequence[_Noted]) -> list[Kept]:
-        """The first of these, as many as the pipe takes at once: nobody reads there while we write."""
+        """Compare as many of the first operations as fit into the pipe.
+
+        Neither process reads while we write, so a larger text would block both.
+        """
         pipe, answers = self._follower.stdin, self._follower.stdout
         assert pipe is not None
         assert answers is not None
@@ -203,7 +207,7 @@ class Lockstep:
             pipe.write("".join(operations.script for operations in portion))
             pipe.flush()
         except BrokenPipeError:
-            pass  # What it has said tells how far it came.
+            pass  # Its output shows the last operation that it completed.
         kept = []
         for operations in portion:
             answer = answers.readline()

@@ -1,6 +1,6 @@
-"""What a supervised system has to be: a property is a function from the system, or from its control loop, to a verdict.
+"""Properties of a supervised system. A property is a function from the system or its control loop to a verdict.
 
-`response` holds those about how many internal events happen in a row and where they lead.
+`response` has the properties about sequences of internal events and the states that they lead to.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ if TYPE_CHECKING:
 
     T = TypeVar("T")
 
-#: An action that is restricted by nothing that changes is never cancelled, and data may always be at hand: of cancels
-#: and data events, which no user wrote, some are dead on purpose.
+#: Kinds of events that must be possible. An action without a changing restriction is never canceled, and data may
+#: always be available. No user wrote cancels and data events, and some of them are dead on purpose.
 _LIVE = (sct.EventKind.trigger, sct.EventKind.reset, sct.EventKind.tau)
 _INPUTS = (
     sct.EventKind.response,
@@ -49,9 +49,9 @@ _NEVER_QUIESCENT = "the control loop never again rests in a state in which all c
 
 
 def properties(system: GuardedSystem) -> list[Callable[[], Verdict]]:
-    """All that a model with its supervisor is to satisfy: a property for each requirement among them.
+    """Return all properties that a model with its supervisor must satisfy, including one for each requirement.
 
-    A model from CIF has no control loop, and its plants may refuse what comes.
+    A model from CIF has no control loop, and its plants may refuse events.
     """
     stepwise = is_from_cif(system.model)
     written = [requirement for requirement in system.model.requirements if not requirement.ranges]
@@ -81,7 +81,7 @@ def _in_the_loop(system: GuardedSystem) -> list[Callable[[], Verdict]]:
 
 
 def non_blocking(system: GuardedSystem) -> Verdict:
-    """Every reachable state can reach one in which every plant is marked."""
+    """Check that every reachable state can reach one in which every plant is marked."""
     states = system.controlled
     marked = states & system.encoding.all_marked
     blocked = states & ~coreachable(system.diagrams, steps(system.moves), marked, states)
@@ -94,7 +94,7 @@ def non_blocking(system: GuardedSystem) -> Verdict:
 
 
 def controllability(system: GuardedSystem) -> Verdict:
-    """Where the plants enable an uncontrollable event in a reachable state, no requirement and no guard forbids it."""
+    """Check that no requirement and no guard forbids an uncontrollable event in a reachable state."""
     uncontrollable = [relation for relation in system.relations.values() if not relation.event.controllable]
     forbidden = {
         relation: system.controlled & relation.enabled & ~(relation.requirement & system.guard(relation.event))
@@ -111,11 +111,11 @@ def controllability(system: GuardedSystem) -> Verdict:
 
 
 def input_enabledness(system: GuardedSystem) -> Verdict:
-    """Where a communication allows an answer, an error, feedback or its cancelling, so does every component.
+    """Check that every component accepts the answers, errors, feedback and cancels that a communication allows.
 
-    Components synchronise with communications: one without an edge for such an event would block the robot in the
-    model, though nothing blocks it in the world. The term is that of I/O automata (Lynch, Tuttle: An introduction to
-    input/output automata, CWI Quarterly 1989).
+    Components synchronize with communications. A component without an edge for such an event would block the robot in
+    the model, although nothing blocks it in reality. The term is that of I/O automata (Lynch, Tuttle: An introduction
+    to input/output automata, CWI Quarterly 1989).
     """
     inputs = [
         relation
@@ -138,12 +138,12 @@ def input_enabledness(system: GuardedSystem) -> Verdict:
 
 
 def _stated(examine: Callable[[GuardedSystem, Any], Verdict], system: GuardedSystem, stated: Any) -> Verdict:
-    """The verdict on what the robot model states, with what that is called."""
+    """Return the verdict on a statement of the robot model, with its identifier."""
     return replace(examine(system, stated), requirement=requirement_identifier(stated))
 
 
 def requirement_identifier(requirement: sct.StatedRequirement) -> str:
-    """The name of a requirement; where it has none, file and line. Several in the model may come from one of a text."""
+    """Return the name of a requirement, or its file and line. One in the text may become several in the model."""
     if requirement.name or requirement.source is None:
         return requirement.name or ""
     file, span = place(requirement)
@@ -151,7 +151,7 @@ def requirement_identifier(requirement: sct.StatedRequirement) -> str:
 
 
 def requirement_name(requirement: sct.StatedRequirement) -> str:
-    """The requirement in the robot model's words, and its line there."""
+    """Return the text of the requirement in the robot model, with its line."""
     said = requirement.text or "requirement"
     if isinstance(requirement, sct.Requirement) and not requirement.text:
         said = f"requirement on {event_name(requirement.event)}"
@@ -159,9 +159,9 @@ def requirement_name(requirement: sct.StatedRequirement) -> str:
 
 
 def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Verdict:
-    """The supervisor lets the event happen in no reachable state in which the requirement forbids it.
+    """Check that the supervisor allows the event in no reachable state in which the requirement forbids it.
 
-    The evidence shows what was proved: the condition of the model, which was made of the author's words.
+    The evidence shows the proved condition of the model, which was derived from the author's text.
     """
     relation = system.relations[requirement.event]
     condition = copied(requirement.condition)
@@ -182,7 +182,7 @@ def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Ve
 
 
 def ranges(system: GuardedSystem) -> Verdict:
-    """In no reachable state an event can happen that would bring a variable out of its range."""
+    """Check that no event in a reachable state can move a variable out of its range."""
     kept = [requirement for requirement in system.model.requirements if requirement.ranges]
     leaving = {
         requirement: system.controlled & system.allowed[requirement.event] & ~system.encoding.permits(requirement)
@@ -199,7 +199,7 @@ def ranges(system: GuardedSystem) -> Verdict:
 
 
 def invariant_holds(system: GuardedSystem, invariant: sct.StateInvariant | sct.InvariantProperty) -> Verdict:
-    """The condition of an invariant holds in every reachable state."""
+    """Check that the condition of an invariant holds in every reachable state."""
 
     def explanation(_: object, path: Path) -> str:
         return f"it is violated where `{system.where(path.states[-1], referenced(invariant.condition))}`"
@@ -210,7 +210,7 @@ def invariant_holds(system: GuardedSystem, invariant: sct.StateInvariant | sct.I
 
 
 def claim_holds(system: GuardedSystem, claimed: sct.Property) -> Verdict:
-    """What a property of the model claims, which synthesis did not see to."""
+    """Check a property that the model claims; synthesis does not enforce it."""
     if isinstance(claimed, sct.InvariantProperty):
         return invariant_holds(system, claimed)
     assert isinstance(claimed, sct.ReachabilityProperty)
@@ -228,7 +228,7 @@ def claim_holds(system: GuardedSystem, claimed: sct.Property) -> Verdict:
 
 
 def no_dead_events(system: GuardedSystem) -> Verdict:
-    """Each trigger, each silent transition and each reset can happen in some reachable state."""
+    """Check that each trigger, each silent transition and each reset can happen in some reachable state."""
     events = [event for event in system.relations if event.kind in _LIVE]
     dead = [event for event in events if not (system.controlled & system.allowed[event]).satisfiable()]
     evidence = f"{system.size}, {counted(len(events), 'event')}"
@@ -239,9 +239,9 @@ def no_dead_events(system: GuardedSystem) -> Verdict:
 
 
 def _cancelable(system: GuardedSystem) -> dict[sct.Event, sct.Event]:
-    """The cancels of actions on whose start a requirement stands, each with the event of the start.
+    """Return the cancels of actions whose start has a requirement, each with the event of the start.
 
-    An order, a count or an automaton refuses a start, and cancels nothing.
+    An order, a count or an automaton refuses a start, but never cancels.
     """
     found = {}
     for event in system.relations:
@@ -254,7 +254,7 @@ def _cancelable(system: GuardedSystem) -> dict[sct.Event, sct.Event]:
 
 
 def cancel_when_due(system: GuardedSystem) -> Verdict:
-    """Where an action runs and a requirement on its start no longer holds, its cancel can happen."""
+    """Check that the cancel of a running action can happen if a requirement on its start no longer holds."""
     cancels = _cancelable(system)
     held_back = {
         cancel: system.controlled
@@ -274,7 +274,7 @@ def cancel_when_due(system: GuardedSystem) -> Verdict:
 
 
 def maximal_permissiveness(system: GuardedSystem) -> Verdict:
-    """Where the guard of a controllable event forbids it in a reachable state, any supervisor has to."""
+    """Check that every guard forbids a controllable event only where any supervisor must."""
     required = supervise(system.encoding, required_moves(system.relations.values()), system.violating).controlled
     controllable = [relation for relation in system.relations.values() if relation.event.controllable]
     needless = {
@@ -293,12 +293,12 @@ def maximal_permissiveness(system: GuardedSystem) -> Verdict:
 
 @asked_of_the_loop("non-blocking in the control loop")
 def non_blocking_in_the_loop(loop: ControlLoop) -> Verdict:
-    """From each state that the control loop comes to it can come to a marked one that is quiescent.
+    """Check that the control loop can always reach a state that is marked and quiescent.
 
-    Where some events have precedence, a system that is non-blocking may never get out of them, or always take the same
-    branch. Non-blocking under control, of Eclipse ESCET's controller properties for CIF, is asked in the same way of
-    all controllable events, which code generated there lets happen until none is possible. This loop does that with
-    internal events; requests and cancels take turns with what comes from the robot.
+    If some events have precedence, a nonblocking system may stay in these events forever, or always take the same
+    branch. The controller property "non-blocking under control" of Eclipse ESCET for CIF is about all controllable
+    events: its generated code executes these until none is possible. This control loop does so with internal events;
+    requests and cancels alternate with events from the robot.
     """
     system, question = loop.system, "non-blocking in the control loop"
     blocked = loop.states & ~loop.coreachable(loop.quiescent & system.encoding.all_marked)
@@ -321,9 +321,9 @@ def _nowhere(  # noqa: PLR0913 - all parts of a verdict
     *,
     last: Callable[[T], sct.Event] | None = None,
 ) -> Verdict:
-    """Whether there are no violations; else, the first of them in the nearest state that has any.
+    """Return the verdict that there are no violations, or the first violation in the nearest state.
 
-    The trace ends in that state, or, with `last`, with that event of the violation.
+    The trace ends in that state, or with the event `last` of the violation.
     """
     anywhere = system.diagrams.any_of(violations.values())
     if not anywhere.satisfiable():
@@ -335,13 +335,13 @@ def _nowhere(  # noqa: PLR0913 - all parts of a verdict
 
 
 def _permitted(relation: EventRelation, controlled: Diagram) -> Diagram:
-    """Where the maximally permissive supervisor allows the event."""
+    """Return the states in which the maximally permissive supervisor allows the event."""
     enabled = controlled & relation.enabled & relation.requirement
     return enabled if relation.step is None else enabled & relation.step.preimage(controlled)
 
 
 def _stuck(plants: Sequence[sct.Plant], codes: Codes) -> str:
-    """That these plants, or all of them together, are never marked again."""
+    """Return a clause about plants that are never marked again, or never all at once if there are none."""
     if not plants:
         return "the marked states of all components can't be reached together any more"
     places = (

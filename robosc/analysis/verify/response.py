@@ -1,7 +1,7 @@
-"""Finite and bounded response, and confluence: internal events come to an end, after how many of them, and where.
+"""Finite and bounded response, and confluence: the end of sequences of internal events.
 
 The terms are those of Reijnen, Hofkamp, van de Mortel-Fronczak, Reniers, Rooda: Finite response and confluence of
-state-based supervisory controllers, CASE 2019. Where pairs of events are looked at there, confluence is decided here.
+state-based supervisory controllers, CASE 2019. The paper examines pairs of events; this module decides confluence.
 """
 
 from __future__ import annotations
@@ -33,15 +33,15 @@ if TYPE_CHECKING:
 
 FINITE, BOUNDED, CONFLUENCE = "finite response", "bounded response", "confluence"
 _GIVEN_UP = "silent events take so many steps to come to rest that counting them was given up"
-#: What following all silent events together may cost, in nodes looked at.
+#: Effort limit for following all silent events together, in visited nodes.
 _EFFORT = 20_000_000
-#: How many resets of what has failed may be among internal events that depend on each other: all ways to hold them back
-#: are looked at.
+#: Maximum number of resets of failed calls among dependent internal events. All combinations of held-back resets are
+#: examined.
 _HELD = 6
 
 
 def finite_response(system: GuardedSystem) -> Verdict:
-    """From no reachable state internal events can happen for ever."""
+    """Check that internal events can happen forever from no reachable state."""
     found = system.completion
     evidence = f"{system.size}, {counted(len(system.internal), 'silent event')}"
     if found.divergent.satisfiable():
@@ -54,7 +54,7 @@ def finite_response(system: GuardedSystem) -> Verdict:
 
 
 def bounded_response(system: GuardedSystem) -> Verdict:
-    """No more internal events happen in a row than the supervisor says, and there is such a bound."""
+    """Check that there is a bound on consecutive internal events, and that the supervisor's bound is right."""
     found = system.completion
     if found.divergent.satisfiable():
         return Verdict(
@@ -75,10 +75,10 @@ def bounded_response(system: GuardedSystem) -> Verdict:
 
 
 def _longer(system: GuardedSystem, most: int) -> Diagram | None:
-    """The states from which more than so many silent events can happen in a row; None where that costs too much.
+    """Return the states from which more than `most` silent events can happen in a row.
 
-    All silent events are followed together, also where `completion`, which synthesis has the bound from, adds up the
-    bounds of groups of them: no run need be as long as these together.
+    All silent events are followed together. Synthesis computes its bound with `completion`, which adds up the bounds of
+    groups; no sequence need be that long. Returns None if the effort limit is exceeded.
     """
     effort = _EFFORT
     for length, states in enumerate(runs(system.diagrams, system.internal, system.controlled), 1):
@@ -91,7 +91,7 @@ def _longer(system: GuardedSystem, most: int) -> Diagram | None:
 
 
 def _lasso(system: GuardedSystem, divergent: Diagram) -> tuple[tuple[TraceStep, ...], tuple[TraceStep, ...]]:
-    """A shortest way to where internal events need never end, as far as the first cycle; and the cycle."""
+    """Return a shortest path to the first cycle of internal events, and the cycle."""
     path = system.path_to(_recurring(system, divergent))
     states, events = [path.states[-1]], []
     while True:
@@ -105,7 +105,7 @@ def _lasso(system: GuardedSystem, divergent: Diagram) -> tuple[tuple[TraceStep, 
 
 
 def _recurring(system: GuardedSystem, divergent: Diagram) -> Diagram:
-    """Of the states from which internal events need not end, those on a way from one cycle of them to another."""
+    """Return the divergent states that are on a cycle of internal events or on a path from one to another."""
     while True:
         after = system.diagrams.any_of(_after(internal, divergent) for internal in system.internal)
         if divergent == divergent & after:
@@ -114,7 +114,7 @@ def _recurring(system: GuardedSystem, divergent: Diagram) -> Diagram:
 
 
 def _run(system: GuardedSystem, codes: dict[Element, int], length: int) -> tuple[TraceStep, ...]:
-    """So many internal events in a row from a state from which they are possible."""
+    """Return `length` consecutive internal events from a state that allows them."""
     longer = [system.controlled]
     for states, _ in zip(runs(system.diagrams, system.internal, system.controlled), range(length - 1), strict=False):
         longer.append(states)
@@ -128,7 +128,7 @@ def _run(system: GuardedSystem, codes: dict[Element, int], length: int) -> tuple
 def _next(
     system: GuardedSystem, codes: dict[Element, int], within: Diagram
 ) -> tuple[InternalEvent, dict[Element, int]]:
-    """The first internal event that leads from a state to one of these, and the state after it."""
+    """Return the first internal event that leads from a state into a set, and the state after it."""
     here = system.encoding.state(codes)
     for internal in system.internal:
         after = _after(internal, here) & within
@@ -138,15 +138,15 @@ def _next(
 
 
 def _after(internal: InternalEvent, states: Diagram) -> Diagram:
-    """The states after an internal event in some of these."""
+    """Return the states after an internal event in some of these states."""
     return states & internal.allowed if internal.step is None else internal.step.image(states)
 
 
 @asked_of_the_loop(CONFLUENCE)
 def confluence(loop: ControlLoop) -> Verdict:
-    """From every state that the control loop comes to internal events lead to one quiescent state at most.
+    """Check that internal events lead from every state of the control loop to at most one quiescent state.
 
-    Events that have nothing to do with each other can't lead elsewhere by taking turns: they are looked at apart.
+    Independent events cannot lead to different states by a different order, so each group is examined separately.
     """
     system = loop.system
     quiescent = counted(system.encoding.count(loop.quiescent), "of them at rest").removesuffix("s")
@@ -175,13 +175,13 @@ def _subsets(events: Sequence[sct.Event]) -> Iterator[tuple[sct.Event, ...]]:
 
 
 def _held_back(internal: InternalEvent, held: Mapping[sct.Event, Diagram]) -> InternalEvent:
-    """A reset that happens only where nothing holds it back."""
+    """Return a reset that happens only in states in which nothing holds it back."""
     allowed = internal.allowed & ~held[internal.relation.event]
     return replace(internal, allowed=allowed, step=internal.relation.step_where(allowed))
 
 
 class _Ends:
-    """Where internal events that have to do with each other end, when they happen in whatever order."""
+    """Final states of dependent internal events that happen in any order."""
 
     def __init__(self, loop: ControlLoop, events: Sequence[InternalEvent]) -> None:
         self._loop = loop
@@ -190,7 +190,7 @@ class _Ends:
 
     @cached_property
     def several(self) -> Diagram:
-        """The states from which they can end in several: these differ in some bit, which one of the events changed."""
+        """States with several final states. These differ in some bit that one of the events changes."""
         system, several = self._loop.system, self._loop.system.diagrams.false
         for element in dict.fromkeys(element for relation, _ in self._moves for element in relation.changed):
             for bit in system.encoding.bits(element):
@@ -202,7 +202,7 @@ class _Ends:
         return several
 
     def verdict(self, evidence: str) -> Verdict:
-        """That there are some, with two ways from one of them."""
+        """Return the refutation, with two paths from one of these states."""
         system = self._loop.system
         path = self._loop.path_to(self.several)
         way = self._way(path, self._quiescent)

@@ -1,4 +1,4 @@
-"""What each event does, as functions of the state and of the values of inputs: the same for a model and its CIF."""
+"""Effects of events as functions of the state and of input values, for a model and for its CIF."""
 
 from __future__ import annotations
 
@@ -26,23 +26,23 @@ class AmbiguityError(ValueError):
 
 @dataclass(frozen=True)
 class Transition:
-    """One event: where it can happen, and where it can, the code that each element has then.
+    """Effect of one event: the states that enable it, and the code of each element after it.
 
-    An element that `after` does not name stays as it is.
+    An element that `after` does not contain keeps its value.
     """
 
     enabled: Diagram
     after: Mapping[Element, Vector]
 
     def bits(self, element: Element, encoding: Encoding) -> tuple[Diagram, ...]:
-        """The bits of the element's code after the event, least significant first."""
+        """Return the bits of the element's code after the event, least significant first."""
         now = encoding.bits(element)
         code = self.after.get(element, now)
         return tuple(code[min(place, len(code) - 1)] for place in range(len(now)))
 
 
 def of_system(system: GuardedSystem) -> dict[sct.Event, Transition]:
-    """The events of a model under its supervisor, in the order of the plants."""
+    """Return the events of a model under its supervisor, in the order of the plants."""
     edges = edges_by_event(system.model.plants)
     made = {
         event: together(edges.get(event, {}).values(), system.encoding, saturates=True) for event in system.relations
@@ -51,10 +51,10 @@ def of_system(system: GuardedSystem) -> dict[sct.Event, Transition]:
 
 
 def together(automata: Iterable[Sequence[sct.Edge]], encoding: Encoding, *, saturates: bool) -> Transition:
-    """An event that automata with these edges share.
+    """Return the effect of an event that automata with these edges share.
 
-    A value outside of its variable's range becomes the nearest in it (`saturates`), or the event can't happen. Raises
-    AmbiguityError where two edges of an automaton are enabled at once.
+    If a value is outside of its variable's range, the variable gets the nearest value (`saturates`), or the event
+    cannot happen. Raises AmbiguityError if two edges of an automaton are enabled at the same time.
     """
     diagrams = encoding.diagrams
     enabled = diagrams.true
@@ -81,7 +81,7 @@ def together(automata: Iterable[Sequence[sct.Edge]], encoding: Encoding, *, satu
 
 
 def in_range(update: sct.Update, encoding: Encoding) -> Diagram:
-    """Where the variable can have the value."""
+    """Return the states in which the updated value is in the variable's range."""
     least = arithmetic.constant(encoding.diagrams, smallest(update.variable))
     value = arithmetic.subtract(encoding.vector(update.value), least)
     size = arithmetic.constant(encoding.diagrams, domain_size(update.variable))

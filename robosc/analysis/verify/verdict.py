@@ -1,4 +1,4 @@
-"""What was asked of a supervised system and the answer; as JSON, as JUnit XML, and in words."""
+"""Verdicts on a supervised system; as JSON, as JUnit XML, and in words."""
 
 from __future__ import annotations
 
@@ -21,36 +21,36 @@ if TYPE_CHECKING:
 
 P = ParamSpec("P")
 
-#: What no verdict is about.
+#: Parts that no verdict covers.
 TRUSTED = (
     "Trusted, not examined: the reading of the text itself, the ROS node around the control loop, the C compiler, "
     "RoboSC itself; docs/verify.md says more."
 )
 
 
-#: How a requirement is verified, in the words that S-CORE has for test cases.
+#: Method of verification of a requirement, in the vocabulary of S-CORE for test cases.
 _HOW = (("TestType", "requirements-based"), ("DerivationTechnique", "requirements-analysis"))
 
 
 class Outcome(StrEnum):
-    """How an examination ended."""
+    """Result of an examination."""
 
     PROVED = "proved"
     REFUTED = "refuted"
-    #: No difference was found, but not everything was looked at.
+    #: No difference, but the examination was not exhaustive.
     SAMPLED = "sampled"
-    #: It could not be examined: `Verdict.explanation` says why.
+    #: Not examined; `Verdict.explanation` holds the reason.
     SKIPPED = "skipped"
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """The answer to one question, in `seconds`.
+    """Answer to one question, which took `seconds`.
 
-    `property` is its short name (`non-blocking`), `evidence` what was looked at (`1,234 states`), `explanation` a
-    sentence where it is refuted or skipped, `requirement` what the requirement is called that it is about, if any.
-    `trace` is a shortest way from the initial state to the fault,
-    `onwards` how it can go on from there, `other` a second way from there, where these are needed to show it.
+    `property` is its short name (`non-blocking`). `evidence` is the extent of the examination (`1,234 states`).
+    `explanation` is a sentence for a refuted or skipped property. `requirement` identifies the requirement in question,
+    if any. `trace` is a shortest trace from the initial state to the fault. `onwards` is a continuation and `other` a
+    second one, if the fault needs them.
     """
 
     property: str
@@ -65,18 +65,21 @@ class Verdict:
 
 
 def timed(examine: Callable[P, Verdict], *arguments: P.args, **named: P.kwargs) -> Verdict:
-    """The verdict of an examination with its seconds."""
+    """Return the verdict of an examination with its seconds."""
     began = perf_counter()
     return replace(examine(*arguments, **named), seconds=perf_counter() - began)
 
 
 def trace_step(event: sct.Event) -> TraceStep:
-    """The event as the end of a trace, where nothing matters that comes with it."""
+    """Return the event as the end of a trace, without its inputs."""
     return TraceStep(event_name(event))
 
 
 def as_json(robot: str, verdicts: Sequence[Verdict]) -> str:
-    """JSON for programs, one object: `proved` says that nothing was refuted, a trace lists events with their inputs."""
+    """Return the verdicts as JSON, one object.
+
+    `proved` is true if nothing is refuted. A trace lists events with their inputs.
+    """
     answer = {
         "robot": robot,
         "proved": all(verdict.outcome is not Outcome.REFUTED for verdict in verdicts),
@@ -99,11 +102,11 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
 
 
 def as_junit(model: sct.SupervisoryControlModel, verdicts: Sequence[Verdict], file: str) -> str:
-    """JUnit XML, the form of test results that continuous integration reads: a property is a test case.
+    """Return JUnit XML, the test results that continuous integration reads; a property is a test case.
 
-    The model stands in `file`; what is refuted failed, with its trace as the text. The attributes and elements are
-    those that Jenkins, GitLab and GitHub's test reporters have in common (https://github.com/testmoapp/junitxml); the
-    properties of what verifies a requirement are those that Eclipse S-CORE links test cases by.
+    The model is in `file`. A refuted property is a failure with its trace as the text. The attributes and elements are
+    those that Jenkins, GitLab and GitHub's test reporters share (https://github.com/testmoapp/junitxml). The properties
+    of a test case that verifies a requirement are those that Eclipse S-CORE uses for links.
     """
     numbers = {
         "tests": str(len(verdicts)),
@@ -152,7 +155,7 @@ def _seconds(seconds: float) -> str:
 
 
 def details(verdict: Verdict, model: sct.SupervisoryControlModel) -> str:
-    """What is wrong, and the shortest way to it, a line an event; empty where there is nothing to add."""
+    """Return the fault and the shortest trace to it, one event on each line; empty if there is nothing to add."""
     if not verdict.explanation:
         return ""
     lines = [f"{verdict.property}: {verdict.explanation}"]
@@ -171,6 +174,6 @@ def _numbered(heading: str, steps: Sequence[TraceStep], model: sct.SupervisoryCo
 
 
 def summary(verdicts: Sequence[Verdict]) -> str:
-    """How many verdicts there are of each outcome: `12 proved, 1 refuted`."""
+    """Return the number of verdicts for each outcome: `12 proved, 1 refuted`."""
     counts = {outcome: sum(verdict.outcome is outcome for verdict in verdicts) for outcome in Outcome}
     return ", ".join(f"{count} {outcome}" for outcome, count in counts.items() if count)

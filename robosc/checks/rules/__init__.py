@@ -1,4 +1,4 @@
-"""The rules, a module a family; importing them registers them."""
+"""Modules of the rules, one for each family; importing them registers the rules."""
 
 from importlib import import_module
 from pkgutil import iter_modules

@@ -1,4 +1,4 @@
-"""`unique-communication` and `unique-topic` (thesis 4.5.12)."""
+"""Rules `unique-communication` and `unique-topic` (thesis 4.5.12)."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 @rule("unique-communication")
 def unique_communication(base: rsc.Base) -> Iterator[Finding]:
-    """No two communications of a robot or library have one name, except those of instances of one component."""
+    """No two communications of a robot or library share a name, except those of instances of one component."""
     firsts: dict[str, PortInstance] = {}
     for second in instances(base).ports():
         if not second.communication.name:
             continue
         first = firsts.setdefault(second.communication.name, second)
         pair = {first.communication, second.communication}
-        # Of two in one library, that library has the finding.
+        # If both are in one library, the finding is in that library.
         if len(pair) == 2 and not any(pair <= fact(_communications, library) for library in reachable(base)):
             own = second.instance.unit is base
             yield Finding(
@@ -65,7 +65,7 @@ def _new_name(first: PortInstance, second: PortInstance, base: rsc.Base) -> Hint
 
 
 def _identified(hint: str, communication: rsc.CommunicationType, topic: str) -> Insertion | Replacement:
-    """A hint that gives communication a topic of its own."""
+    """Return a hint that gives a communication its own topic."""
     if communication.computedIdentifier:
         return Replacement(hint, f'"{topic}"', communication.computedIdentifier, is_choice=True)
     if communication.identifier:
@@ -77,7 +77,10 @@ def _identified(hint: str, communication: rsc.CommunicationType, topic: str) -> 
 
 @rule("unique-topic", Severity.WARNING)
 def unique_topic(base: rsc.Base) -> Iterator[Finding]:
-    """No two components send messages on one topic, with or without a `/` before it, no import gives a name two."""
+    """No two components send messages on one topic, and no import gives a name two topics.
+
+    A `/` before a topic makes no difference.
+    """
     yield from _remapped_twice(base)
     firsts: dict[str, PortInstance] = {}
     for second in instances(base).ports():
@@ -85,7 +88,7 @@ def unique_topic(base: rsc.Base) -> Iterator[Finding]:
         if not isinstance(message, rsc.Message) or message.direction != rsc.MessageDirection.outgoing:
             continue
         if {*second.instance.definition.parameters} - second.instance.arguments.keys():
-            continue  # The matter of `argument`.
+            continue  # `argument` reports this.
         topic = second.instance.topic(message)
         first = firsts.setdefault(topic.removeprefix("/"), second)
         if first.instance is not second.instance:
@@ -105,7 +108,7 @@ def _remapped_twice(base: rsc.Base) -> Iterator[Finding]:
         firsts: dict[rsc.CommunicationType, rsc.TopicRemapping] = {}
         for second in component.type.remappings:
             if second.communicationType is None:
-                continue  # a name that is nothing, and that may be meant to be any other
+                continue  # An unresolved name may be meant to be any other.
             first = firsts.setdefault(second.communicationType, second)
             if first is not second:
                 yield Finding(

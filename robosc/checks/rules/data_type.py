@@ -1,4 +1,4 @@
-"""`data-type`: types that no ROS data has, or that there is no way back to."""
+"""Rule `data-type`: types that no ROS data has, or that cannot be converted back to ROS data."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _BASIC = ("boolean", "integer", "double", "string")
 
 @rule("data-type")
 def data_type(base: rsc.Base) -> Iterator[Finding]:
-    """Arrays stand in objects, enums are over data, objects are finite, and no enum goes out of the controller."""
+    """Arrays occur only in objects, enums are based on data, objects are finite, and the controller sends no enum."""
     for enum in of_kind(rsc.EnumDataType, base.definitions):
         yield from _base_of(enum)
     yield from _endless(base)
@@ -56,7 +56,7 @@ def data_type(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _has_failure(declared: rsc.DataType | None, seen: set[rsc.ObjectDataType]) -> bool:
-    """Whether data of a type has a part of the predefined enum; objects that were `seen` have none."""
+    """Return whether data of a type contains the predefined enum; objects in `seen` do not."""
     while isinstance(declared, rsc.Array):
         declared = declared.type
     named = declared.type if isinstance(declared, rsc.ComplexDataTypeReference) else None
@@ -75,7 +75,7 @@ def _sent_as(sent: rsc.DataType) -> Hint:
 
 
 def _without_enum(hint: str, declared: rsc.ComplexDataTypeReference) -> Replacement | None:
-    """A hint that writes the type that an enum is from in its place."""
+    """Return a hint that replaces an enum by its base type."""
     found: rsc.DataType | None = declared
     seen = set()
     while isinstance(found, rsc.ComplexDataTypeReference) and isinstance(found.type, rsc.EnumDataType):
@@ -110,7 +110,7 @@ def _base_of(enum: rsc.EnumDataType) -> Iterator[Finding]:
 
 
 def _endless(base: rsc.Base) -> Iterator[Finding]:
-    """Each property that leads back to an object that it is a part of; of several in one circle the last one."""
+    """Report properties that make an object contain itself, one for each cycle."""
 
     def parts(whole: rsc.ObjectDataType) -> Iterator[tuple[rsc.ObjectProperty, rsc.ObjectDataType]]:
         for part in whole.properties:
@@ -127,7 +127,7 @@ def _endless(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _object_of(declared: rsc.DataType | None) -> rsc.ObjectDataType | None:
-    """The object whose data a property holds, in arrays and as what an enum is from too."""
+    """Return the object in a property, also within arrays and below enums."""
     seen = set()
     while declared is not None:
         while isinstance(declared, rsc.Array):
@@ -141,9 +141,9 @@ def _object_of(declared: rsc.DataType | None) -> rsc.ObjectDataType | None:
 
 
 def _enum_in(declared: rsc.DataType | None, seen: set[rsc.ObjectDataType]) -> list[str] | None:
-    """The names of the properties on the way to the first enum in data of a type; None where there is no enum.
+    """Return the path of properties to the first enum in data of a type; None if there is no enum.
 
-    Objects that were `seen` have none; all that is looked into becomes one of them.
+    Objects in `seen` contain none. The search adds all objects that it visits.
     """
     while isinstance(declared, rsc.Array):
         declared = declared.type
@@ -160,7 +160,7 @@ def _enum_in(declared: rsc.DataType | None, seen: set[rsc.ObjectDataType]) -> li
 
 
 def _text(declared: rsc.DataType) -> str:
-    """The type as a text writes it."""
+    """Return the type in the syntax of models."""
     match declared:
         case rsc.Array():
             return f"array({_text(declared.type)})"

@@ -1,4 +1,4 @@
-"""`duration`: how long `after` waits, and where it needs `without`."""
+"""Rule `duration`: range of the times of `after`, and the need for `without`."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _UNITS = "the units are `ms`, `s` and `min`"
 
 @rule("duration")
 def duration(base: rsc.Base) -> Iterator[Finding]:
-    """A time is from 1 ms to 24 days long; outside of states it is the silence of a message."""
+    """Every time is between 1 ms and 24 days; outside of states, a time must be the silence of a message."""
     for component, behaviour in behaviours(base):
         for transition in of_kind(rsc.TimedTransition, common_transitions(behaviour.automaton)):
             if not transition.without:
@@ -59,7 +59,7 @@ def duration(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _set(transition: rsc.TimedTransition, owned: InstanceParameter, meaning: Meaning) -> Iterator[Finding]:
-    """A parameter that is a time has a range, all of which is one."""
+    """Report a time from a parameter without a range, or with a range that leaves the limits."""
     parameter, unit = owned.parameter, transition.unit.name
     low, high = bounds(parameter, owned.instance)
     if low is not None and high is not None:

@@ -1,4 +1,4 @@
-"""`enum-default` and `enum-state-overlap` (thesis 4.5.8 and 4.5.13)."""
+"""Rules `enum-default` and `enum-state-overlap` (thesis 4.5.8 and 4.5.13)."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @rule("enum-default")
 def enum_default(base: rsc.Base) -> Iterator[Finding]:
-    """An enum has exactly one default rule."""
+    """Every enum has exactly one default rule."""
     for enum in of_kind(rsc.EnumDataType, base.definitions):
         defaults = of_kind(rsc.EnumDefaultRule, enum.rules)
         if not defaults:
@@ -54,7 +54,7 @@ def enum_default(base: rsc.Base) -> Iterator[Finding]:
 
 @rule("enum-state-overlap")
 def enum_state_overlap(base: rsc.Base) -> Iterator[Finding]:
-    """No enum value has the name of a state, in a robot or library and what it imports."""
+    """No enum value has the name of a state, in a robot or library with its imports."""
     named: dict[str, list[tuple[Instance, rsc.State]]] = {}
     for instance in instances(base):
         for state in instance.states:
@@ -63,7 +63,7 @@ def enum_state_overlap(base: rsc.Base) -> Iterator[Finding]:
     for value in _reachable_values(base):
         unit = unit_of(value)
         for instance, state in named.get(value.name, ()):
-            # What a library has together with its own imports, it has the finding of.
+            # If a library with its imports contains both, the finding is in the library.
             if any((value, state) in fact(_overlaps, library) for library in reachable(base)):
                 continue
             place = value if unit is base else state if instance.unit is base else _import(base, instance, unit)
@@ -83,7 +83,7 @@ def _overlaps(library: rsc.Library) -> set[tuple[rsc.EnumValue, rsc.State]]:
 
 
 def _import(base: rsc.Base, instance: Instance, unit: rsc.Base) -> rsc.Component:
-    """The later one of the two imports that bring the state and the value."""
+    """Return the later one of the two imports that bring the state and the value."""
     for component, library in reversed(list(imports(base))):
         if component is instance.component or unit in [library, *reachable(library)]:
             return component
@@ -100,7 +100,7 @@ def _repair_overlap(value: rsc.EnumValue, state: rsc.State, own_value: bool, own
 
 
 def _values(base: rsc.Base) -> Iterator[rsc.EnumValue]:
-    """The enum values that the base itself declares, in the order of the text."""
+    """Yield the enum values that the base itself declares, in the order of the text."""
     for enum in of_kind(rsc.EnumDataType, base.definitions):
         yield from (alternative.value for alternative in enum.rules if alternative.value and alternative.value.name)
 
@@ -110,7 +110,7 @@ def _has_values(base: rsc.Base) -> bool:
 
 
 def _reachable_values(base: rsc.Base) -> list[rsc.EnumValue]:
-    """The enum values of a base, then those of all libraries that its imports reach."""
+    """Return the enum values of a base, then those of all libraries reachable by imports."""
     return [value for unit in [base, *reachable(base, _has_values)] for value in _values(unit)]
 
 

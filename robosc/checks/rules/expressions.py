@@ -1,4 +1,4 @@
-"""`type` (thesis 4.5.11, table 4.1) and `argument`: where expressions stand, and which type each must have there."""
+"""Rule `type` (thesis 4.5.11, table 4.1): the places of expressions, and the type of each place."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ _SILENT = Place(None, "a silent transition has no event that could carry data")
 
 @rule("type")
 def types(base: rsc.Base) -> Iterator[Finding]:
-    """Every expression has the type that its place wants, and its operators the operands that they want."""
+    """Every expression has the type of its place, and every operator has operands of its types."""
     for enum in of_kind(rsc.EnumDataType, base.definitions):
         yield from _enum(enum)
     yield from _requirements(base)
@@ -66,7 +66,7 @@ def types(base: rsc.Base) -> Iterator[Finding]:
     for declared in variables(base):
         check = ExpressionCheck(CONSTANT)
         kept = isinstance(declared_type(declared.type), ArrayType | ObjectType)
-        wanted = UNKNOWN if kept else _variable_type(declared)  # That these take none, `variable-type` says.
+        wanted = UNKNOWN if kept else _variable_type(declared)  # `variable-type` reports initial values here.
         check.expect(declared.initial, wanted, f"the initial value of `{declared.name}`")
         yield from check.findings
     for _, transition in transitions(base):
@@ -158,7 +158,7 @@ def _transition(transition: rsc.Transition) -> Iterator[Finding]:
         place = _TIMED
         yield from _duration(transition.duration)
     elif sends_message(transition):
-        place = Place(UNKNOWN)  # That nothing can be assigned there is the matter of `assignment-on-message-to-node`.
+        place = Place(UNKNOWN)  # `assignment-on-message-to-node` reports assignments here.
     if isinstance(transition, rsc.GuardedTransition):
         yield from _boolean(transition.guard, "a guard", guarded)
     for assignment in transition.assignments:
@@ -183,7 +183,7 @@ def _duration(value: ex.Expression | None) -> Iterator[Finding]:
 
 
 def _variable_type(variable: rsc.Variable) -> Type:
-    """What a variable holds; what no variable can hold is the matter of `variable-type`."""
+    """Return the type of a variable; UNKNOWN for a type that `variable-type` reports."""
     declared = declared_type(variable.type)
     return UNKNOWN if declared == NONE else declared
 

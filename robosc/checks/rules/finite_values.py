@@ -1,4 +1,4 @@
-"""`variable-type` and `integer-range` (thesis 4.5.14 and 4.5.3): what the supervisor holds is finite."""
+"""Rules `variable-type` and `integer-range` (thesis 4.5.14 and 4.5.3): the supervisor's values are finite."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ LEAST, LARGEST = INTEGER_RANGES["int64"]
 
 @rule("variable-type")
 def variable_type(base: rsc.Base) -> Iterator[Finding]:
-    """A variable holds one value, and what the supervisor needs has finitely many values and comes from such data."""
+    """Each variable holds one value; those that the supervisor needs have a finite type and finite data."""
     stored = _stored(base)
     for variable in variables(base):
         found = declared_type(variable.type)
@@ -94,11 +94,11 @@ def _has_objects(found: Type) -> bool:
 
 
 def _stored(base: rsc.Base) -> set[rsc.Variable]:
-    """The variables in which data is stored that came in, in one step or several."""
+    """Return the variables that store received data, directly or through other variables."""
     assigned = [
         (variable, value)
         for _, transition in transitions(base)
-        # Of several to one variable the last counts.
+        # If a transition assigns a variable several times, the last assignment takes effect.
         for variable, value in {assigned_variable(given): given.value for given in transition.assignments}.items()
     ]
     found: set[rsc.Variable] = set()
@@ -114,7 +114,7 @@ def _stored(base: rsc.Base) -> set[rsc.Variable]:
     return found
 
 
-#: What the node keeps has too many values.
+#: Repair for a variable of the node with too many values.
 _KEPT_REPAIR = "let a variable remember what matters of it, such as `do some := size(value.…) > 0`"
 
 
@@ -161,7 +161,7 @@ def _enum_repair(base: str) -> str:
 
 @rule("integer-range")
 def integer_range(base: rsc.Base) -> Iterator[Finding]:
-    """Integers that the supervisor needs have a range, ranges are not empty, and constants keep to them."""
+    """Integers that the supervisor needs have a range, ranges are not empty, and constants are within them."""
     yield from supervised_faults(base, _without_range)
     yield from supervised_faults(base, table_faults)
     for meaning in meanings(base):
@@ -186,7 +186,7 @@ def integer_range(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _parameters(meaning: Meaning) -> Iterator[Finding]:
-    """A parameter that is an integer has a range; its own value lies in its range."""
+    """Report integer parameters without a range and values outside of a parameter's range."""
     for parameter in statements(rsc.Parameter, meaning):
         if meaning.made is None and declared_type(parameter.type) == INTEGER and _is_unranged(parameter.type):
             yield Finding(
@@ -217,7 +217,7 @@ def _parameters(meaning: Meaning) -> Iterator[Finding]:
 
 
 def _unranged(parameter: rsc.Parameter) -> Choice:
-    """The ways out of a range that only a double has."""
+    """Return the repairs for a range of a parameter that is no double."""
     double = Replacement("declare it double", "double", parameter.type)
     bounds = part_of(parameter.lowest).preceded_by("(").to(part_of(parameter.highest).followed_by(")"))
     return Choice("leave it out, or declare it double", (Removal("leave the range out", bounds), double))
@@ -228,7 +228,7 @@ def _is_unranged(declared: rsc.DataType) -> bool:
 
 
 def _too_large(meaning: Meaning) -> Iterator[Finding]:
-    """All integers of a robot fit into 64 bits."""
+    """Report integers that do not fit into 64 bits."""
     computed: list[ex.Expression | None] = [constant.value for constant in statements(rsc.Constant, meaning)]
     for declared in of_kind(rsc.IntegerDataType, data_types(meaning)):
         computed += [declared.lower, declared.upper]
@@ -240,7 +240,7 @@ def _too_large(meaning: Meaning) -> Iterator[Finding]:
             yield meaning.finding(expression, message, "write another expression")
 
 
-# Ranges that are missing
+# Missing ranges
 
 
 def _without_range(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
@@ -297,23 +297,23 @@ def _is_unbounded(declared: rsc.DataType | None) -> bool:
 
 
 def _has_wrong_bounds(declared: rsc.DataType | None) -> bool:
-    """Whether a range of an instance has bounds of which nothing is known: that they are no constants is told there."""
+    """Return whether a range of an instance has unknown bounds; their own expressions have the finding."""
     return declared is not None and _is_unbounded(declared) and declared.eContainer() is None
 
 
 def _bounds(declared: rsc.IntegerDataType, meaning: Meaning) -> tuple[int | None, int | None]:
-    """The bounds of a range; None where they are not known, or the template's own text has them."""
+    """Return the bounds of a range; None if they are unknown or the template's own text has them."""
     if declared.lower is None:
         return (None, None) if meaning.made else (declared.minimum, declared.maximum)
     low, high = meaning.values(declared.lower, declared.upper)
     return (low, high) if type(low) is int and type(high) is int else (None, None)
 
 
-# Constants outside their range
+# Constants outside of their range
 
 
 def _constants(base: Meaning) -> Iterator[tuple[ex.Expression | None, rsc.DataType | None, str]]:
-    """Every expression that becomes the value of something, with the type and the name of that."""
+    """Yield every assigned expression with the type and the name of its target."""
     for variable in variables(base):
         yield variable.initial, variable.type, variable.name
     for declared in statements(rsc.Constant, base):

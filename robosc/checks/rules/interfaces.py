@@ -1,4 +1,4 @@
-"""`interface-link` (thesis 4.5.4), `-type`, `-unused`, `-unknown`, `-mix`: the model's and ROS' own view of types."""
+"""Rules on interfaces (`interface-link`, thesis 4.5.4; `-type`, `-unused`, `-unknown`, `-mix`)."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @rule("interface-link")
 def interface_link(base: rsc.Base) -> Iterator[Finding]:
-    """What has no wire type of its own links an interface: objects, actions, services that carry data."""
+    """Objects, actions and services with data link an interface, because they have no ROS type of their own."""
     for communication in communications(base):
         if communication.interface is None:
             types = [declared_type(wire_type(declared)) for _, declared in carried(communication)]
@@ -55,7 +55,7 @@ def _reason(communication: rsc.CommunicationType, types: list[Type]) -> str | No
 
 
 def _missing_link(communication: rsc.CommunicationType, base: rsc.Base, types: list[Type]) -> Insertion | str:
-    """An interface that exists where there is one that fits by name, or is at least the only one."""
+    """Return a hint to link an existing interface with a fitting name, else to declare one."""
     units = dict.fromkeys([base, *(library for _, library in imports(base))])
     known = [interface for unit in units for interface in of_kind(rsc.Interface, unit.definitions)]
     objects = [kind.definition.name for kind in types if isinstance(kind, ObjectType)]
@@ -74,7 +74,7 @@ def _missing_link(communication: rsc.CommunicationType, base: rsc.Base, types: l
 
 @interface_rule("interface-type")
 def interface_type(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
-    """What the model uses of data is in the ROS type, and fits it."""
+    """All data that the model uses exists in the ROS type and fits it."""
     for element, message, hint, used in _faulty(base, interfaces):
         if used:
             yield Finding(element, message, hint)
@@ -82,20 +82,20 @@ def interface_type(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
 
 @interface_rule("interface-unused", Severity.WARNING)
 def interface_unused(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
-    """What the model declares without using it is in the ROS type, too, and fits it."""
+    """All data that the model declares but does not use exists in the ROS type and fits it."""
     for element, message, hint, used in _faulty(base, interfaces):
         if not used:
-            # A use may stand in text that could not be read.
+            # Unreadable text may contain a use.
             yield Finding(element, message, hint, relies_on=base, relies_on_names=(ex.Located,))
 
 
 @interface_rule("interface-unknown", Severity.WARNING)
 def interface_unknown(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
-    """The definitions of all ROS types that interfaces name are at hand."""
+    """All ROS types of interfaces have known definitions."""
     reported: set[tuple[object, str]] = set()
     for data in carried_data(base):
         if isinstance(data.interface.eContainer(), rsc.InterfaceTypeReference):
-            continue  # Whoever linked it has said that there is no such type.
+            continue  # The data type that links the interface has the finding.
         for fault in _unknown(data, interfaces):
             wanted: ex.Located | None = fault.property if isinstance(fault, Fault) else data.interface
             other = data.declared if isinstance(fault, Fault) else data.communication
@@ -117,7 +117,7 @@ def interface_unknown(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]
 
 
 def _meant(fault: Fault | Unknown, element: ex.Located | None) -> Hint:
-    """The hint, which names the type that an interface is meant to use where that is known."""
+    """Return the hint, with the intended type as an edit if it is known."""
     if isinstance(fault, Unknown) and fault.meant is not None and isinstance(element, rsc.Interface):
         package, name = fault.meant
         text = f"interface {written(element.name)} use {written(name)} from {written(package)}"
@@ -131,7 +131,7 @@ def _unknown(data: Carried, interfaces: RosTypes) -> list[Fault] | list[Unknown]
 
 
 def _faulty(base: rsc.Base, interfaces: RosTypes) -> Iterator[tuple[ex.Located, str, Hint, bool]]:
-    """Where the base's text must change, why, how, and whether the model uses what is faulty there."""
+    """Yield the places to change in the base's text, with message, hint, and whether the model uses the data."""
     found: dict[tuple[ex.Located, str, Hint], bool] = {}
     units = {unit: list(carried_data(unit)) for unit in [base, *reachable(base, carries)]}
     everything = UsedData([base, *reachable(base)] if any(units.values()) else ())
@@ -142,7 +142,7 @@ def _faulty(base: rsc.Base, interfaces: RosTypes) -> Iterator[tuple[ex.Located, 
             answer = faults(data, interfaces, uses)
             for fault in () if isinstance(answer, Unknown) else answer:
                 if fault.unknown or (unit is not base and (fault.property is None or fault.property in reported)):
-                    continue  # the library's own matter
+                    continue  # The library has this finding.
                 element = _place(base, data, fault, uses)
                 if element is not None:
                     hint: Hint = fault.hint
@@ -156,7 +156,7 @@ def _faulty(base: rsc.Base, interfaces: RosTypes) -> Iterator[tuple[ex.Located, 
 
 
 def _of_property(fault: Fault, declared: rsc.ObjectProperty) -> Hint:
-    """The hint at the property itself, as what does what it says."""
+    """Return the hint at the property with the edits that follow it."""
     if fault.text is not None:
         return Replacement(fault.hint, fault.text, declared)
     if fault.new_name is not None:
@@ -169,7 +169,7 @@ def _of_property(fault: Fault, declared: rsc.ObjectProperty) -> Hint:
 
 
 def _place(base: rsc.Base, data: Carried, fault: Fault, uses: Uses) -> ex.Located | None:
-    """The property, else what uses it, else the data that it is a part of: the first that is in the base's text."""
+    """Return the first of these in the base's text: the property, its use, the data that contains it."""
     use = None if fault.property is None else uses.get(fault.property)
     candidates: list[ex.Located | None] = [fault.property, use, data.declared]
     return next((candidate for candidate in candidates if candidate is not None and unit_of(candidate) is base), None)
@@ -177,7 +177,7 @@ def _place(base: rsc.Base, data: Carried, fault: Fault, uses: Uses) -> ex.Locate
 
 @interface_rule("interface-mix", Severity.WARNING)
 def interface_mix(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
-    """One of the two ROS fits all data of a model, as a controller runs in one of them."""
+    """One of the two ROS versions fits all data of a model, because a controller runs in one of them."""
     communications = {port.communication for port in instances(base).ports()}
     units = [base, *reachable(base, carries)]
     present = [(unit, data) for unit in units for data in carried_data(unit) if data.communication in communications]
@@ -186,14 +186,14 @@ def interface_mix(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
     for unit, data in present:
         reasons = misfits(data, interfaces, used.uses(data))
         if len(reasons) == len(interfaces.distributions):
-            continue  # The matter of `interface-type`.
+            continue  # `interface-type` reports this.
         for ros, reason in reasons.items():
             others = [other_ros for other_ros in first if other_ros != ros]
             first.setdefault(ros, (unit, data))
             if others:
                 other_unit, other = first[others[0]]
                 if unit is not base and unit is other_unit:
-                    return  # the library's own matter
+                    return  # The library has this finding.
                 yield Finding(
                     data.declared if unit is base else _import_of(base, unit),
                     f"`{data.communication.name}` fits {others[0]} only and `{other.communication.name}` {ros} only,"
@@ -204,5 +204,5 @@ def interface_mix(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
 
 
 def _import_of(base: rsc.Base, unit: rsc.Base) -> rsc.Component:
-    """The first imported component that brings the text of a library with it."""
+    """Return the first imported component that brings the text of a library."""
     return next(component for component, library in imports(base) if library is unit or unit in reachable(library))

@@ -1,4 +1,4 @@
-"""`cyclic-definition`, `argument` and `unused-template`: names for expressions, and what is made with arguments."""
+"""Rules `cyclic-definition`, `argument` and `unused-template` on named expressions and templates."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _ENUM_ARGUMENT = replace(_ARGUMENT, instead="; a parameter of the node stands al
 
 @rule("cyclic-definition")
 def cyclic_definition(base: rsc.Base) -> Iterator[Finding]:
-    """No constant, condition or function is defined by itself, and none becomes too large when it is written out."""
+    """No constant, condition or function refers to itself or becomes too large after expansion."""
     named = list(statements(rsc.NamedExpression, base))
     uses = {definition: _used(definition) for definition in named}
     known = {definition: [(definition, used) for used in found if used in uses] for definition, found in uses.items()}
@@ -75,7 +75,7 @@ def _too_large(base: rsc.Base) -> Iterator[Finding]:
 
 @rule("argument")
 def arguments(base: rsc.Base) -> Iterator[Finding]:
-    """Each parameter gets an argument of its type, and each division a positive constant."""
+    """Each parameter gets an argument of its type, and each divisor is a positive constant."""
     for _, element in tree(base):
         match element:
             case ex.FunctionCall():
@@ -101,7 +101,7 @@ def arguments(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _reason(comparison: ex.Equation | ex.Inequation) -> Iterator[Finding]:
-    """A comparison of `error` with a reason for which the service or action can't fail."""
+    """Report comparisons of `error` with an impossible reason of the service or action."""
     for other, communication in _beside_reason(comparison):
         fault = _impossible_reason(constant_value(other), communication)
         if fault is not None:
@@ -112,14 +112,14 @@ def _reason(comparison: ex.Equation | ex.Inequation) -> Iterator[Finding]:
 def _beside_reason(
     comparison: ex.Equation | ex.Inequation,
 ) -> Iterator[tuple[ex.Expression, rsc.CommunicationType | None]]:
-    """The operand that stands beside `error`, and the service or action that has failed."""
+    """Yield the other operand of each comparison with `error`, and the service or action that has failed."""
     for read, other in ((comparison.left, comparison.right), (comparison.right, comparison.left)):
         if isinstance(read, rsc.ErrorReason) and isinstance(other, rsc.Access | rsc.Call | ex.Conditional):
             yield other, _failing(read)
 
 
 def _impossible_reason(value: object, communication: rsc.CommunicationType | None) -> str | None:
-    """The fault of a value beside `error`; None where the service or action can fail for it."""
+    """Return the fault of a value compared with `error`; None if it is a possible reason."""
     possible = reasons(communication)
     if not isinstance(value, rsc.EnumValue) or not possible or value.name in possible:
         return None
@@ -134,7 +134,7 @@ def _possible(communication: rsc.CommunicationType | None) -> str:
 
 
 def _failing(element: ex.Located) -> rsc.CommunicationType | None:
-    """The service or action whose error a transition is on in which an element stands."""
+    """Return the service or action of the error transition that contains an element."""
     around: ex.Located | None = element
     while around is not None and not isinstance(around, rsc.ResultTransition | rsc.RequirementTransition):
         around = around.eContainer()
@@ -169,7 +169,7 @@ def _of_type(reference: rsc.ComplexDataTypeReference) -> Iterator[Finding]:
 def _given(
     user: ex.Located, definition: rsc.Component | rsc.EnumDataType, given: Sequence[rsc.Argument]
 ) -> Iterator[Finding]:
-    """The faults in the arguments of a template or an enum; a parameter with a default needs none."""
+    """Report faults in the arguments of a template or an enum; a parameter with a default needs none."""
     parameters = list(definition.parameters)
     found: dict[rsc.FormalParameter, rsc.Argument] = {}
     named = False
@@ -207,7 +207,7 @@ def _naming(
     found: Collection[rsc.FormalParameter],
     given: Sequence[rsc.Argument],
 ) -> Choice:
-    """The parameters that an argument can be for, by the names before it."""
+    """Return the parameters that an argument can be for, as a choice of names before it."""
     named = {other.parameter for other in given}
     free = [parameter for parameter in parameters if parameter not in found and parameter not in named]
     ways = (
@@ -217,7 +217,7 @@ def _naming(
 
 
 def _typed(value: ex.Expression | None, parameter: rsc.FormalParameter, *, settable: bool = False) -> Iterator[Finding]:
-    """The faults of an argument or a default value; `settable`: it may be a parameter of the node."""
+    """Report faults of an argument or a default value; `settable`: it may be a parameter of the node."""
     constant = _ENUM_ARGUMENT if settable else _ARGUMENT
     check = ExpressionCheck(Place(None) if settable and set_on_robot(value) else constant)
     check.expect(value, declared_type(parameter.type), f"the argument for `{parameter.name}`")
@@ -234,7 +234,7 @@ def _typed(value: ex.Expression | None, parameter: rsc.FormalParameter, *, setta
 
 
 def _fits(lowest: float | None, highest: float | None, parameter: rsc.FormalParameter) -> bool:
-    """Whether all numbers between two are values of a parameter; what is not known fits."""
+    """Return whether all numbers between two bounds are values of a parameter; unknown bounds fit."""
     kind = parameter.type
     if not isinstance(kind, rsc.IntegerDataType) or kind.minimum is None or kind.maximum is None:
         return True
@@ -258,7 +258,7 @@ def _of_enums(meaning: Meaning, made: Instances) -> Iterator[Finding]:
 def _of_enum(
     reference: rsc.ComplexDataTypeReference, enum: rsc.EnumDataType, meaning: Meaning, made: Instances
 ) -> Iterator[Finding]:
-    """The faults in the arguments of an enum, with those of a template around it, and in its divisors."""
+    """Report faults in the arguments and the divisors of an enum, with the arguments of a template around it."""
     given = bound_arguments(enum.parameters, reference.arguments)
     for parameter, value in given.items():
         access = set_on_robot(value)
@@ -272,7 +272,7 @@ def _of_enum(
         if lowest is None and meaning.made:
             lowest, highest = bounds(owned.parameter, owned.instance)
         elif meaning.made:
-            continue  # The template's own text tells.
+            continue  # The template's own text has the finding.
         if not _fits(lowest, highest, parameter):
             yield meaning.finding(value, *_out_of_range(f"{lowest} to {highest} on the robot", parameter))
     for row, position, divisor in _divisors(enum):
@@ -284,7 +284,7 @@ def _of_enum(
 
 
 def _divisors(root: ex.Located) -> Iterator[tuple[Operator, int, ex.Expression]]:
-    """The divisors in functions: the function, the position of its argument, and the argument."""
+    """Yield the divisors in function calls: the function, the position of the argument, and the argument."""
     for _, call in tree(root):
         row = operator_of(call) if isinstance(call, ex.FunctionCall) else None
         if row is not None and len(call.arguments) == row.parameters:
@@ -315,7 +315,7 @@ def _wrong_number(where: ex.Located, name: str, count: int, names: Sequence[str]
 
 @rule("unused-template", Severity.WARNING)
 def unused_template(base: rsc.Base) -> Iterator[Finding]:
-    """A robot makes something of each of its templates."""
+    """Every template of a robot has an instance."""
     if isinstance(base, rsc.Robot):
         made = {instance.definition for instance in instances(base)}
         for component in of_kind(rsc.Component, base.definitions):
@@ -342,7 +342,7 @@ def _built_in(element: ex.FunctionCall) -> Iterator[Finding]:
 
 
 def _made(meaning: Meaning) -> Iterator[Finding]:
-    """The divisors of built-in functions and the reasons beside `error`, with the arguments of a template."""
+    """Report divisors and reasons beside `error` that are wrong for the arguments of a template."""
     assert meaning.made is not None
     for _, part in tree(meaning.made.local):
         for other, communication in _beside_reason(part) if isinstance(part, ex.Equation | ex.Inequation) else ():
@@ -357,7 +357,10 @@ def _made(meaning: Meaning) -> Iterator[Finding]:
 
 
 def _unreadable(meaning: Meaning) -> Iterator[Finding]:
-    """Constant expressions that round what is no number; of a template those that do so by its arguments."""
+    """Report constant expressions that round a value that is no number.
+
+    For an instance of a template, only those are reported that its arguments cause.
+    """
     waiting: list[Any] = list(meaning.definitions)[::-1] if meaning.made is None else [meaning.made.local]
     if not any(_may_round(part) for root in waiting for _, part in tree(root)):
         return

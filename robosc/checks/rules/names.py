@@ -1,6 +1,7 @@
-"""`unique-component`, `unique-datatype`, `unique-state`, `unique-variable`, `unique-property`, `single-behaviour`.
+"""Rules on unique names (thesis 4.5.7 and 4.5.12).
 
-Thesis 4.5.7 and 4.5.12.
+The rules are `unique-component`, `unique-datatype`, `unique-state`, `unique-variable`, `unique-property` and
+`single-behaviour`.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
     from robosc.metamodel import expression as ex
 
-    #: The scopes of a text, each with what it is called and the elements that are to have names of their own in it.
+    #: Scopes of a text: the description of each scope, and the elements that need unique names in it.
     Scopes = Callable[[rsc.Base], Iterable[tuple[str, Iterable[ex.NamedElement]]]]
 
 
@@ -43,7 +44,7 @@ def _states(base: rsc.Base) -> Iterator[tuple[str, list[Any]]]:
         yield f"requirement `{requirement.name}`" if requirement.name else "the requirement", list(requirement.states)
 
 
-#: What a finding calls what is declared in a component.
+#: Names for the kinds of elements of a component in findings.
 _KINDS = {
     rsc.State: "state",
     rsc.Constant: "constant",
@@ -54,7 +55,7 @@ _KINDS = {
     rsc.Requirement: "requirement",
     rsc.Property: "property",
 }
-#: What has a name of its own: the rule, what it is in words, and among whom.
+#: Rules for unique names: the rule, the kind of element in words, and the scopes.
 _UNIQUE: tuple[tuple[str, str, Scopes], ...] = (
     ("unique-component", "component", _components),
     ("unique-datatype", "data type", _data_types),
@@ -74,9 +75,9 @@ for _identifier, _kind, _scopes in _UNIQUE:
 
 @rule("unique-variable")
 def unique_variable(base: rsc.Base) -> Iterator[Finding]:
-    """No variable of a component has the name of another one, or of a state: `Component.name` reaches both.
+    """No variable of a component has the name of another one or of a state: `Component.name` reaches both.
 
-    Nor has a variable, constant or parameter of the predefined enum the name of one of its values.
+    No variable, constant or parameter of the predefined enum has the name of one of its values.
     """
     yield from _parameters(base)
     owners: list[Any] = [*statements(rsc.Function, base)]
@@ -106,7 +107,7 @@ def unique_variable(base: rsc.Base) -> Iterator[Finding]:
             members += of_kind(rsc.AccessibleItem, behaviour.automaton.definitions if behaviour.automaton else ())
         for definition in members:
             is_state = isinstance(definition, rsc.State)
-            # That a state has the name of another state is the matter of `unique-state`.
+            # `unique-state` reports two states with one name.
             if definition.name is None:
                 continue
             if definition.name in first and not (is_state and definition.name in known):
@@ -151,7 +152,7 @@ def _provided_again(value: ex.Expression) -> Iterator[Finding]:
 
 @rule("single-behaviour")
 def single_behaviour(base: rsc.Base) -> Iterator[Finding]:
-    """A component has at most one behaviour."""
+    """Every component has at most one behavior."""
     for component, local in components(base):
         every = of_kind(rsc.ComponentBehaviour, local.definitions)
         for other in every[1:]:
@@ -164,7 +165,7 @@ def single_behaviour(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _repeated(elements: Iterable[ex.NamedElement]) -> Iterator[tuple[ex.NamedElement, ex.NamedElement]]:
-    """Each element whose name an earlier one has, with the first that has it."""
+    """Yield each element whose name an earlier one has, with the first that has it."""
     first: dict[str, ex.NamedElement] = {}
     for element in elements:
         if element.name and first.setdefault(element.name, element) is not element:

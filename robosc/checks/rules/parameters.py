@@ -1,4 +1,4 @@
-"""`parameter-scope`: the supervisor is proven for every value of a parameter, and so reads none."""
+"""Rule `parameter-scope`: the supervisor is proven for every value of a parameter, so it must read none."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @rule("parameter-scope")
 def parameter_scope(base: rsc.Base) -> Iterator[Finding]:
-    """What the supervisor evaluates reads no parameter."""
+    """No expression that the supervisor evaluates reads a parameter."""
     yield from supervised_faults(base, _read)
 
 

@@ -1,4 +1,4 @@
-"""`requirement-event`: which events requirements may restrict, and who may read requirement automata."""
+"""Rule `requirement-event`: events that requirements may restrict, and readers of requirement automata."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @rule("requirement-event")
 def requirement_event(base: rsc.Base) -> Iterator[Finding]:
-    """An order or a count restricts no outgoing message, and only requirements read requirement automata."""
+    """No order or count restricts an outgoing message, and only requirements read requirement automata."""
     for events in restricted_events(base):
         for named in events.events if events else ():
             communication = communication_of(named.communicationType)
@@ -45,7 +45,7 @@ def requirement_event(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _sent_on_change(base: rsc.Base) -> Iterator[Finding]:
-    """Messages that are sent on change are no events of requirements: their moment means nothing."""
+    """Report requirements and transitions on messages that are sent on change: these have no defined moment."""
     for message in communications(base):
         if isinstance(message, rsc.Message) and message.onChange and message.direction == rsc.MessageDirection.outgoing:
             what = f"`{message.name}` comes from its component whenever that sends it, expected an incoming message"
@@ -76,7 +76,7 @@ def _with_every_tick(hint: str, message: rsc.Message, *, is_choice: bool = False
 
 
 def _readers(base: rsc.Base) -> Iterator[Finding]:
-    """The expressions outside of requirements that read a requirement automaton, also by what they inline."""
+    """Report expressions outside of requirements that read a requirement automaton, also through definitions."""
     found = instances(base)
     for instance in found:
         for transition, _ in instance.transitions:

@@ -1,4 +1,4 @@
-"""`data-provisioning` (thesis 4.5.1) and `requirement-target`: what is said of what the controller sends."""
+"""Rules `data-provisioning` (thesis 4.5.1) and `requirement-target` on communications that the controller sends."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from robosc.semantics.typing import NONE, provided_data_type
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-#: For one that has taken an outgoing message for what the controller sends.
+#: Part of a hint for users who confuse the directions of messages.
 _DIRECTIONS = (
     "or, if the controller sends it, declare it as `incoming message {}`: incoming is what a component receives"
 )
@@ -29,7 +29,7 @@ def _as_incoming(communication: rsc.CommunicationType) -> Replacement:
 
 @rule("data-provisioning")
 def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
-    """Data is provided only to what the controller sends, and only where data goes along."""
+    """Each `provide` names a communication that the controller sends with data."""
     for statement in statements(rsc.ProvideStatement, base):
         communication = communication_of(statement.communicationType)
         if communication is not None and sent(communication) is None:
@@ -54,7 +54,7 @@ def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
 
 @rule("requirement-target")
 def requirement_target(base: rsc.Base) -> Iterator[Finding]:
-    """A requirement restricts something, and something that the controller sends."""
+    """Each requirement restricts at least one communication, and only those that the controller sends."""
     for events in restricted_events(base):
         if events is not None and not events.events:
             message = "the requirement restricts nothing, expected at least one event in the braces"

@@ -1,4 +1,4 @@
-"""Shared topics and servers: `topic-types`, `shared-server` and `indistinct-commands`."""
+"""Rules on shared topics and servers: `topic-types`, `shared-server` and `indistinct-commands`."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def topic_types(base: rsc.Base) -> Iterator[Finding]:
 
 @rule("shared-server")
 def shared_server(base: rsc.Base) -> Iterator[Finding]:
-    """All services of one name have one ROS type, and so have all actions."""
+    """All services of one name have one ROS type, and all actions of one name have one."""
     for kind in (rsc.Service, rsc.Action):
         for first, second in _of_other_types(base, kind):
             yield Finding(
@@ -48,7 +48,7 @@ def shared_server(base: rsc.Base) -> Iterator[Finding]:
 
 @rule("indistinct-commands", Severity.WARNING)
 def indistinct_commands(base: rsc.Base) -> Iterator[Finding]:
-    """Two messages that the controller sends on one topic differ in their data."""
+    """Any two messages that the controller sends on one topic differ in their data."""
     if not isinstance(base, rsc.Robot):
         return
     known = instances(base)
@@ -72,7 +72,7 @@ def indistinct_commands(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _statements(port: PortInstance, known: Instances) -> tuple[tuple[str, str], ...]:
-    """The data of each effective `provide` for a command and its condition, with names written out."""
+    """Return the data and the condition of each effective `provide` for a command, with names expanded."""
     found = []
     for statement in known.provided(port):
         data, condition = statement.element.data, statement.element.condition
@@ -93,7 +93,7 @@ def _shown(expression: ex.Expression, within: Instance | None, known: Instances)
 
 
 def _of_other_types(base: rsc.Base, kind: type[rsc.CommunicationType]) -> Iterator[tuple[PortInstance, PortInstance]]:
-    """Each communication that has another ROS type than the first one of its name, and that one before it."""
+    """Yield the communications whose ROS type differs from that of the first with the same name, with that first."""
     if not isinstance(base, rsc.Robot):
         return
     firsts: dict[str, PortInstance] = {}
@@ -101,13 +101,13 @@ def _of_other_types(base: rsc.Base, kind: type[rsc.CommunicationType]) -> Iterat
         if ros_type(second.communication) is None:
             continue
         first = firsts.setdefault(_name(second).removeprefix("/"), second)
-        same_name = first.communication.name == second.communication.name  # the matter of `unique-communication`
+        same_name = first.communication.name == second.communication.name  # `unique-communication` reports it
         if not same_name and ros_type(first.communication) != ros_type(second.communication):
             yield first, second
 
 
 def _ports(known: Instances, kind: type[rsc.CommunicationType]) -> Iterator[PortInstance]:
-    """The communications of a kind whose instances have all their arguments (else it is `argument`)."""
+    """Yield the communications of a kind whose instances have all arguments; `argument` reports the others."""
     for port in known.ports():
         complete = not {*port.instance.definition.parameters} - port.instance.arguments.keys()
         if complete and isinstance(port.communication, kind) and port.communication.name:
@@ -115,7 +115,7 @@ def _ports(known: Instances, kind: type[rsc.CommunicationType]) -> Iterator[Port
 
 
 def _place(port: PortInstance) -> ex.Located:
-    """The declaration of a communication; where an import or arguments make its instance, the component made."""
+    """Return the place of a communication: its component if imported or instantiated, else its declaration."""
     made = port.instance.component is not port.instance.definition
     return port.instance.component if made else port.communication
 

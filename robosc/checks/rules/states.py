@@ -1,4 +1,4 @@
-"""`initial-state` and `marked-state` (thesis 4.5.9 and 4.5.10)."""
+"""Rules `initial-state` and `marked-state` (thesis 4.5.9 and 4.5.10)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @rule("initial-state")
 def initial_state(base: rsc.Base) -> Iterator[Finding]:
-    """A behaviour has exactly one initial state, and so at least one state."""
+    """Every behavior has exactly one initial state, and therefore at least one state."""
     yield from initial_states(base)
     for component, behaviour in behaviours(base):
         every = states(behaviour.automaton)
@@ -56,10 +56,10 @@ def initial_state(base: rsc.Base) -> Iterator[Finding]:
 
 @rule("marked-state")
 def marked_state(base: rsc.Base) -> Iterator[Finding]:
-    """From each reachable state of a component its transitions lead to a marked state, guards left aside."""
+    """From each reachable state of a component, its transitions lead to a marked state. Guards are ignored."""
     for component, behaviour in behaviours(base):
         every = states(behaviour.automaton)
-        initial = [state for state in every if state.initial][:1]  # A second one is the matter of `initial-state`.
+        initial = [state for state in every if state.initial][:1]  # `initial-state` reports a second one.
         common = common_transitions(behaviour.automaton)
         known = set(every)
         after = {

@@ -1,6 +1,7 @@
-"""`result-type`, `nondeterminism`, `assignment-on-message-to-node`, `assignment-scope` and `repeated-assignment`.
+"""Rules on transitions and their assignments (thesis 4.5.2, 4.5.5 and 4.5.6).
 
-Thesis 4.5.2, 4.5.5 and 4.5.6.
+The rules are `result-type`, `nondeterminism`, `assignment-on-message-to-node`, `assignment-scope` and
+`repeated-assignment`.
 """
 
 from __future__ import annotations
@@ -32,13 +33,13 @@ if TYPE_CHECKING:
 _Event: TypeAlias = "tuple[rsc.Component | None, rsc.CommunicationType, str]"
 
 
-#: The direction of a message with this event, and who sends it: the component is what `incoming` is seen from.
+#: Direction of a message with this event, and its sender. The component's view defines `incoming`.
 _SENT_BY = {"request": ("incoming", "the controller"), "response": ("outgoing", "the component")}
 
 
 @rule("result-type")
 def result_type(base: rsc.Base) -> Iterator[Finding]:
-    """A transition names an event that its communication has."""
+    """Every transition names an event that its communication has."""
     yield from unknown_events(base)
     for _, transition in transitions(base):
         if isinstance(transition, rsc.TimedTransition):
@@ -89,9 +90,9 @@ def _silences(transition: rsc.TimedTransition) -> Iterator[Finding]:
 
 @rule("nondeterminism")
 def nondeterminism(base: rsc.Base) -> Iterator[Finding]:
-    """A state reacts to an event in one way: of several transitions the first whose condition holds is taken.
+    """Every state reacts to an event in one way: of several transitions, the first with a true guard is taken.
 
-    Those that all states have are no alternatives to those of a state.
+    Transitions of all states are no alternatives to those of one state.
     """
     yield from repeated_events(base)
     for component, behaviour in behaviours(base):
@@ -112,7 +113,10 @@ def _repeated(
     component: rsc.Component,
     reported: set[rsc.Transition],
 ) -> Iterator[Finding]:
-    """Each transition that an earlier one leaves no case of its event to, given in the order of the text, once."""
+    """Report, once, each transition that an earlier one leaves no case of its event.
+
+    `transitions` are in the order of the text.
+    """
     firsts: dict[_Event, tuple[rsc.ResultTransition, rsc.State | None]] = {}
     for second, state in transitions:
         event = _event(second)
@@ -136,7 +140,7 @@ def _never_taken(
     first: tuple[rsc.ResultTransition, rsc.State | None],
     state: rsc.State | None,
 ) -> tuple[str, str]:
-    """The fault of a transition beside an earlier one, and how to mend it."""
+    """Return the message and the hint for a transition that an earlier one preempts."""
     taken, other = first
     where = state or other
     place = f"state `{component.name}.{where.name}`" if where else f"every state of `{component.name}`"
@@ -153,7 +157,7 @@ def _never_taken(
 
 
 def _event(transition: rsc.Transition) -> _Event | None:
-    """The event of a transition; None for a silent one, and for an event that does not exist (`result-type`)."""
+    """Return the event of a transition; None if it is silent or its event does not exist (`result-type`)."""
     if not isinstance(transition, rsc.ResultTransition) or transition.communicationType is None:
         return None
     reference, event = transition.communicationType, str(transition.resultType)
@@ -163,7 +167,7 @@ def _event(transition: rsc.Transition) -> _Event | None:
 
 @rule("assignment-on-message-to-node")
 def assignment_on_message_to_node(base: rsc.Base) -> Iterator[Finding]:
-    """Sending a message to a component assigns nothing: no data comes in with it."""
+    """No transition that sends a message to a component assigns a variable: the message brings no data back."""
     for component, transition in transitions(base):
         if transition.assignments and isinstance(transition, rsc.ResultTransition) and sends_message(transition):
             name = transition.communicationType.communicationType.name
@@ -195,7 +199,7 @@ def assignment_scope(base: rsc.Base) -> Iterator[Finding]:
 
 @rule("repeated-assignment", Severity.WARNING)
 def repeated_assignment(base: rsc.Base) -> Iterator[Finding]:
-    """A transition assigns a variable once."""
+    """No transition assigns a variable twice."""
     for _, transition in transitions(base):
         assigned: dict[rsc.Variable, rsc.Assignment] = {}
         for assignment in transition.assignments:
@@ -226,7 +230,7 @@ def _describe(target: rsc.Access) -> str:
 
 
 def _assignments(transition: rsc.Transition) -> Part:
-    """The assignments of a transition, with the `do` before them."""
+    """Return the assignments of a transition, with the `do` before them."""
     assignments = transition.assignments
     return part_of(assignments[0]).preceded_by("do").to(part_of(assignments[-1]))
 

@@ -1,4 +1,4 @@
-"""`unknown-end`: an error with which a service or an action may still be running is no end of it."""
+"""Rule `unknown-end`: after some errors, the service or action may still be running."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ if TYPE_CHECKING:
     from robosc.semantics.evaluation import Value
     from robosc.semantics.instances import Instance, Instances, PortInstance
 
-#: A condition with more parts of unknown value than this counts as one that can become true.
+#: Maximum number of unknown parts of a condition. A larger condition counts as one that can become true.
 _MOST = 10
 _CONNECTIVES = (ex.Conjunction, ex.Disjunction, ex.Implication, ex.Negation)
 
 
 class _UnknownError(Exception):
-    """An expression reads something of unknown value."""
+    """Expression with an unknown value."""
 
 
 @rule("unknown-end", Severity.WARNING)
 def unknown_end(base: rsc.Base) -> Iterator[Finding]:
-    """No requirement on another command takes an error for an end with which the call or goal may still be running."""
+    """No requirement on another command treats an error as an end if the call or goal may still be running."""
     if not isinstance(base, rsc.Robot):
         return
     known = instances(base)
@@ -69,7 +69,10 @@ def _finding(
     misled: Mapping[str, tuple[CommandCondition, rsc.State]],
     port: PortInstance,
 ) -> Finding:
-    """The finding about a transition that misleads a condition for each of some reasons, in a state at rest."""
+    """Return the finding about a transition that misleads a condition.
+
+    `misled` maps each reason of the error to the condition and to the state in which the component then rests.
+    """
     name = written(port.communication.name)
     whether = " or ".join(f"error = {reason}" for reason in misled)
     condition, state = next(iter(misled.values()))
@@ -93,7 +96,7 @@ def _finding(
 
 
 def _failing(transition: rsc.Transition, instance: Instance, known: Instances) -> PortInstance | None:
-    """The service or action whose error a transition is on; None for other events."""
+    """Return the service or action of an error transition; None for other events."""
     if not isinstance(transition, rsc.ResultTransition) or transition.resultType != rsc.ResultType.error:
         return None
     port = known.port(transition.communicationType, instance)
@@ -103,9 +106,9 @@ def _failing(transition: rsc.Transition, instance: Instance, known: Instances) -
 def _reasons_left(
     transition: rsc.ResultTransition, instance: Instance, port: PortInstance, known: Instances
 ) -> dict[rsc.State, list[str]]:
-    """The reasons after which the call or goal may still be running, and for which a transition may be taken.
+    """Return, by state, the reasons of an error that may take a transition while the call or goal still runs.
 
-    They are given by state; states without any are left out.
+    States without such a reason are left out.
     """
     within = transition.eContainer()
     common = [other for other, where in instance.transitions if where is None]
@@ -122,7 +125,7 @@ def _reasons_left(
 
 
 def _may_be_unreadable(transition: rsc.Transition) -> bool:
-    """Whether the guard of a transition reads an element of an array: it is false where the element is missing."""
+    """Return whether the guard of a transition reads an array element: the guard is false if it is missing."""
     return any(
         isinstance(segment, rsc.IndexSegment)
         for access in accesses(guard_of(transition))
@@ -133,7 +136,7 @@ def _may_be_unreadable(transition: rsc.Transition) -> bool:
 def _misleading(
     transition: rsc.ResultTransition, before: _Situation, condition: CommandCondition
 ) -> Iterator[_Situation]:
-    """The situations after a transition, or after silent ones that follow it, in which a condition has become true."""
+    """Yield situations after a transition, and silent ones after it, in which a condition has become true."""
     return (after for after in _at_rest(_taken(transition, before)) if _makes_true(condition, before, after))
 
 
@@ -149,7 +152,7 @@ def _taken(transition: rsc.Transition, before: _Situation) -> _Situation:
 
 
 def _at_rest(first: _Situation) -> list[_Situation]:
-    """Return a situation and those that silent transitions lead to whose conditions hold for certain."""
+    """Return a situation and those that silent transitions certainly lead to."""
     common = [transition for transition, where in first.instance.transitions if where is None]
     reached = [first]
     for situation in reached:
@@ -162,7 +165,7 @@ def _at_rest(first: _Situation) -> list[_Situation]:
 
 
 def _makes_true(condition: CommandCondition, before: _Situation, after: _Situation) -> bool:
-    """Whether a condition can become true between two situations."""
+    """Return whether a condition can become true between two situations."""
     known, instance = before.known, before.instance
     changed = _Changed(instance, frozenset(after.variables))
     expression, within = known.expanded(condition.condition, condition.within), condition.within
@@ -178,12 +181,12 @@ def _makes_true(condition: CommandCondition, before: _Situation, after: _Situati
     return False
 
 
-#: A condition over parts of unknown value: a truth value, the name of a part, or a connective with its operands.
+#: Condition over parts of unknown value: a truth value, the name of a part, or a connective with its operands.
 _Formula = Any
 
 
 class _Changed(NamedTuple):
-    """Variables of an instance that have other values before and after a transition."""
+    """Variables of an instance whose values differ before and after a transition."""
 
     instance: Instance
     variables: frozenset[rsc.Variable]
@@ -199,7 +202,7 @@ class _Situation(NamedTuple):
     variables: Mapping[rsc.Variable, Value | None] = {}
 
     def holds(self, guard: ex.Expression | None) -> bool | None:
-        """Whether a guard of the component holds; None where that depends on other things."""
+        """Return whether a guard of the component holds; None if that depends on unknown values."""
         if guard is None:
             return True
         formula = self.formula(self.known.expanded(guard, self.instance), self.instance)
@@ -213,7 +216,7 @@ class _Situation(NamedTuple):
     def formula(
         self, expression: ex.Expression, within: Instance | None, changed: _Changed | None = None, when: str = ""
     ) -> _Formula:
-        """A written out condition in the text of an instance; `when` tells parts apart that have `changed`."""
+        """Return an expanded condition as a formula; `when` distinguishes parts that have `changed`."""
 
         def combine(part: ex.Expression, inside: list[_Formula]) -> _Formula:
             if isinstance(part, _CONNECTIVES):
@@ -230,7 +233,7 @@ class _Situation(NamedTuple):
         return fold(combine, expression, lambda part: operands(part) if isinstance(part, _CONNECTIVES) else ())
 
     def value(self, expression: ex.Expression, within: Instance | None) -> Value | None:
-        """The value of a written out expression; None where it reads something else than what is known."""
+        """Return the value of an expanded expression; None if it reads an unknown value."""
 
         def read(reference: ex.Expression) -> Value:
             if isinstance(reference, rsc.ErrorReason) and self.reason is not None and reference.enumeration:
@@ -255,7 +258,7 @@ class _Situation(NamedTuple):
 
 
 def _unknown(formula: _Formula) -> list[str]:
-    """The names of the parts of unknown value."""
+    """Return the names of the parts of unknown value."""
 
     def combine(part: _Formula, inside: list[list[str]]) -> list[str]:
         return [part] if isinstance(part, str) else [name for names in inside for name in names]

@@ -1,7 +1,7 @@
-"""Waits of components: `cancel-is-not-the-end`, `answer-unheard` and `failure-unheard`.
+"""Rules on components that wait: `cancel-is-not-the-end`, `answer-unheard` and `failure-unheard`.
 
-A request, a call and a cancel are asked for at one moment and done at a later one. These rules look for components that
-take the first moment for the second.
+A request, a call or a cancel starts at one moment and ends at a later one. These rules report components that confuse
+the two.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _END = (rsc.ResultType.response, rsc.ResultType.error, rsc.ResultType.canceled)
 
 @rule("cancel-is-not-the-end", Severity.WARNING)
 def cancel_is_not_the_end(base: rsc.Base) -> Iterator[Finding]:
-    """A component or requirement that reacts to the cancel of an action goes on to wait for the end of the action."""
+    """Each component or requirement that reacts to the cancel of an action also waits for the action's end."""
     if not isinstance(base, rsc.Robot):
         return
     known = instances(base)
@@ -41,7 +41,7 @@ def cancel_is_not_the_end(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _states_without_end(known: Instances, places: Places) -> Iterator[Finding]:
-    """The transitions on a cancel to a state in which nothing waits for the end of the action."""
+    """Report transitions on a cancel to a state that does not wait for the end of the action."""
     for instance in known:
         common = [transition for transition, where in instance.transitions if where is None]
         for transition, _ in instance.transitions:
@@ -85,7 +85,7 @@ def _silently_reached(state: rsc.State, common: Iterable[rsc.Transition]) -> lis
 
 
 def _forbidden_ends(known: Instances, places: Places) -> Iterator[Finding]:
-    """The transitions on a cancel to a state in which the requirement automaton forbids an end that it names."""
+    """Report transitions on a cancel to a state in which the requirement automaton forbids an end that it names."""
     for statement in known.statements(rsc.AutomatonRequirement):
         every = [transition for state in statement.element.states for transition in state.transitions]
         named = {(known.port(other.event.communicationType, statement.within), kind_of(other.event)) for other in every}
@@ -112,7 +112,7 @@ def _forbidden_ends(known: Instances, places: Places) -> Iterator[Finding]:
 
 
 def _variables_read(known: Instances, places: Places) -> Iterator[Finding]:
-    """The transitions on a cancel that assign a variable which a requirement on another command reads."""
+    """Report transitions on a cancel that assign a variable which a requirement on another command reads."""
     read = _readers(known)
     for instance in known if read else ():
         for transition, _ in instance.transitions:
@@ -138,7 +138,7 @@ def _variables_read(known: Instances, places: Places) -> Iterator[Finding]:
 
 
 def _readers(known: Instances) -> dict[InstanceVariable, list[tuple[rsc.Requirement, set[PortInstance | None]]]]:
-    """The requirements that read each variable, each with what it restricts."""
+    """Return the requirements that read each variable, each with the commands that it restricts."""
     found: dict[InstanceVariable, list[tuple[rsc.Requirement, set[PortInstance | None]]]] = {}
     for stated in command_conditions(known):
         for access in accesses(known.expanded(stated.condition, stated.within)):
@@ -150,7 +150,7 @@ def _readers(known: Instances) -> dict[InstanceVariable, list[tuple[rsc.Requirem
 
 @rule("answer-unheard", Severity.WARNING)
 def answer_unheard(base: rsc.Base) -> Iterator[Finding]:
-    """A component that changes its state with a call waits somewhere for the answer."""
+    """Each component that changes its state with a call waits for the answer in some state."""
     if not isinstance(base, rsc.Robot):
         return
     known = instances(base)
@@ -182,7 +182,7 @@ def answer_unheard(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _answers_heard(known: Instances) -> set[PortInstance]:
-    """The services and actions whose response a transition, an order, a count or a requirement automaton names."""
+    """Return the services and actions whose response a transition or a requirement names."""
     found: set[PortInstance | None] = set()
     for instance in known:
         for transition, _ in instance.transitions:
@@ -197,7 +197,7 @@ def _answers_heard(known: Instances) -> set[PortInstance]:
 
 
 def _restricted(known: Instances) -> set[PortInstance]:
-    """The communications whose start a requirement restricts."""
+    """Return the communications whose start a requirement restricts."""
     found: set[PortInstance | None] = set()
     for requirement in known.statements(rsc.CommunicationRequirement):
         found |= commands_of(requirement, known)
@@ -209,7 +209,7 @@ def _restricted(known: Instances) -> set[PortInstance]:
 
 
 def _states_read(known: Instances) -> set[tuple[Instance | None, rsc.State]]:
-    """The states that requirements read."""
+    """Return the states that requirements read."""
     conditions: list[tuple[ex.Expression | None, Instance | None]] = []
     required, invariants = known.statements(rsc.CommunicationRequirement), known.statements(rsc.StateInvariant)
     conditions += ((statement.element.condition, statement.within) for statement in required)
@@ -232,7 +232,7 @@ def _answers_nothing(communication: rsc.CommunicationType) -> bool:
 
 
 def _commands(state: rsc.State, instance: Instance, port: PortInstance, known: Instances) -> bool:
-    """Whether a component allows another command in a state."""
+    """Return whether a component allows another command in a state."""
     common = [transition for transition, where in instance.transitions if where is None]
     requests = [
         known.port(transition.communicationType, instance)
@@ -244,7 +244,7 @@ def _commands(state: rsc.State, instance: Instance, port: PortInstance, known: I
 
 @rule("failure-unheard", Severity.WARNING)
 def failure_unheard(base: rsc.Base) -> Iterator[Finding]:
-    """A state that waits for an answer also reacts to the failure, and to the end of a cancel that can come."""
+    """Each state that waits for an answer also reacts to the failure, and to the end of a possible cancel."""
     if not isinstance(base, rsc.Robot):
         return
     known = instances(base)
@@ -279,7 +279,7 @@ def failure_unheard(base: rsc.Base) -> Iterator[Finding]:
 def _unheard(
     state: rsc.State, common: Iterable[rsc.Transition], awaited: rsc.CommunicationReference, cancelable: bool
 ) -> list[rsc.ResultType]:
-    """The ends of a call or goal that a state which waits for its response does not react to."""
+    """Return the ends of a call or goal that a state waiting for its response does not react to."""
     own, call = [*state.transitions, *common], awaited.communicationType
     if any(isinstance(transition, rsc.TimedTransition) for transition in state.transitions) or _leaves_at_the_end(
         own, call
@@ -300,7 +300,7 @@ def _unheard(
 
 
 def _leaves_at_the_end(transitions: Iterable[rsc.Transition], call: rsc.CommunicationType | None) -> bool:
-    """Whether a silent transition asks whether a call is running."""
+    """Return whether the guard of a silent transition checks that a call is running."""
     silent = (transition for transition in transitions if isinstance(transition, rsc.TauTransition))
     return any(access.item is call for transition in silent for access in accesses(transition.guard))
 
@@ -310,7 +310,7 @@ def _is_on(transition: rsc.Transition, kind: rsc.ResultType) -> TypeGuard[rsc.Re
 
 
 def _names(transition: rsc.Transition, reference: rsc.CommunicationReference) -> bool:
-    """Whether a transition names the communication of the component that a reference in the same text names."""
+    """Return whether a transition names the same communication of the same component as a reference."""
     named = transition.communicationType if isinstance(transition, rsc.ResultTransition) else None
     if named is None:
         return False

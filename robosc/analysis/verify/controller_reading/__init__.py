@@ -1,11 +1,11 @@
-"""What the controller adds to plants and requirements, held against a second reading of the robot's text.
+"""Validation of the controller's additions to plants and requirements by a second reading of the robot's text.
 
     verdict = validate_controller(models)
 
-The engine model is what the generated C and the interpreter both execute: times, batches, groups, the order in which
-events and data are tried, the bound of silent events. `loop-translation` compares the C with the interpreter, so it
-can't see a fault of that model. `model_reading.controller` says what the text means, by the pages of the language
-alone; `loop`, `times` and `topics` compare it with the engine model and the ROS graph.
+The generated C and the interpreter both execute the engine model: timers, batches, groups, the order of events and
+data, and the bound of silent events. `loop-translation` compares the C with the interpreter, so it cannot detect a
+fault of that model. `model_reading.controller` derives the meaning of the text from the pages of the language alone.
+`loop`, `times` and `topics` compare it with the engine model and the ROS graph.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from robosc.analysis.verify.verdict import Outcome, Verdict
 if TYPE_CHECKING:
     from robosc.m2t.models import Models
 
-#: What the verdict is called.
+#: Name of the property in verdicts.
 PROPERTY = "controller-translation"
 ENOUGH = Effort()
 _UNLIKE = "the plants are not those of the text: see model-translation"
@@ -35,10 +35,10 @@ __all__ = ["PROPERTY", "Effort", "validate_controller"]
 
 
 def validate_controller(models: Models, effort: Effort = ENOUGH) -> Verdict:
-    """Whether times, batches, groups, orders and bounds of the controller are those of the text.
+    """Return whether timers, batches, groups, orders and bounds of the controller agree with the text.
 
-    The model has its supervisor; of the ROS graph the topics are compared, where there is one. Skipped without the
-    text, and where the plants are others than those of the text: model-translation reports how.
+    The model has its supervisor. The topics of the ROS graph are compared if there is one. The property is skipped
+    without the text, and if the plants differ from the text: model-translation reports the difference.
     """
     if models.robosc is None:
         return Verdict(PROPERTY, Outcome.SKIPPED, "", "the model was not read from its text")

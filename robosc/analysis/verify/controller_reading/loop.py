@@ -1,4 +1,4 @@
-"""What the control loop knows of events, held against the text: roles, order, sources, groups, data, the bound."""
+"""Comparison of the control loop with the text: roles, order, sources, groups, data, the bound."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ if TYPE_CHECKING:
     from robosc.analysis.verify.model_reading.controller import ControllerText
     from robosc.analysis.verify.model_reading.machine import EventName, Machine, Plant
 
-#: The roles whose events are tried one after the other.
+#: Roles whose events are tried one after the other.
 _ORDERED = (CANCEL, TRIGGER, SILENT, TIMEOUT)
 
 
 def event_names(plants: Machine) -> dict[Any, EventName]:
-    """The name in the text of each event of the model."""
+    """Return the name in the text of each event of the model."""
     return {event.element: name for name, event in plants.events.items()}
 
 
 class LoopComparison:
-    """The control loop of the engine model beside that of the text."""
+    """Comparison of the engine model's control loop with that of the text."""
 
     def __init__(self, controller: ControllerText, plants: Machine, executed: engine.EngineModel) -> None:
         self._controller = controller
@@ -35,7 +35,7 @@ class LoopComparison:
         self._names = event_names(plants)
 
     def run(self) -> None:
-        """Raises DifferenceError for the first difference."""
+        """Compare the loops; raise DifferenceError for the first difference."""
         self._compare_roles()
         self._compare_sources()
         self._compare_groups()
@@ -92,7 +92,7 @@ class LoopComparison:
     def _compare_partitions(
         self, ours: Sequence[Sequence[EventName]], theirs: Sequence[Sequence[EventName]], verb: str
     ) -> None:
-        """That events are put together alike; those of one message also in the order of the text."""
+        """Compare the grouping of events, and the order of the events of one message."""
         for names in ours:
             ordered = names[0].plant.kind == "message"
             if not any(list(names) == list(other) or (not ordered and {*names} == {*other}) for other in theirs):
@@ -123,7 +123,7 @@ class LoopComparison:
             self._compare_chosen(choice)
 
     def _compare_chosen(self, choice: engine.Choice) -> None:
-        """That data is taken for chosen where it is, and nowhere else."""
+        """Check that data counts as chosen in its own location only."""
         compute = Compiler(self._executed)
         cells = [0] * len(self._executed.variables)
         place = next((place for place, cell in enumerate(self._executed.variables) if cell is choice.variable), None)

@@ -1,4 +1,4 @@
-"""The times of a robot by its text, held against those of the engine model."""
+"""Comparison of the timers in a robot's text with those of the engine model."""
 
 from __future__ import annotations
 
@@ -36,9 +36,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Effort:
-    """Of each event and component, up to `values` combinations of what decides on the times are compared.
+    """Limits of the comparison for each event and component.
 
-    Where there are more, `random` ones are.
+    Up to `values` combinations of the values that timers depend on are compared. If there are more, `random` random
+    ones are compared.
     """
 
     values: int = 100_000
@@ -47,7 +48,7 @@ class Effort:
 
 @dataclass(frozen=True)
 class _Restart:
-    """What an event does with times where a condition holds: first those of `left` stop, then others start."""
+    """Effect of an event on timers under a condition: those of `left` stop, then others start."""
 
     holds: Callable[[Sequence[int], Sequence[int]], int] | None
     left: Plant | None
@@ -56,7 +57,7 @@ class _Restart:
 
 @dataclass(frozen=True)
 class _Case:
-    """A state and data in which an event does other things with a time than the text says."""
+    """A state and data in which the effect of an event on a timer differs from the text."""
 
     timer: EventName
     ours: str
@@ -66,7 +67,7 @@ class _Case:
 
 
 class TimeComparison:
-    """When times start and stop, by the text and in the engine model."""
+    """Comparison of the starts and stops of timers in the text and in the engine model."""
 
     def __init__(
         self, controller: ControllerText, plants: Machine, executed: engine.EngineModel, effort: Effort
@@ -86,7 +87,7 @@ class TimeComparison:
         self._carried = [(carried.input, Domain(carried.type)) for carried in executed.inputs]
 
     def run(self) -> None:
-        """Raises DifferenceError for a time that is another, or that starts or stops otherwise."""
+        """Compare the timers; raise DifferenceError if one has another length, or starts or stops at other events."""
         self._compare_timers()
         for event in self._executed.events:
             for component in self._controller.times:
@@ -134,7 +135,7 @@ class TimeComparison:
         return f"the time `after {words_of_time}` of `{name.plant.origin}`{place}"
 
     def _restarts(self, event: engine.Event, component: Plant) -> list[_Restart]:
-        """Those in the engine model that have to do with the times of a component."""
+        """Return the restarts in the engine model that affect the timers of a component."""
         restarts = []
         for restart in event.restarts:
             names = (self._names[timer.event.event] for timer in restart.starts)
@@ -160,7 +161,7 @@ class TimeComparison:
         for restart in restarts:
             if restart.holds is None or restart.holds(cells, carried):
                 for other in self._controller.times[component] if restart.left is not None else ():
-                    # It runs in its own state only: elsewhere there is nothing to stop.
+                    # A timer runs only in its own state; in other states, there is nothing to stop.
                     if self._is_here(other, state):
                         effects[other] = STOPS
                 effects.update(dict.fromkeys(restart.starts, STARTS))
@@ -171,7 +172,7 @@ class TimeComparison:
         return location is not None and state[Slot(timer.plant)] == location.name
 
     def _differing(self, event: engine.Event, component: Plant) -> Iterator[_Case]:
-        """States and data in which the event does other things with times of the component."""
+        """Yield states and data in which the event's effects on timers of the component differ."""
         name = self._names[event.event]
         restarts = self._restarts(event, component)
         if not restarts and not self._controller.concerns(name, component):
@@ -190,7 +191,7 @@ class TimeComparison:
                     break
 
     def _cases(self, slots: Sequence[Slot], event: Event) -> Iterator[tuple[State, Inputs]]:
-        """All states and data that matter; of too many, random ones."""
+        """Yield all relevant states and data, or random ones if there are too many."""
         domains = [self._controller.text.domains[slot] for slot in slots]
         carried = list(event.inputs.values())
         names = list(event.inputs)
@@ -210,7 +211,7 @@ class TimeComparison:
             yield state, dict(zip(names, chosen[split:], strict=True))
 
     def _report(self, event: engine.Event, differing: Sequence[_Case]) -> None:
-        """Raises DifferenceError for the case that the supervised robot comes to first, if it comes to any."""
+        """Raise DifferenceError for the case that the supervised robot reaches first, if it reaches any."""
 
         def look(encoding: Encoding) -> tuple[_Case, tuple[TraceStep, ...]] | None:
             system = GuardedSystem(self._executed.model, encoding)
@@ -236,7 +237,7 @@ class TimeComparison:
         )
 
     def _states(self, held: State, encoding: Encoding) -> Diagram:
-        """All states in which some slots hold these values."""
+        """Return all states in which the slots hold these values."""
         states = encoding.diagrams.true
         for slot, value in held.items():
             element = self._plants.sources[slot]

@@ -1,4 +1,4 @@
-"""The topics and servers of a ROS node, held against the text."""
+"""Comparison of the topics and servers of a ROS node with the text."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 
 def compare_topics(controller: ControllerText, plants: Machine, graph: rosgraph.RosGraph) -> None:
-    """Raises DifferenceError where the node has not one subscription, or publisher, for each topic of the text.
+    """Raise DifferenceError unless the node has one subscription or publisher for each topic of the text.
 
-    Also where messages of a topic are in another order, and where a server has another name.
+    Also raises it if messages of a topic are in another order, or if a server has another name.
     """
     names = event_names(plants)
     text = controller.text

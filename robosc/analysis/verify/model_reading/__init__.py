@@ -1,9 +1,10 @@
-"""A second reading of a robot's text, held against the plants and requirements that were made of it.
+"""Validation of plants and requirements by a second reading of the robot's text.
 
     verdict = validate_model(robot, model)
 
-`text` interprets the linked robot by the pages of the language alone, `plants` the sct model; neither knows how the one
-was made from the other, but for the names of plants, events and inputs. `lockstep` goes through both at once.
+`text` interprets the linked robot by the pages of the language alone, and `plants` interprets the SCT model. Both are
+independent of the transformation between the two, except for the names of plants, events and inputs. `lockstep`
+explores both together.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from robosc.analysis.verify.verdict import Outcome, Verdict
 if TYPE_CHECKING:
     from robosc.metamodel import robosc, sct
 
-#: What the verdict is called.
+#: Name of the property in verdicts.
 PROPERTY = "model-translation"
 ENOUGH = Effort()
 
@@ -27,7 +28,7 @@ __all__ = ["PROPERTY", "Effort", "validate_model"]
 
 
 def validate_model(robot: robosc.Base | None, model: sct.SupervisoryControlModel, effort: Effort = ENOUGH) -> Verdict:
-    """Whether plants and requirements do what the text says: in every state that the requirements let it come to."""
+    """Return whether plants and requirements agree with the text in every state that the requirements allow."""
     if robot is None:
         return Verdict(PROPERTY, Outcome.SKIPPED, "", "the model was not read from its text")
     try:

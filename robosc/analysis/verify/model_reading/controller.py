@@ -1,4 +1,4 @@
-"""What a controller adds to plants and requirements, by the text: order, batches, groups, data, bounds and times."""
+"""Meaning of a robot's text for the controller: order, batches, groups, data, bounds and timers."""
 
 from __future__ import annotations
 
@@ -11,66 +11,66 @@ if TYPE_CHECKING:
 
     from robosc.analysis.verify.model_reading.machine import Machine, Timer, Value
 
-    #: What an event does to times; those that go on are not in it.
+    #: Effects of an event on timers; timers that continue are left out.
     Effects = dict[EventName, str]
 
-#: What an event does to a time.
+#: Effects of an event on a timer.
 STARTS, STOPS, GOES_ON = "starts anew", "stops", "goes on"
 CANCEL, TRIGGER, SILENT, DATA, INCOMING, TIMEOUT = "cancel", "trigger", "silent", "data", "incoming", "timeout"
-#: What the control loop does with an event, by its kind; all others come from the robot.
+#: Role of an event in the control loop, by its kind; all other events come from the robot.
 _ROLES = {"cancel": CANCEL, "trigger": TRIGGER, "tau": SILENT, "reset": SILENT, "data": DATA, "timeout": TIMEOUT}
-#: A bound of 32 bits.
+#: Largest bound in 32 bits.
 _LARGEST_BOUND = 2**32 - 1
 
 
 class ControllerText:
-    """The controller of a robot, by the reading of its text. All lists of events are in the order of the text."""
+    """Controller of a robot, read from its text. All lists of events are in the order of the text."""
 
     def __init__(self, text: Machine) -> None:
         self.text = text
         self._place = {plant: place for place, plant in enumerate(text.order)}
-        #: The events of each component's times.
+        #: Timer events of each component.
         self.times: dict[Plant, list[EventName]] = {}
         for name in self.events(TIMEOUT):
             self.times.setdefault(name.plant, []).append(name)
 
     def role(self, name: EventName) -> str:
-        """What the control loop does with an event."""
+        """Return the role of an event in the control loop."""
         return _ROLES.get(self.text.events[name].kind, INCOMING)
 
     def events(self, role: str) -> list[EventName]:
-        """The events of a role, component by component."""
+        """Return the events of a role, component by component."""
         names = [name for name in self.text.events if self.role(name) == role]
         return sorted(names, key=lambda name: self._place.get(name.plant, 0))
 
     def topic(self, plant: Plant) -> str:
-        """The topic of a message. The node takes `/scan` and `scan` for one."""
+        """Return the topic of a message. The node treats `/scan` and `scan` as equal."""
         return self.text.topics[plant].removeprefix("/")
 
     # Batches and groups
 
     @property
     def sources(self) -> list[list[EventName]]:
-        """What one count of reactions is for: a topic, a service, an action, the times of a component."""
+        """Events that share one count of reactions: those of a topic, a service, an action, a component's timers."""
         return [*self._together(INCOMING), *self._together(TIMEOUT)]
 
     @staticmethod
     def is_batch(source: Sequence[EventName]) -> bool:
-        """Whether one message means all events of a source, with nothing in between."""
+        """Return whether one message triggers all events of a source, with nothing in between."""
         return len(source) > 1 and source[0].plant.kind == "message"
 
     @property
     def rounds(self) -> list[list[EventName]]:
-        """Messages that go to one topic: at most one of them is sent in a round."""
+        """Messages that share a topic: at most one of them is sent in a round."""
         return [names for names in self._together(TRIGGER) if self.is_batch(names)]
 
     @property
     def ticks(self) -> list[list[EventName]]:
-        """Services and actions: each starts once in a tick."""
+        """Events of services and actions: each starts once in a tick."""
         return [names for names in self._together(TRIGGER) if names[0].plant.kind != "message"]
 
     def _together(self, role: str) -> list[list[EventName]]:
-        """Messages by their topic, other events by their plant."""
+        """Return messages grouped by topic, and other events grouped by plant."""
         groups: dict[object, list[EventName]] = {}
         for name in self.events(role):
             key = self.topic(name.plant) if name.plant.kind == "message" else name.plant
@@ -81,43 +81,49 @@ class ControllerText:
 
     @property
     def alternatives(self) -> dict[Plant, list[EventName]]:
-        """For each choice of data its events: the statements that provide data, then no data."""
+        """Events of each choice of data: the `provide` statements, then no data."""
         choices: dict[Plant, list[EventName]] = {}
         for name in self.events(DATA):
             choices.setdefault(name.plant, []).append(name)
         return {plant: sorted(names, key=lambda name: name.name == "c_none") for plant, names in choices.items()}
 
     def choice(self, name: EventName) -> Plant | None:
-        """The choice of the data that a trigger sends; None where there is none."""
+        """Return the choice of the data that a trigger sends; None if there is none."""
         plant = Plant("data", name.plant.origin)
         return plant if self.role(name) == TRIGGER and plant in self.alternatives else None
 
     def bound(self, proved: int | None) -> int:
-        """After how many silent events a livelock is reported: as many as are proved, else 2 for each event and 16."""
+        """Return the number of silent events after which the loop reports a livelock.
+
+        It is the proved bound. Without one, it is 2 for each silent event plus 16.
+        """
         return 2 * len(self.events(SILENT)) + 16 if proved is None else min(proved, _LARGEST_BOUND)
 
-    # Times
+    # Timers
 
     def timer(self, name: EventName) -> Timer:
-        """The time whose end an event is."""
+        """Return the timer that expires with an event."""
         timer = self.text.events[name].timer
         assert timer is not None
         return timer
 
     def runs_from_start(self, name: EventName) -> bool:
-        """The initial state is entered at the start; a time outside of the states runs in all of them."""
+        """Return whether a timer runs from the start: the initial state is entered then.
+
+        A timer outside of the states runs in all of them.
+        """
         location = self.timer(name).location
         return location is None or location == self.text.initial[Slot(name.plant)]
 
     def concerns(self, name: EventName, component: Plant) -> bool:
-        """Whether an event may start or stop a time of a component."""
+        """Return whether an event may start or stop a timer of a component."""
         participants = self.text.events[name].participants
         return any(participant.component == component for participant in participants) or any(
             name in self.timer(timed).without for timed in self.times[component]
         )
 
     def reads(self, name: EventName, component: Plant) -> frozenset[Slot]:
-        """What decides on that: where the component is, and what its transitions read."""
+        """Return the slots that decide about it: the component's location, and the slots its transitions read."""
         participants = self.text.events[name].participants
         own = [participant.reads for participant in participants if participant.component == component]
         return frozenset({Slot(component)}).union(*own)
@@ -125,11 +131,11 @@ class ControllerText:
     def effects(
         self, name: EventName, component: Plant, state: Mapping[Slot, Value], inputs: Mapping[str, Value]
     ) -> Effects | None:
-        """What an event does to the times of a component; None where the component does not let it happen.
+        """Return the effects of an event on a component's timers; None if the component refuses the event.
 
-        A time of a state starts when the state is entered, also by `goto` to the same state, and when one of its
-        messages comes and the component stays. It stops when the state is left, and when it is up. A time outside of
-        the states starts with each of its messages, whatever the state.
+        A timer of a state starts when the state is entered, also by `goto` to the same state. It starts again when one
+        of its messages arrives and the component stays. It stops when the state is left, and when it expires. A timer
+        outside of the states starts with each of its messages, in any state.
         """
         place = Slot(component)
         entered: Value | None = None

@@ -1,4 +1,4 @@
-"""Two readings of a robot, side by side: the text's and the plants', from the initial state on."""
+"""Comparison of the text's reading and the plants' reading of a robot, from the initial state on."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ if TYPE_CHECKING:
     from robosc.metamodel import expression as ex
 
 
-#: How much longer it takes to compute what an event does than to know it from before.
+#: Cost of evaluating an event, in units of a cache hit.
 _COMPUTED = 30
-#: What so many values of slots do is looked up at once.
+#: Events are cached together while their slots have at most this many joint values.
 _TOGETHER = 1000
 
 
 class DifferenceError(Exception):
-    """The readings differ: how, the events that lead there, and those that show it from there on."""
+    """The readings differ: the explanation, the events that lead there, and those that demonstrate it."""
 
     def __init__(self, explanation: str, trace: Sequence[TraceStep] = (), onwards: Sequence[TraceStep] = ()) -> None:
         super().__init__(explanation)
@@ -50,13 +50,13 @@ class DifferenceError(Exception):
 
 @dataclass(frozen=True)
 class Effort:
-    """How much is compared, and what is done when that is too little.
+    """Limits of the comparison, and its fallbacks.
 
     Up to `first` states are explored. If there are more, each event is compared for all combinations of the values that
     it reads, reachable or not, up to `values` combinations in total. If these are too many, or a difference may be
-    unreachable, up to `states` states are explored (fewer where all of them together take more than `bits` bits), with
-    at most `tries` evaluations of an event; one that has to be computed counts as `_COMPUTED` of them. An event with
-    more than `inputs` combinations of input values is sampled in each state. The rest is sampled by `random`
+    unreachable, up to `states` states are explored (fewer if all of them together take more than `bits` bits), with at
+    most `tries` evaluations of an event. An event that has to be computed counts as `_COMPUTED` evaluations. An event
+    with more than `inputs` combinations of input values is sampled in each state. The rest is sampled by `random`
     evaluations on a random walk.
     """
 
@@ -70,9 +70,9 @@ class Effort:
 
 
 class Walked(NamedTuple):
-    """What was compared: so many states and events, whether these are all, and if not, in how many random steps.
+    """Extent of the comparison: numbers of states and events, whether it is exhaustive, and random steps.
 
-    Without them each event was compared in all states, reachable or not.
+    Without random steps, a comparison that is not exhaustive covers each event in all states, reachable or not.
     """
 
     states: int
@@ -82,7 +82,7 @@ class Walked(NamedTuple):
 
 
 class _Pair:
-    """An event in both readings, and what it does by both in the states met so far."""
+    """An event in both readings, with its effects in the states so far."""
 
     def __init__(self, text: Event, plants: Event, layout: _Layout, most: int) -> None:
         self.text, self.plants = text, plants
@@ -95,12 +95,12 @@ class _Pair:
         self.differing: dict[str, Value] | None = None
 
     def all_choices(self) -> Iterator[dict[str, Value]]:
-        """All values of all inputs."""
+        """Yield all combinations of input values."""
         for values in product(*self.domains.values()):
             yield dict(zip(self.domains, values, strict=True))
 
     def choices(self, random: Random) -> Iterator[dict[str, Value]]:
-        """Values of all inputs; some, where there are too many."""
+        """Yield all combinations of input values, or a sample if there are too many."""
         if not self.is_sampled:
             yield from self.all_choices()
         else:
@@ -111,14 +111,14 @@ class _Pair:
                 yield self.choice(random)
 
     def choice(self, random: Random) -> dict[str, Value]:
-        """A random value of each input; every other time those with which the readings may differ."""
+        """Return a random value of each input; every other time the inputs with which the readings may differ."""
         if self.differing is not None and random.random() < 0.5:
             return self.differing
         return {name: domain[random.randrange(_size(domain))] for name, domain in self.domains.items()}
 
 
 class _Layout:
-    """States as whole numbers: some bits for each slot that anything reads."""
+    """States as integers, with some bits for each slot that any condition or event reads."""
 
     def __init__(self, domains: Mapping[Slot, Domain]) -> None:
         self.domains = domains
@@ -131,16 +131,16 @@ class _Layout:
         self.bits = max(place, 1)
 
     def mask(self, slots: Iterable[Slot]) -> int:
-        """The bits of some slots."""
+        """Return the bits of some slots."""
         return sum(mask << place for place, mask in (self._places[slot] for slot in slots))
 
     def value(self, slot: Slot, state: int) -> Value:
-        """What a slot holds."""
+        """Return the value of a slot."""
         place, ones = self._places[slot]
         return self.domains[slot][state >> place & ones]
 
     def change(self, writes: Mapping[Slot, Value]) -> tuple[int, int]:
-        """The bits that stay and those that are added, where slots get values."""
+        """Return the bits to keep and the bits to add for an assignment to slots."""
         kept, added = -1, 0
         for slot, value in writes.items():
             if slot in self._places:
@@ -151,7 +151,7 @@ class _Layout:
 
 
 class _Group:
-    """Pairs that stand one after the other and read few slots all in all: what they do is looked up at once."""
+    """Consecutive pairs that read few slots together: their effects are cached together."""
 
     def __init__(self, pairs: Sequence[_Pair]) -> None:
         self.pairs = pairs
@@ -159,7 +159,7 @@ class _Group:
         self.known: dict[int, tuple[tuple[int, int], ...]] = {}
 
     def learn(self, state: int, changes: Iterable[tuple[int, int]]) -> tuple[tuple[int, int], ...]:
-        """Keeps what the pairs change in a state and all that are like it; says it without what changes nothing."""
+        """Cache the changes of the pairs for all states with the same slots; return the effective ones."""
         found = tuple(
             (kept, added)
             for kept, added in dict.fromkeys(changes)
@@ -170,7 +170,7 @@ class _Group:
 
 
 def _groups(pairs: Iterable[_Pair], layout: _Layout) -> Iterator[_Group]:
-    """All pairs in their order."""
+    """Yield groups of all pairs, in their order."""
     together: list[_Pair] = []
     slots: set[Slot] = set()
     for pair in pairs:
@@ -184,7 +184,7 @@ def _groups(pairs: Iterable[_Pair], layout: _Layout) -> Iterator[_Group]:
 
 
 class Lockstep:
-    """The comparison of a text with its plants."""
+    """Comparison of a text with its plants."""
 
     def __init__(self, text: Machine, plants: Machine, effort: Effort) -> None:
         _same_things(text, plants)
@@ -211,7 +211,7 @@ class Lockstep:
         self._waiting = deque(self._before)
 
     def run(self) -> Walked:
-        """Compares all states, or as many as the effort allows and then some more; raises DifferenceError."""
+        """Compare all states, or as many as the effort allows plus a sample; raise DifferenceError."""
         most = min(self._effort.states, self._effort.bits // self._layout.bits)
         is_sampled = any(pair.is_sampled for pair in self._pairs)
         is_whole = self._explore(min(self._effort.first, most)) and not is_sampled
@@ -223,7 +223,7 @@ class Lockstep:
         return Walked(len(self._before), len(self._pairs), is_whole, steps)
 
     def _explore(self, most: int) -> bool:
-        """Goes on to so many states by the fewest events; whether these are all."""
+        """Explore up to `most` states breadth first; return whether these are all."""
         before, waiting = self._before, self._waiting
         while waiting:
             if len(before) > most or self._tries > self._effort.tries:
@@ -245,7 +245,7 @@ class Lockstep:
         return True
 
     def _is_same_everywhere(self) -> bool:
-        """Whether there is no difference in any state; False also where there are too many to try."""
+        """Return whether no state has a difference; False also if there are too many states to try."""
         left = self._effort.values
         asked: list[tuple[Sequence[Slot], _Pair | None, Sequence[Claim]]] = [
             (pair.reads, pair, ()) for pair in self._pairs
@@ -264,13 +264,13 @@ class Lockstep:
                 for inputs in pair.all_choices() if pair else ():
                     try:
                         self._effect(cast("_Pair", pair), held, inputs, ())
-                    except DifferenceError:  # It may be out of reach.
+                    except DifferenceError:  # The state may be unreachable.
                         cast("_Pair", pair).differing = inputs
                         return False
         return True
 
     def _wander(self, steps: int) -> None:
-        """Goes on a random way, with random data."""
+        """Follow a random path with random data."""
         state, trace = self._initial, list[TraceStep]()
         for _ in range(steps):
             self._claimed(state, trace)
@@ -288,7 +288,7 @@ class Lockstep:
             trace.append(step)
 
     def _changes(self, group: _Group, state: int) -> Iterator[tuple[int, int]]:
-        """What the events of a group change in a state."""
+        """Yield the changes of a group's events in a state."""
         for pair in group.pairs:
             key = state & pair.mask
             if key not in pair.known:
@@ -311,7 +311,7 @@ class Lockstep:
     def _effect(
         self, pair: _Pair, held: Mapping[Slot, Value], inputs: Mapping[str, Value], way: int | Sequence[TraceStep]
     ) -> tuple[int, int] | None:
-        """What an event changes by both readings; None where it can't happen, or is forbidden."""
+        """Return the change of an event in both readings; None if it is impossible or forbidden."""
         ours = pair.text.happen(held, inputs)
         try:
             theirs = pair.plants.happen(held, inputs)
@@ -326,7 +326,7 @@ class Lockstep:
         return self._layout.change(ours.writes)
 
     def _claimed(self, state: int, way: int | Sequence[TraceStep]) -> None:
-        """Compares the conditions of invariants and properties."""
+        """Compare the conditions of invariants and properties."""
         for claim, other, mask, reads, known in self._claims:
             if state & mask not in known:
                 known.add(state & mask)
@@ -348,7 +348,7 @@ class Lockstep:
         return DifferenceError(f"{said}{where(held)}{data}", self._way(way))
 
     def _way(self, way: int | Sequence[TraceStep]) -> list[TraceStep]:
-        """The events that lead to a state, by the fewest."""
+        """Return the shortest sequence of events that leads to a state."""
         if not isinstance(way, int):
             return list(way)
         steps: list[TraceStep] = []
@@ -372,7 +372,7 @@ class Lockstep:
 
 
 def _same_things(text: Machine, plants: Machine) -> None:
-    """What can be compared without going anywhere: which slots and events there are, and how they begin."""
+    """Compare everything that needs no exploration: slots, events and initial values."""
     for slot in dict.fromkeys([*text.domains, *plants.domains]):
         _same_slot(slot, text, plants)
     for name in dict.fromkeys([*text.events, *plants.events]):
@@ -416,7 +416,7 @@ def _same_event(ours: Event, theirs: Event) -> None:
 
 
 def _unlike(ours: Outcome, theirs: Outcome, held: Mapping[Slot, Value], pair: _Pair) -> str:
-    """How two readings of an event in a state differ; empty where they do not."""
+    """Return how two readings of an event in a state differ, as text; empty if they agree."""
     mine, other = _changed(ours, held), _changed(theirs, held)
     if (bool(ours.refused), bool(ours.forbidden), mine) == (bool(theirs.refused), bool(theirs.forbidden), other):
         return ""
@@ -440,7 +440,7 @@ def _unlike(ours: Outcome, theirs: Outcome, held: Mapping[Slot, Value], pair: _P
 
 
 def _changed(outcome: Outcome, held: Mapping[Slot, Value]) -> dict[Slot, Value]:
-    """What really changes."""
+    """Return the writes that change a value."""
     return {slot: value for slot, value in outcome.writes.items() if held.get(slot, None) != value}
 
 
@@ -464,7 +464,7 @@ def _size(domain: Domain) -> int:
 
 
 def _kind(domain: Domain) -> object:
-    """Locations and literals may stand in any order."""
+    """Return the domain without the order of locations and literals."""
     return domain if isinstance(domain, range) else frozenset(domain)
 
 
@@ -487,7 +487,7 @@ def _called(slot: Slot) -> str:
 
 
 def where(held: Mapping[Slot, Value]) -> str:
-    """The values of slots as a condition of the language; those of requirement automata have no name there."""
+    """Return values of slots as a condition of the language, without unnamed requirement automata."""
     said = [
         f"{slot.plant.origin}.{slot.variable} = {_text(value)}" if slot.variable else f"{slot.plant.origin}.{value}"
         for slot, value in held.items()
@@ -497,7 +497,7 @@ def where(held: Mapping[Slot, Value]) -> str:
 
 
 def line(source: ex.Located | None) -> str:
-    """The line of an element, in parentheses."""
+    """Return the line of an element, in parentheses."""
     return f" (line {source.source.span.line})" if source is not None and source.source is not None else ""
 
 

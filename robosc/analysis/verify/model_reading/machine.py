@@ -1,4 +1,4 @@
-"""What both readings of a robot come to: slots that hold values, events that change them, conditions on them."""
+"""Common form of both readings of a robot: slots with values, events that change them, conditions on them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from robosc.metamodel import expression as ex
 
-    #: The values of a slot or an input: names of locations or literals, booleans, or whole numbers.
+    #: Values of a slot or an input: names of locations or literals, booleans, or integers.
     Domain: TypeAlias = tuple[bool | str, ...] | range
     Value: TypeAlias = bool | int | str
 
@@ -20,58 +20,58 @@ BOOLEANS: Domain = (False, True)
 
 
 class Plant(NamedTuple):
-    """What a plant stands for: its kind, and the component or communication; of requirements the number."""
+    """Identity of a plant: its kind, and its component or communication, or a requirement's number."""
 
     kind: str
     origin: str
 
 
 class Slot(NamedTuple):
-    """A variable of a plant, or, without a name, the location that the plant is in."""
+    """A variable of a plant, or, without a name, the location of the plant."""
 
     plant: Plant
     variable: str = ""
 
 
 class At(NamedTuple):
-    """That a plant is in a location."""
+    """Condition that a plant is in a location."""
 
     slot: Slot
     location: str
 
 
 class Told(NamedTuple):
-    """An input of the event, by its name among the plants."""
+    """Input of the event, by its name in the plants."""
 
     name: str
 
 
 class Literal(str):
-    """A value of an enum, by its name."""
+    """Value of an enum, by its name."""
 
     __slots__ = ()
 
 
-#: What a reference in an expression means.
+#: Meaning of a reference in an expression.
 Meaning: TypeAlias = Slot | At | Told | Literal
 
 
 class EventName(NamedTuple):
-    """An event: its plant, and its name there."""
+    """Identity of an event: its plant, and its name there."""
 
     plant: Plant
     name: str
 
 
 class Condition(NamedTuple):
-    """An expression to compute, with the slots that it reads."""
+    """Expression to compute, with the slots that it reads."""
 
     compute: Callable[[Mapping[Slot, Value], Mapping[str, Value]], Any]
     reads: frozenset[Slot]
 
 
 class Taken(NamedTuple):
-    """What an event changes, and the part of the text or of the plants that says so."""
+    """Changes of an event, and their source in the text or in the plants."""
 
     writes: Mapping[Slot, Value]
     source: ex.Located | None
@@ -79,9 +79,9 @@ class Taken(NamedTuple):
 
 @dataclass
 class Participant:
-    """What takes part in an event: for a state and inputs what it changes; None where it does not let it happen.
+    """Participant in an event: a function from state and inputs to changes; None if it refuses the event.
 
-    `component` is the plant of the component whose transitions these are, None where they are no component's.
+    `component` is the plant of the component that has these transitions, None if no component has them.
     """
 
     step: Callable[[Mapping[Slot, Value], Mapping[str, Value]], Taken | None]
@@ -91,7 +91,7 @@ class Participant:
 
 
 class Restriction(NamedTuple):
-    """A requirement on an event, which lets it happen where its condition has the wanted value."""
+    """Requirement on an event; it allows the event if its condition has the value `wanted`."""
 
     condition: Condition
     wanted: bool
@@ -99,9 +99,9 @@ class Restriction(NamedTuple):
 
 
 class Length(NamedTuple):
-    """How long a time lasts, in milliseconds.
+    """Length of a timer in milliseconds.
 
-    Where a parameter of the robot sets it: its name, how many milliseconds one of it is, the least and the greatest.
+    A parameter of the robot may set it: its name, the milliseconds of one unit, the least and the greatest length.
     """
 
     milliseconds: int
@@ -112,7 +112,7 @@ class Length(NamedTuple):
 
 
 class Timer(NamedTuple):
-    """A time, the location in which it runs, if in one, and the messages that start it anew."""
+    """A timer, the location in which it runs (if any), and the messages that restart it."""
 
     length: Length
     location: str | None
@@ -120,7 +120,7 @@ class Timer(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What an event does: what does not let it happen, what forbids it, and what it changes where nothing does."""
+    """Result of an event: the participant that refuses it, the requirement that forbids it, or its changes."""
 
     refused: Participant | None
     forbidden: Restriction | None
@@ -128,13 +128,13 @@ class Outcome(NamedTuple):
 
     @property
     def writes(self) -> dict[Slot, Value]:
-        """All that is changed."""
+        """All changes."""
         return {slot: value for taken in self.taken for slot, value in taken.writes.items()}
 
 
 @dataclass
 class Event:
-    """An event with all that takes part in it and all that restricts it; `element` says where it comes from."""
+    """An event with its participants and requirements; `element` is its source."""
 
     kind: str
     controllable: bool
@@ -146,12 +146,12 @@ class Event:
 
     @property
     def reads(self) -> frozenset[Slot]:
-        """The slots on which it depends what the event does."""
+        """Slots that the result of the event depends on."""
         found = [participant.reads for participant in self.participants]
         return frozenset().union(*found, *(restriction.condition.reads for restriction in self.restrictions))
 
     def happen(self, state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> Outcome:
-        """What it does in a state with some inputs."""
+        """Return the result of the event in a state with some inputs."""
         taken: list[Taken] = []
         for participant in self.participants:
             step = participant.step(state, inputs)
@@ -166,11 +166,10 @@ class Event:
 
 @dataclass
 class Machine:
-    """A reading of a robot: its slots with their values and the first one, what is marked, events, conditions.
+    """A reading of a robot: slots with their values and initial values, marked locations, events, conditions.
 
-    `conditions` are those of invariants and properties, by what they are called. Only the reading of the text has
-    `topics`, the ROS name of each communication, and `order`, the plants of communications and components in the order
-    of the text.
+    `conditions` are those of invariants and properties. Only the reading of the text has `topics`, the ROS name of each
+    communication, and `order`, the plants of communications and components in the order of the text.
     """
 
     domains: dict[Slot, Domain] = field(default_factory=dict)
@@ -184,7 +183,7 @@ class Machine:
 
 
 class Claim(NamedTuple):
-    """A condition that an invariant or a property has for all states."""
+    """Condition of an invariant or a property, to compare in all states."""
 
     what: str
     condition: Condition
@@ -193,7 +192,7 @@ class Claim(NamedTuple):
 
 
 def compiled(expression: ex.Expression, meaning: Callable[[ex.Expression], Meaning]) -> Condition:
-    """An expression whose references mean so."""
+    """Return an expression as a condition; `meaning` resolves its references."""
     reads: set[Slot] = set()
 
     def reader(reference: ex.Expression) -> Callable[..., Any]:
@@ -215,7 +214,7 @@ def compiled(expression: ex.Expression, meaning: Callable[[ex.Expression], Meani
 
 
 def fitting(value: Any, domain: Domain) -> Value:
-    """What a slot holds after it is given a value: of an integer out of its range the nearest bound."""
+    """Return the value of a slot after an assignment; an integer saturates at its range."""
     if isinstance(domain, range):
         return min(max(int(value), domain.start), domain.stop - 1)
     held: Value = value

@@ -1,4 +1,4 @@
-"""What the names of a robot's text mean: components and templates, constants, conditions, functions, quantifiers."""
+"""Meaning of names in a robot's text: components, templates, constants, conditions, functions, quantifiers."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ OBSERVERS = (robosc.OrderRequirement, robosc.CountRequirement, robosc.AutomatonR
 
 
 class NotReadError(Exception):
-    """Something in the text that this reading does not know."""
+    """Element of the text that this reading does not support."""
 
     def __init__(self, element: ex.Located) -> None:
         super().__init__(f"`{type(element).__name__}` is not read a second time")
@@ -35,7 +35,7 @@ class NotReadError(Exception):
 
 @dataclass(frozen=True, eq=False)
 class Instance:
-    """A component of the robot, and the component whose text it is made from."""
+    """A component of the robot, and the component whose text it is an instance of."""
 
     name: str
     text: robosc.Component
@@ -43,24 +43,24 @@ class Instance:
     remapped: Mapping[robosc.CommunicationType, robosc.TopicRemapping] = field(default_factory=dict)
 
     def of(self, kind: type[_Definition]) -> list[_Definition]:
-        """Its definitions of a kind, in the order of the text."""
+        """Return the definitions of a kind, in the order of the text."""
         assert isinstance(self.text.type, robosc.LocalComponent)
         return [definition for definition in self.text.type.definitions if isinstance(definition, kind)]
 
     def behaviour(self, kind: type[_Definition]) -> list[_Definition]:
-        """The same in its automaton."""
+        """Return the definitions of a kind in the component's automaton."""
         automata = self.of(robosc.ComponentBehaviour)
         found = (definition for behaviour in automata for definition in behaviour.automaton.definitions)
         return [definition for definition in found if isinstance(definition, kind)]
 
     @property
     def plant(self) -> Plant:
-        """What its behaviour becomes."""
+        """Plant of the behavior."""
         return Plant("behaviour", self.name)
 
 
 class Environment(NamedTuple):
-    """Where an expression stands: in the text of an instance, with parameters bound, with an instance at hand."""
+    """Context of an expression: the instance that contains it, bound parameters, and quantified instances."""
 
     within: Instance | None = None
     bound: Mapping[robosc.FormalParameter, tuple[ex.Expression, Environment]] = {}
@@ -68,14 +68,14 @@ class Environment(NamedTuple):
 
 
 class Data(NamedTuple):
-    """A part of an event's data: its text word by word, and the properties on the way to it; None: an element."""
+    """Part of an event's data: its text word by word, and the path of properties to it; None for an element."""
 
     words: tuple[str, ...]
     path: tuple[str, ...] | None
 
 
 class Names:
-    """The instances of a robot, and its expressions with names written out."""
+    """Instances of a robot, and its expressions with names expanded."""
 
     def __init__(self, robot: robosc.Base) -> None:
         self.robot = robot
@@ -96,14 +96,14 @@ class Names:
         return iter(self._of.values())
 
     def stated(self, kind: type[_Definition]) -> list[tuple[_Definition, Instance | None]]:
-        """Definitions outside of components, then those in each."""
+        """Return definitions outside of components, then those in each component."""
         outside = [(definition, None) for definition in self.robot.definitions if isinstance(definition, kind)]
         return [*outside, *((definition, instance) for instance in self for definition in instance.of(kind))]
 
     def port(
         self, reference: robosc.CommunicationReference, within: Instance | None
     ) -> tuple[Instance, robosc.CommunicationType]:
-        """The instance and the communication that a reference means."""
+        """Return the instance and the communication that a reference names."""
         return self._meant(reference.component, Environment(within)), reference.communicationType
 
     def _meant(self, component: robosc.Component | None, place: Environment) -> Instance:
@@ -115,33 +115,33 @@ class Names:
         return self._of[component]
 
     def written_out(self, expression: ex.Expression, place: Environment) -> ex.Expression:
-        """A new expression without names of expressions: `meaning` knows what is read in it."""
+        """Return a new expression without names of expressions; `meaning` resolves its references."""
         made: ex.Expression = walk(self._write, (expression, place))
         return made
 
     def meaning(self, reference: ex.Expression) -> Meaning | Data:
-        """What is read there."""
+        """Return the meaning of a reference."""
         return self._meanings[reference]
 
     def leaf(self, meaning: Meaning | Data) -> ex.Expression:
-        """An expression that reads it."""
+        """Return an expression with this meaning."""
         made = robosc.Access()
         self._meanings[made] = meaning
         return made
 
     def constant(self, expression: ex.Expression, place: Environment) -> Any:
-        """The value of a constant expression; that of an enum is a Literal."""
+        """Return the value of a constant expression; the value of an enum is a Literal."""
         return evaluate(self.written_out(expression, place), self._meanings.__getitem__)
 
     def parameter(self, expression: ex.Expression, place: Environment) -> str | None:
-        """How the parameter that an expression is, without anything else, is named on the robot; None: it is none."""
+        """Return the ROS name of the parameter that an expression consists of; None if it is no parameter."""
         if not isinstance(expression, robosc.Access) or not isinstance(expression.item, robosc.Parameter):
             return None
         owner = f"{self._meant(expression.component, place).name}." if _is_member(expression.item) else ""
         return f"{owner}{expression.item.name}"
 
     def settings(self, expression: ex.Expression, place: Environment) -> tuple[float, float, float]:
-        """The values of the parameter that an expression is: where nothing is set, the least and the greatest."""
+        """Return the default, least and greatest value of the parameter that an expression consists of."""
         assert isinstance(expression, robosc.Access)
         parameter = expression.item
         assert isinstance(parameter, robosc.Parameter)
@@ -157,14 +157,14 @@ class Names:
         return first, self.constant(parameter.lowest, inside), self.constant(parameter.highest, inside)
 
     def topic(self, instance: Instance, communication: robosc.CommunicationType) -> str:
-        """The ROS name of a communication: where it is imported `with`, as its text says, else its own name."""
+        """Return the ROS name of a communication: by its import `with`, by its identifier, or its own name."""
         named: Any = instance.remapped.get(communication, communication)
         place = Environment() if communication in instance.remapped else Environment(instance, instance.arguments)
         topic = named.identifier if named.computedIdentifier is None else self.constant(named.computedIdentifier, place)
         return str(topic or communication.name)
 
     def domain(self, declared: robosc.DataType, place: Environment) -> Domain | None:
-        """The values of a type; None where there is no end of them."""
+        """Return the values of a type; None if it is infinite."""
         if isinstance(declared, robosc.BooleanDataType):
             return BOOLEANS
         if isinstance(declared, robosc.IntegerDataType):
@@ -204,7 +204,7 @@ class Names:
                 return copy
         inside = []
         for operand in operands(expression):
-            inside.append((yield operand, place))  # noqa: PERF401 - a generator can't ask from within a comprehension
+            inside.append((yield operand, place))  # noqa: PERF401 - a comprehension cannot contain `yield`
         return with_operands(expression, inside)
 
     def _access(self, access: robosc.Access, place: Environment) -> Generator[Any, Any, ex.Expression]:
@@ -214,12 +214,12 @@ class Names:
                 return (yield from self._data(access, place))
             case robosc.FormalParameter():
                 given: ex.Expression = yield place.bound[item]
-                # What an instance is given is constant; what a function is called with may be anything.
+                # Arguments of an instance are constant; arguments of a function may be any expressions.
                 return self._folded(given) if isinstance(item.eContainer(), robosc.Component) else given
             case robosc.EnumValue():
                 return self.leaf(Literal(item.name))
             case robosc.Parameter():
-                # As data, it is part of what the node computes: the supervisor reads none.
+                # A parameter is data, because only the node computes with it: the supervisor reads none.
                 owner = (access.component.name, ".") if access.component else ()
                 return self.leaf(Data((*owner, item.name), None))
             case robosc.RequirementState():
@@ -241,19 +241,19 @@ class Names:
         return self._folded(value) if isinstance(item, robosc.Constant) else value
 
     def _running(self, call: robosc.Service | robosc.Action, instance: Instance) -> ex.Expression:
-        """That a service or action has been requested, and its end is not known."""
+        """Return the condition that a service or action was requested and its end is not known."""
         slot = Slot(Plant(type(call).__name__.lower(), f"{instance.name}.{call.name}"))
         if isinstance(call, robosc.Service):
             return self.leaf(At(slot, "wait_for_response"))
         return ex.Disjunction(left=self.leaf(At(slot, "executing")), right=self.leaf(At(slot, "canceling")))
 
     def _folded(self, constant: ex.Expression) -> ex.Expression:
-        """The value of a constant expression that is written out, as an expression."""
+        """Return the value of an expanded constant expression, as an expression."""
         folded = evaluate(constant, self._meanings.__getitem__)
         return self.leaf(folded) if isinstance(folded, Literal) else literal(folded)
 
     def _inside(self, named: robosc.NamedExpression, owner: Instance | None) -> Environment:
-        """Where the text of a name stands."""
+        """Return the context of a definition's text."""
         return Environment(owner, owner.arguments) if owner is not None and _is_member(named) else Environment()
 
     def _quantified(
@@ -297,7 +297,7 @@ class Names:
         return self.leaf(Data(tuple(words), tuple(path) if whole else None))
 
     def words(self, expression: ex.Expression) -> tuple[str, ...] | None:
-        """The text of an expression over data, word by word, without parentheses; None where it reads what changes."""
+        """Return the text of an expression over data as words without parentheses; None if it reads slots."""
         changing = fold(self._changes, expression, memo=self._changing)
         return None if changing else tuple(self._words(expression))
 
@@ -326,7 +326,7 @@ class Names:
 
 
 def words_of(text: str) -> tuple[str, ...]:
-    """A text word by word, without parentheses, numbers as Python writes them."""
+    """Return the words of a text without parentheses, with numbers as Python writes them."""
     return tuple(str(float(word)) if re.fullmatch(r"\d+\.\d+", word) else word for word in _TOKEN.findall(text))
 
 
@@ -339,12 +339,12 @@ def _word(part: Any) -> str:
 
 
 def _is_member(item: Any) -> bool:
-    """Whether a definition stands in a component: states and variables in its automaton, others in it directly."""
+    """Return whether a definition is in a component: states and variables in its automaton, others directly."""
     return isinstance(item, robosc.State | robosc.Variable) or isinstance(item.eContainer(), robosc.LocalComponent)
 
 
 def _instance(component: robosc.Component) -> Instance:
-    """Follows `is` and `import` to the text; what is a parameter there is what was given on the way."""
+    """Return the instance of a component, with the arguments along the chain of `is` and `import`."""
     arguments: dict[robosc.FormalParameter, tuple[ex.Expression, Environment]] = {}
     remapped: dict[robosc.CommunicationType, robosc.TopicRemapping] = {}
     text = component

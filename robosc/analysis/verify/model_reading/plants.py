@@ -1,4 +1,4 @@
-"""The plants and requirements of an sct model, as they are defined: each event happens in all plants that have it."""
+"""Meaning of the plants and requirements of an SCT model: an event happens in all plants that have it."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 class AmbiguousError(Exception):
-    """Two edges with different ends are possible at once."""
+    """Two edges with different targets or updates are possible at the same time."""
 
     def __init__(self, source: ex.Located | None) -> None:
         super().__init__("several edges with different ends are possible in the plants")
@@ -43,7 +43,7 @@ class AmbiguousError(Exception):
 
 
 def read_plants(model: sct.SupervisoryControlModel) -> Machine:
-    """The reading of plants and requirements; the supervisor is left out."""
+    """Return the reading of plants and requirements, without the supervisor."""
     return _Reading(model).run()
 
 
@@ -63,7 +63,7 @@ class _Reading:
         for plant, called in self.plants.items():
             slot = Slot(called)
             machine.domains[slot] = tuple(location.name for location in plant.locations)
-            # A second initial location shows as one whose name no text has.
+            # A second initial location gives a name that no text has.
             machine.initial[slot] = " and ".join(location.name for location in plant.locations if location.initial)
             machine.marked[slot] = frozenset(location.name for location in plant.locations if location.marked)
             machine.sources[slot] = plant
@@ -91,7 +91,7 @@ class _Reading:
         return machine
 
     def name(self, event: sct.Event) -> EventName:
-        """Underscores behind a name keep it apart from others."""
+        """Return the name of an event. Trailing underscores only distinguish it from others."""
         return EventName(self.plants[event.eContainer()], event.name.rstrip("_"))
 
     def timer(self, event: sct.Event) -> Timer | None:
@@ -121,7 +121,7 @@ class _Reading:
         return compiled(expression, self.meaning)
 
     def edges(self, plant: sct.Plant) -> None:
-        """For each event what the edges of the location that the plant is in do."""
+        """Add a participant for each event of a plant, with the edges of its locations."""
         everywhere: dict[sct.Event, list[sct.Edge]] = {}
         leaving: dict[sct.Event, dict[str, list[sct.Edge]]] = {}
         for edge in plant.edges:
@@ -163,7 +163,7 @@ class _Reading:
         return Participant(step, frozenset(reads), plant)
 
     def claims(self) -> None:
-        """The conditions of invariants and properties."""
+        """Read the conditions of invariants and properties."""
         for invariant in self.model.invariants:
             self.claim("the condition of an invariant", invariant.condition, invariant)
         for claimed in self.model.properties:

@@ -1,4 +1,4 @@
-"""A robot's text as the language's pages have it: what its communications and components do, and what is required."""
+"""Meaning of a robot's text by the pages of the language: its communications, components and requirements."""
 
 from __future__ import annotations
 
@@ -46,10 +46,10 @@ if TYPE_CHECKING:
     from robosc.analysis.verify.model_reading.machine import Domain, Value
 
     _Port = tuple[Instance, robosc.CommunicationType]
-    #: A transition of a requirement automaton: its condition, where it goes, where it stands.
+    #: Transition of a requirement automaton: its condition, its target and its source in the text.
     _Way = tuple[Condition | None, str, ex.Located]
 
-#: The phases of a service (thesis listing 5.2) and of an action, which ends when its server says so.
+#: Phases of a service (thesis listing 5.2) and of an action, which ends when its server reports the end.
 _SERVICE = {
     "c_trigger": {"idle": "wait_for_response"},
     "u_response": {"wait_for_response": "ready"},
@@ -65,7 +65,7 @@ _ACTION = {
     "u_canceled": {"canceling": "idle"},
     "c_reset": {"ready": "idle", "error": "idle"},
 }
-#: How a transition names an event (thesis table 5.1).
+#: Event names by the keyword of a transition (thesis table 5.1).
 _NAMED = {
     robosc.ResultType.request: "c_trigger",
     robosc.ResultType.response: "u_response",
@@ -74,18 +74,18 @@ _NAMED = {
     robosc.ResultType.cancel: "c_cancel",
     robosc.ResultType.canceled: "u_canceled",
 }
-#: The values of the predefined enum with which each kind of communication fails.
+#: Values of the predefined enum with which each kind of communication fails.
 _REASONS = {
     "service": ("unavailable", "timeout", "unreadable", "failed"),
     "action": ("rejected", "lost", "aborted", "canceled", "unavailable", "timeout", "unreadable"),
 }
-#: Events that happen whether their data can be read or not.
+#: Events that happen even if their data cannot be read.
 _ENDS = ("u_error", "u_canceled")
 _UNITS = {robosc.TimeUnit.ms: 1, robosc.TimeUnit.s: 1000, robosc.TimeUnit.min: 60_000}
 
 
 class UnlikeError(Exception):
-    """The plants lack what the text reads, or have it otherwise; `source` is where the text reads it."""
+    """The plants lack an element that the text reads, or disagree about it; `source` is the reading element."""
 
     def __init__(self, message: str, source: ex.Located | None = None) -> None:
         super().__init__(message)
@@ -93,10 +93,11 @@ class UnlikeError(Exception):
 
 
 def read_text(robot: robosc.Base, plants: Machine) -> Machine:
-    """The reading of a linked robot.
+    """Return the reading of a linked robot.
 
-    Of the plants it takes which variables and inputs they hold, all else lives in the node, and the range of what the
-    node computes: where a variable is given it, the plants must have the variable's.
+    It takes from the plants which variables and inputs they hold, because all others exist only in the node. It also
+    takes the range of values that the node computes; if such a value is assigned to a variable, the range must be the
+    variable's.
     """
     return _Reading(robot, plants).run()
 
@@ -220,7 +221,7 @@ class _Reading:
                 for place in states if state is None else [state.name]:
                     places.setdefault(place, []).append(transition)
         for name, places in tried.items():
-            # What every state has is tried behind what a state has itself.
+            # Transitions of every state are tried after those of a state itself.
             ordered = {
                 place: sorted(found, key=lambda transition: not isinstance(transition.eContainer(), robosc.State))
                 for place, found in places.items()
@@ -233,7 +234,7 @@ class _Reading:
         environment, unit = Environment(instance, instance.arguments), _UNITS[transition.unit]
         parameter = self.names.parameter(transition.duration, environment)
         if parameter is not None:
-            # The node rounds what is set as doubles are rounded, halves up.
+            # The node rounds parameter values like doubles, halves up.
             values = self.names.settings(transition.duration, environment)
             first, shortest, longest = (floor(value * unit + 0.5) for value in values)
             return Timer(Length(first, parameter, unit, shortest, longest), where, without)
@@ -247,7 +248,10 @@ class _Reading:
         instance: Instance,
         ignored: bool,
     ) -> Participant:
-        """Of the transitions of the state the first whose guard holds; where none does it may be ignored."""
+        """Return the participant that takes the first transition of the state with a true guard.
+
+        If no guard holds, the event may be `ignored`.
+        """
         location = Slot(instance.plant)
         reads = {location}
         ways: dict[str, list[tuple[Condition | None, Taken, list[tuple[Slot, Condition]]]]] = {}
@@ -296,7 +300,7 @@ class _Reading:
         name: EventName | None = None,
         assigned: Slot | None = None,
     ) -> Condition:
-        """An expression in the text of an instance, of a transition on an event."""
+        """Return an expression in the text of an instance, in a transition on an event, as a condition."""
         place = Environment(within, within.arguments if within else {})
         written = self.names.written_out(expression, place)
         if name is not None:
@@ -319,7 +323,10 @@ class _Reading:
         return compiled(written, meaning)
 
     def present(self, value: ex.Expression, name: EventName) -> ex.Expression | None:
-        """The input that tells whether a value can be read that an error or a canceled goal brings; None: it can."""
+        """Return the input that indicates whether a value of an error or a canceled goal is readable.
+
+        Returns None if the value is always readable.
+        """
         event = self.plants.events.get(name)
         words = self.names.words(value) or ()
         for carried in event.element.inputs if event is not None and name.name in _ENDS else ():
@@ -331,7 +338,7 @@ class _Reading:
         return None
 
     def told(self, part: ex.Expression, name: EventName, assigned: Slot | None) -> Generator[Any, Any, ex.Expression]:
-        """The expression with inputs of the event in place of the largest parts that the plants have inputs for."""
+        """Return the expression with its largest parts replaced by inputs of the event."""
         event = self.plants.events.get(name)
         inputs = event.element.inputs if event is not None else []
         computed = [(words_of(carried.text), carried.name) for carried in inputs if carried.text is not None]
@@ -340,7 +347,7 @@ class _Reading:
         if alike:
             kept = None if assigned is None else self.machine.domains[assigned]
             if isinstance(kept, range):
-                # Of one text there is an input for each range.
+                # Inputs of the same text differ in their range.
                 alike = {input_name: domain for input_name, domain in alike.items() if domain == kept}
             if not alike:
                 raise UnlikeError("the plants have another range for what is computed of data", part)
@@ -369,7 +376,7 @@ class _Reading:
         return with_operands(part, made)
 
     def carried(self, name: EventName, path: Sequence[str]) -> Domain:
-        """The values of a part of what an event carries."""
+        """Return the values of a part of an event's data."""
         instance, communication = self.ports[name.plant]
         declared: Any = None
         if isinstance(communication, robosc.Message):
@@ -387,7 +394,10 @@ class _Reading:
     # Provided data
 
     def provided(self) -> None:
-        """The first statement whose condition holds; those outside of components take the place of those in them."""
+        """Read `provide` statements: the first with a true condition applies.
+
+        Statements outside of components replace those inside.
+        """
         found: dict[_Port, list[tuple[robosc.ProvideStatement, Instance | None]]] = {}
         for statement, within in self.names.stated(robosc.ProvideStatement):
             found.setdefault(self.names.port(statement.communicationType, within), []).append((statement, within))
@@ -413,7 +423,10 @@ class _Reading:
     # Requirements
 
     def required(self) -> None:
-        """On the start of what they name; an action is cancelled where one of its requirements does not hold."""
+        """Add requirements to the start of their communications, and to the cancel of actions.
+
+        An action is canceled if one of its requirements does not hold.
+        """
         known = (robosc.CommunicationRequirement, robosc.StateInvariant, *OBSERVERS)
         for requirement, _ in self.names.stated(robosc.Requirement):
             if not isinstance(requirement, known):
@@ -448,7 +461,7 @@ class _Reading:
                 self.locations(plant, names, initial, marked, stated)
 
     def named(self, reference: robosc.EventReference, within: Instance | None) -> EventName:
-        """The event that is named, or the request, or what an outgoing message brings."""
+        """Return the named event, the request, or the arrival of an outgoing message."""
         if isinstance(reference, robosc.NamedEvent):
             return self.of(reference.communicationType, _NAMED[reference.resultType], within)
         communication = reference.communicationType.communicationType
@@ -483,7 +496,7 @@ class _Reading:
         return compiled(self.names.leaf(place), lambda _: place)
 
     def automaton(self, stated: robosc.AutomatonRequirement, within: Instance | None, slot: Slot) -> None:
-        """Where no transition of the state has a condition that holds, the event is forbidden."""
+        """Add a requirement automaton: an event without a transition with a true condition is forbidden."""
         alphabet = {
             self.named(transition.event, within): transition
             for state in stated.states
@@ -510,7 +523,7 @@ class _Reading:
             event.restrictions.append(Restriction(Condition(possible, reads), True, stated))
 
     def claims(self) -> None:
-        """The conditions of `never`, `always`, and of properties."""
+        """Read the conditions of `never`, `always`, and of properties."""
         for stated, within in self.names.stated(robosc.StateInvariant):
             wanted = stated.kind == robosc.InvariantKind.always
             self.claim("the condition of an invariant", stated.condition, within, wanted, stated)
@@ -544,7 +557,7 @@ def _phases(slot: Slot, step: Mapping[str, str], source: ex.Located) -> Particip
 def _chosen(
     slot: Slot, location: str, asked: Sequence[tuple[Condition | None, bool]], source: ex.Located
 ) -> Participant:
-    """A choice of data where each condition is as it should be; one that is not there holds."""
+    """Return a choice of data that needs each condition to have its value; a missing condition is true."""
 
     def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> Taken | None:
         holds = (
@@ -565,7 +578,10 @@ def _one_more(slot: Slot, source: ex.Located) -> Participant:
 
 
 def _broken(starting: Sequence[Restriction], source: ex.Located) -> Restriction:
-    """That one of the requirements on starting an action does not hold; without any that is never so."""
+    """Return the restriction that a requirement on the start of an action does not hold.
+
+    Without any requirement, it is never satisfied.
+    """
 
     def compute(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> bool:
         return any(
@@ -577,14 +593,14 @@ def _broken(starting: Sequence[Restriction], source: ex.Located) -> Restriction:
 
 
 def _below(slot: Slot, domain: Domain) -> Condition:
-    """That a count has not come to its bound."""
+    """Return the condition that a count is below its bound."""
     return Condition(lambda state, _: state[slot] != domain[-1], frozenset({slot}))
 
 
 def _first(
     slot: Slot, ways: Mapping[str, Sequence[_Way]], state: Mapping[Slot, Value], inputs: Mapping[str, Value]
 ) -> _Way | None:
-    """The first transition of a requirement automaton's state whose condition holds."""
+    """Return the first transition of a requirement automaton's state whose condition holds."""
     tried = ways.get(str(state[slot]), ())
     return next((way for way in tried if way[0] is None or way[0].compute(state, inputs)), None)
 
