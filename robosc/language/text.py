@@ -131,7 +131,7 @@ class Documents:
     """Texts that a reading uses: texts in memory, such as editor buffers, take precedence over files on disk."""
 
     def __init__(self, texts: Mapping[str, str] | None = None) -> None:
-        """`texts` maps paths to the texts in memory. Neither the file nor its folder must exist."""
+        """Take the texts in memory by their paths. The files and their folders need not exist."""
         self._texts = {Path(path).resolve(): text for path, text in (texts or {}).items()}
 
     def read(self, path: Path, *, is_input: bool = True) -> bytes:
