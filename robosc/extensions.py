@@ -45,7 +45,10 @@ class Extension:
         return visible(summary or self.package)
 
     def load(self, *functions: str) -> Any:
-        """Return the object of the entry point, which has these functions. Raises ModelError if it is unusable."""
+        """Return the object of the entry point, which has these functions.
+
+        Raises ModelError if it is unusable.
+        """
         with self.working():
             loaded = self.entry.load()
         for function in functions:

@@ -33,7 +33,10 @@ _REQUIRED = "requirement:"
 
 @dataclass(frozen=True)
 class Reading:
-    """Result of reading a specification: its sct model (None if it has errors), the findings, and the texts by path."""
+    """Result of reading a specification: its sct model, the findings, and the texts by path.
+
+    `model` is None if the specification has errors.
+    """
 
     model: sct.SupervisoryControlModel | None
     findings: list[Diagnostic]

@@ -1,4 +1,7 @@
-"""Parses a text into objects of the grammar and reports its faults. Only this module of the package uses textX."""
+"""Parses a text into objects of the grammar and reports its faults.
+
+Only this module of the package uses textX.
+"""
 
 from __future__ import annotations
 

@@ -46,7 +46,10 @@ def keep(
 
 
 def _together(invariant: ex.Expression, edges: Sequence[Sequence[sct.Edge]]) -> ex.Expression | None:
-    """Return the condition under which joint edges of several plants keep the invariant, or None if too large."""
+    """Return the condition under which joint edges of several plants keep the invariant.
+
+    Returns None if it would be too large.
+    """
     ways = prod(map(len, edges))
     if ways > _MOST or ways * sum(1 for _ in parts(invariant)) > _LARGEST:
         return None

@@ -199,7 +199,10 @@ class Specification:
         return self.resolved(found)
 
     def _beginning(self, name: str, scope: Scope) -> Scope:
-        """Return the first scope to search: the root for `^`, the definition around (or root) for `.`, else `scope`."""
+        """Return the scope in which the search for a name begins.
+
+        That is the root for `^`, the definition around the scope (or the root) for `.`, and otherwise the scope itself.
+        """
         if name[0] == "^":
             return self.root
         while name[0] == "." and scope.definition is None and scope.around is not None:

@@ -43,7 +43,10 @@ if TYPE_CHECKING:
 
 @dataclass
 class _Taken:
-    """An edge of the text for one of its events; `fits` has the condition under which each variable stays in range."""
+    """An edge of the text for one of its events.
+
+    `fits` has the condition under which each variable stays in range.
+    """
 
     location: sct.Location
     event: sct.Event

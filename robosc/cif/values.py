@@ -364,7 +364,10 @@ class _ChangingError(Exception):
 
 
 def constant_value(expression: ex.Expression) -> Any:
-    """Return the constant value of an expression (bool, int or enumeration literal), or None if it is not constant."""
+    """Return the value of a constant expression, or None if it is not constant.
+
+    The value is a bool, an int or an enumeration literal.
+    """
 
     def read(reference: ex.Expression) -> Any:
         if isinstance(reference, ex.EnumerationLiteralReference):

@@ -603,7 +603,10 @@ def _event(model: sct.SupervisoryControlModel, text: str) -> tuple[str, Mapping[
 
 
 def _data(text: str, event: sct.Event) -> Mapping[str, Any]:
-    """Return the data of an event as typed: data as in the event log, or the bare value. Raises RequestError."""
+    """Return the data of an event as typed: data as in the event log, or the bare value.
+
+    Raises RequestError.
+    """
     if not text:
         return {}
     try:

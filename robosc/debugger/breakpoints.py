@@ -51,7 +51,10 @@ class Watcher:
         self._before = self._now
 
     def forbidden(self, event: str) -> bool:
-        """Return whether the supervisor newly forbids an event: before, it allowed it or the robot was not ready."""
+        """Return whether the supervisor has begun to forbid an event.
+
+        Before the step, the supervisor allowed the event, or the robot was not ready for it.
+        """
         return self._now[event][0] in _SUPERVISOR and self._before[event][0] not in _SUPERVISOR
 
     def allowed(self, event: str) -> bool:
@@ -91,7 +94,10 @@ class Targets:
                 self._by_file.setdefault(real(file), []).append(Target(target.what, span, target.hit, target.events))
 
     def at(self, file: str, line: int) -> list[Target]:
-        """Return the targets that begin in a line, else those that span it and begin last, from the inside outwards."""
+        """Return the targets in a line, from the inside outwards.
+
+        These are the targets that begin in the line, else those that span it and begin last.
+        """
         targets = [target for target in self._by_file.get(real(file), ()) if target.span is not None]
         begun = [target for target in targets if target.span is not None and target.span.line == line]
         if begun:
@@ -107,7 +113,10 @@ class Targets:
         return sorted({target.span.line for target in self._by_file.get(real(file), ()) if target.span is not None})
 
     def named(self, text: str) -> list[Target]:
-        """Return the targets of `move`, `forbidden move`, `allowed move`, or a requirement. Raises NamingError."""
+        """Return the targets of `move`, `forbidden move`, `allowed move`, or a requirement.
+
+        Raises NamingError.
+        """
         for prefix, make in ((_FORBIDDEN, self._becomes_forbidden), (_ALLOWED, self._becomes_allowed)):
             if text.startswith(prefix):
                 return [make(event_named(self.model, text.removeprefix(prefix).strip()))]

@@ -165,7 +165,10 @@ class Stops:
         return told
 
     def filters(self, wanted: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
-        """Set the filters that also stop the run: `filterId`, and optionally the commands that count (`condition`)."""
+        """Set the filters that also stop the run.
+
+        Each has a `filterId`, and optionally a `condition`: the commands to which it applies.
+        """
         self._filters = {}
         told: list[dict[str, Any]] = []
         for requested in wanted:

@@ -32,8 +32,8 @@ def render(findings: Iterable[Diagnostic], texts: Mapping[str, str], paint: Call
     """Return all findings in order, each as `file:line:column: severity: message [rule]` with line, carets and hint.
 
     `texts` maps files to their source; without it, a finding is shown without its line. `paint` colors a part of the
-    output. The text is empty for no findings, else it ends with a line break. Of more than `MOST` findings, only `MOST`
-    are shown, errors before warnings, with the number of the others.
+    output. The text is empty for no findings, else it ends with a line break. At most `MOST` findings are shown, errors
+    before warnings, followed by the number of the others.
     """
     found = in_order(findings)
     shown = in_order(sorted(found, key=lambda finding: finding.severity is not Severity.ERROR)[:MOST])
@@ -69,7 +69,7 @@ def underlined(finding: Diagnostic, line: str) -> tuple[str, str]:
     """Return the first line of a finding as a terminal shows it, and the carets under its span.
 
     Tabs are expanded. A wide character takes two columns and a combining one none. If the span has several lines, the
-    rest of its first line is underlined. Of a long line, only the part around the start of the span is shown.
+    rest of its first line is underlined. Only the part of a long line around the start of the span is shown.
     """
     line = line.removesuffix("\r")
     span = finding.span

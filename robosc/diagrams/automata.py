@@ -173,7 +173,10 @@ class _Plant(SctPrinter):
         return (edge.event.name if own else event_name(edge.event), *timer, *guard, *updates)
 
     def atom(self, expression: ex.Expression) -> str:
-        """Print an atom; locations and variables of the plant itself, and inputs of the event, are not qualified."""
+        """Print an atom.
+
+        Locations and variables of the plant itself, and inputs of the event, are not qualified.
+        """
         match expression:
             case sct.LocationReference() if expression.location.eContainer() is self.plant:
                 return expression.location.name

@@ -64,7 +64,10 @@ def lay_out(group: Group, *, downwards: bool) -> Layout:
 
 
 class _Layouter:
-    """Works in two directions, along the ranks and across them. Labels are boxes on the way of their arrows."""
+    """Works in two directions, along the ranks and across them.
+
+    Labels are boxes on the way of their arrows.
+    """
 
     def __init__(self, group: Group, downwards: bool) -> None:
         self.group = group

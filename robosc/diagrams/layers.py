@@ -30,7 +30,10 @@ _MOST_COLUMNS = 9
 
 @dataclass(frozen=True)
 class Link:
-    """A link between two boxes; ports are measured from their upper edges. Only `ranking` links determine ranks."""
+    """A link between two boxes.
+
+    Ports are measured from the upper edges of the boxes. Only `ranking` links determine ranks.
+    """
 
     source: str
     target: str

@@ -48,7 +48,10 @@ def prepare_call_hierarchy(
 def incoming_calls(
     snapshot: Snapshot, analysis: Analysis, params: types.CallHierarchyIncomingCallsParams
 ) -> list[types.CallHierarchyIncomingCall]:
-    """Return the states with transitions to a state; the component stands for transitions from every state."""
+    """Return the states with transitions to a state, with these transitions.
+
+    The component stands for transitions from every state.
+    """
     found: dict[Any, list[rsc.Transition]] = {}
     state = _state(analysis, params.item)
     for transition in _transitions(state):

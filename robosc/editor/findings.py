@@ -143,7 +143,10 @@ def _change(
     finding: Diagnostic,
     edits: Sequence[Edit],
 ) -> types.WorkspaceEdit | None:
-    """Return edits, extended to the whole project if they rename; None if its texts would then change their meaning."""
+    """Return edits as a workspace edit, extended to the whole project if they rename.
+
+    Returns None if a text of the project would change its meaning.
+    """
     renaming = renaming_of(analysis.file, edits)
     if renaming is None:
         return types.WorkspaceEdit({params.text_document.uri: to_edits(analysis.text, edits)})

@@ -65,7 +65,10 @@ class Project:
         self._ros_types: RosTypes | None = None
 
     def path(self, uri: str) -> Path:
-        """Return the path of a document. A document without a file, such as an unsaved text, is in the first folder."""
+        """Return the path of a document.
+
+        A document without a file, such as an unsaved text, is in the first folder.
+        """
         name = to_fs_path(uri)
         if name is not None:
             try:
@@ -189,7 +192,10 @@ class _Memory:
 
     @contextmanager
     def only_one(self, path: Path) -> Iterator[None]:
-        """Let only one thread analyze a text; others wait for its result, unless their own check interrupts them."""
+        """Let only one thread analyze a text.
+
+        Other threads wait for its result, unless their own check interrupts them.
+        """
         lock = self.locks[path]
         while not lock.acquire(timeout=_WAIT):
             checkpoint()

@@ -203,7 +203,10 @@ class Server(LanguageServer):
         return check
 
     def changed(self, typed: Path | None = None) -> None:
-        """Search for findings after a pause without further changes; `typed` is the text in which the user typed."""
+        """Search for findings after a pause without further changes.
+
+        `typed` is the text in which the user typed.
+        """
         self.verdicts.cancel()
         if self._waiting is not None:
             self._waiting.cancel()
@@ -275,7 +278,10 @@ class Server(LanguageServer):
         return found is not None
 
     def _publish(self, snapshot: Snapshot, found: Mapping[Path, list[types.Diagnostic]]) -> None:
-        """Publish changed diagnostics; of files that are not open, only those with findings or former findings."""
+        """Publish changed diagnostics.
+
+        A file that is not open is published only if it has, or had, findings.
+        """
         for path in [*found, *(path for path in self._published if path not in found)]:
             document = snapshot.documents.get(path)
             version, diagnostics = document.version if document else None, found.get(path, [])

@@ -1,4 +1,4 @@
-"""Findings in the definition that the user edits, before the whole text, which is large, is read again.
+"""Findings in the definition that the user edits, before the whole large text is read again.
 
 A change within one definition is checked in a slice of the text: this definition, everything that it may name, and
 everything that names it. The rest is blank, so that lines and columns stay the same. Findings in the definition come

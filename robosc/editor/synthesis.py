@@ -54,9 +54,9 @@ def question(_: Snapshot, analysis: Analysis) -> Question | None:
 def lenses(
     asked: Question, verdict: Verdict | str | None, uri: str = "", *, commands: bool = False
 ) -> list[types.CodeLens]:
-    """Return the lenses above the robot and its requirements; with `commands`, those that run commands, too.
+    """Return the lenses above the robot and its requirements.
 
-    The editor itself runs the commands on the robot's text `uri`.
+    With `commands`, these include lenses for commands, which the editor itself runs on the robot's text `uri`.
     """
     robot, *_ = asked.places
     done = [_lens(asked.places[robot], title, command, [uri]) for title, command in COMMANDS.items() if commands]

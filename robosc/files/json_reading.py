@@ -28,7 +28,10 @@ class JsonError(ValueError):
 
 
 def json_value(text: str) -> Any:
-    """Return the value of a JSON text. Raises JsonError, also if it nests too deeply or a number is too large."""
+    """Return the value of a JSON text.
+
+    Raises JsonError, also if it nests too deeply or a number is too large.
+    """
     # `json` recurses for any number of brackets, until the process crashes.
     opened = (_BRACKETS.get(found[0], 0) for found in _STRING_OR_BRACKET.finditer(text))
     if max(accumulate(opened, initial=0)) > _DEEPEST:

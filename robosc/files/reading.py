@@ -79,7 +79,10 @@ def noting() -> Iterator[None]:
 
 
 def input_named(found: os.stat_result) -> str | None:
-    """Return the name by which this file was read within `noting`, whatever its name here, or None if it was not."""
+    """Return the name by which this file was read within `noting`, or None if it was not.
+
+    The file is identified by its device and inode, so that links do not hide it.
+    """
     return (_noted.get() or {}).get(_identity(found))
 
 

@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 
 class Note(NamedTuple):
-    """Hint text and the offset at which an editor shows it: behind a word for a type, in front of it otherwise."""
+    """A hint text and the offset at which an editor shows it.
+
+    A type is shown behind a word, any other hint before one.
+    """
 
     offset: int
     text: str

@@ -121,7 +121,10 @@ class Builder:
             setattr(element, feature, self._build(node))
 
     def _expression(self, node: Node) -> Any:
-        """Build the tree of an expression: an operator waits on a stack until all tighter operators are reduced."""
+        """Build the tree of an expression.
+
+        An operator waits on a stack until all tighter operators behind it are reduced.
+        """
         operands = [(self._build(node[0]), node[0].position, node[0].position_end)]
         waiting: list[Any] = []
 

@@ -46,7 +46,10 @@ _BRACKETS = set("{}()[],.:;")
 
 
 class Word(NamedTuple):
-    """A word or comment: its offsets, its kind from `CLASSES`, and whether it declares or names a read-only element."""
+    """A word or comment: its offsets and its kind from `CLASSES`.
+
+    `declares` marks the name in a declaration, `readonly` the name of an element that never changes.
+    """
 
     start: int
     end: int

@@ -94,7 +94,10 @@ def proposals(
 
 
 def topic_at(content: str, offset: int) -> tuple[int, int] | None:
-    """Return the range within the quotes if an offset lies in the name of a topic, service or action, or None."""
+    """Return the range of the name of a topic, service or action around an offset, or None.
+
+    The range excludes the quotes.
+    """
     before = _TOPIC.search(content[content.rfind("\n", 0, offset) + 1 : offset])
     if before is None:
         return None

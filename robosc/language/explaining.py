@@ -202,7 +202,10 @@ def _is_name(tokens: Tokens, index: int, wanted: Sequence[str]) -> bool:
 
 
 def _as_name(tokens: Tokens, index: int, wanted: Collection[str]) -> Repair:
-    """Return the hint for a keyword meant as a name. At a type it is an edit only if the text declares such a name."""
+    """Return the hint for a keyword meant as a name.
+
+    At a type it is an edit only if the text declares such a name.
+    """
     written_so = f"^{tokens[index].text}"
     is_type = any(name == "a type" and core <= set(wanted) for name, _, core in _GROUPS)
     is_edit = not is_type or any(token.text == written_so for token in tokens)
@@ -210,7 +213,10 @@ def _as_name(tokens: Tokens, index: int, wanted: Collection[str]) -> Repair:
 
 
 def misread(tokens: Tokens, index: int, wanted: Collection[str]) -> int:
-    """Return the index of the token meant as a name: the one before `index` if it was misread, else `index`."""
+    """Return the index of the token that was meant as a name.
+
+    That is the token before `index` if it was read as a keyword, else the one at `index`.
+    """
     before, token = tokens[index - 1], tokens[index]
     around = tokens[index - 2]
     is_event = set(wanted) == {"to", "from"} and not around.is_keyword("on")
@@ -220,7 +226,10 @@ def misread(tokens: Tokens, index: int, wanted: Collection[str]) -> int:
 
 
 def _foreign(tokens: Tokens, index: int) -> Repair:
-    """Return the hint for a symbol of another language; a quotation mark is replaced together with its counterpart."""
+    """Return the hint for a symbol of another language.
+
+    A quotation mark is replaced together with its counterpart.
+    """
     own = _FOREIGN[tokens[index].text]
     said = f"write `{own}`" if own else "leave it out: nothing ends with a semicolon"
     if own != '"':
@@ -372,7 +381,10 @@ def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) 
 
 
 def keyword_hint(word: str, close: str) -> Repair | str:
-    """Return the hint for a word similar to a keyword; if it contains the keyword, the hint is a missing blank."""
+    """Return the hint for a word similar to a keyword.
+
+    If the word begins or ends with the keyword, the hint is a missing blank.
+    """
     if word.startswith(close):
         return f"is a blank missing behind `{close}`?"
     if word.endswith(close):

@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
 
 def names_failures(file: File) -> bool:
-    """Return whether a file needs the predefined library: it or an imported library names the enum or a reason."""
+    """Return whether a file needs the predefined library.
+
+    That is the case if it, or a library that it imports, names the enum or a reason.
+    """
     if any(library is not None and library.predefined is not None for library in file.libraries.values()):
         return True
     return any(

@@ -37,7 +37,10 @@ def language() -> Any:
 
 
 def parse(text: str, rule: str) -> Node | Failure:
-    """Return the parse tree of a whole text by a rule of the grammar, or the failure. Calls the caller's checkpoint."""
+    """Return the parse tree of a whole text by a rule of the grammar, or the failure.
+
+    Calls the caller's checkpoint.
+    """
     parser = language()._parser_blueprint.clone()  # noqa: SLF001 - what model_from_str does before it links
     parser.parser_model = arpeggio.Sequence(
         nodes=[_peg(rule), arpeggio.EOF()],
@@ -88,7 +91,10 @@ def first_words(*rules: str) -> frozenset[str]:
 
 @cache
 def following() -> Mapping[str, frozenset[str]]:
-    """Return the words and symbols that can follow a word within its item, by word; next items of lists are omitted."""
+    """Return the words and symbols that can follow a word within its item, by word.
+
+    The next item of a list does not count.
+    """
     facts, found = _facts(), dict[str, set[str]]()
     for node in _nodes().values():
         in_order = isinstance(node, arpeggio.Sequence) and not isinstance(node, arpeggio.OrderedChoice)

@@ -93,7 +93,10 @@ def _by_cause(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 
 class Linker:
-    """Links one file whose libraries are linked, and looks up the usable names; `scope` has the names of its base."""
+    """Links one file whose libraries are linked, and looks up the names that are usable in it.
+
+    `scope` has the names of the file's base.
+    """
 
     def __init__(
         self, file: File, interfaces: RosTypes, importable: Callable[[], Mapping[str, str]] = dict[str, str]
@@ -129,7 +132,10 @@ class Linker:
                 self._instantiation(element, names["definition"])
 
     def link(self, scope: Scope) -> None:
-        """Link the names in declarations, then those in uses, in text order: a name may need the names before it."""
+        """Link the names in declarations, then those in uses, in the order of the text.
+
+        A name may need the names before it.
+        """
         self.scope = scope
         for element, names in self._file.references.items():
             self._declaration(element, names)
@@ -153,7 +159,7 @@ class Linker:
             checkpoint()
             if isinstance(element, rsc.Access) and self._may_be_reason(element):
                 reasons[element] = names
-            elif element in self._file.references:  # `.running` is no property
+            elif element in self._file.references:  # `.running` is not a property
                 self._use(element, names)
         for access, bare in reasons.items():
             self._reason(access, bare)
@@ -481,7 +487,10 @@ class Linker:
             self._missing(name, "there is no enum value", known, hint)
 
     def _value_of(self, access: rsc.Access, enum: Name, value: Name) -> bool:
-        """Link `a.b` as an enum value behind its enum and return whether `a` is an enum; components take precedence."""
+        """Link `a.b` as a value `b` of an enum `a`, and return whether `a` is an enum.
+
+        Components of this name take precedence.
+        """
         found = self.scope.find(rsc.ComplexDataType, enum.text)
         if len(found) != 1 or not isinstance(found[0][1], rsc.EnumDataType):
             return False
@@ -558,7 +567,10 @@ class Linker:
             access.item = self._member(members, name, component, Declared.MEMBER)
 
     def _call_misread(self, component: rsc.Component, name: Name, behind: Sequence[Name | None]) -> bool:
-        """Report a communication that is read without or with a wrong word (`behind`); return whether it is one."""
+        """Report a communication that is read without `running`, and return whether the name is one.
+
+        `behind` are the names behind it in the text.
+        """
         communication = (self.scope.communications(component) or {}).get(name.text)
         if communication is None or self._file.may_declare_within(
             self.scope.origin(component), name.text, Declared.MEMBER
@@ -634,7 +646,10 @@ class Linker:
         return True
 
     def _bare(self, access: rsc.Access, name: Name, *, qualifies: bool) -> None:
-        """Link a bare name: a component, else a member, else a name of the robot or library, else an enum value."""
+        """Link a bare name.
+
+        It is a component, else a member of the own component, else a name of the robot or library, else an enum value.
+        """
         own = self.around(access, rsc.Component)
         members = (self.scope.members(own) if own is not None else None) or {}
         components = self.components(access)
@@ -669,7 +684,10 @@ class Linker:
             self._missing(name, "there is no component, variable, state or enum value", known, instead, listed=False)
 
     def _named_value(self, access: rsc.Access, name: Name) -> bool:
-        """Link a constant, parameter or condition of the robot or library, and return whether there is one."""
+        """Link a constant, parameter or condition of the robot or library, and return whether there is one.
+
+        A name that several libraries declare is reported.
+        """
         found = self.scope.find(rsc.NamedExpression, name.text)
         if len(found) > 1:
             self._ambiguous("name", name, [file for file, _ in found])

@@ -290,7 +290,10 @@ class Outline:
         return not self._continues(level, _CONTINUED.get(tokens[at].text, ()))
 
     def _is_starter(self, level: Level, at: int) -> bool:
-        """Return whether a token is a starter; at the start of a line it is one even if a name is missing before it."""
+        """Return whether a token is a starter.
+
+        At the start of a line it is one even if a name is missing before it.
+        """
         token, after = self._tokens[at], self._tokens[at + 1]
         if token.text in level.starters and not is_reserved(token.text):
             # Counts as a keyword only before a name or a number, and not as a name in an expression.

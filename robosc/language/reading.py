@@ -134,9 +134,10 @@ class _Reader:
         return file
 
     def _name(self, path: Path) -> str:
-        """Return the name of a file in models: its path from the model's folder if it is below, else its bare name.
+        """Return the name of a file in models.
 
-        If two files share a name, the later one gets as many of its parent folders as distinguish them.
+        That is its path from the model's folder if it is below, else its bare name. If two files share a name, the
+        later one gets as many of its parent folders as distinguish them.
         """
         whole = path.parent.resolve() / path.name
         if whole == locate(_PREDEFINED).resolve():

@@ -31,7 +31,10 @@ _DECLARING_NOTHING = first_words("Requirement", "ProvideStatement", "Transition"
 
 
 def parse_file(text: Text) -> File:
-    """Return the readable parts of a text as a file with unlinked names. Findings are of the rule `syntax`."""
+    """Return the readable parts of a text as a file with unlinked names.
+
+    Findings are of the rule `syntax`.
+    """
     file = _parsed(text)
     if text.source_file is not None:
         text.source_file.parsed = file

@@ -66,7 +66,10 @@ class Text:
         return " ".join(words) or None
 
     def offset(self, line: int, column: int) -> int:
-        """Return the offset of a line and a column, both from 1; a column behind the end of its line means the end."""
+        """Return the offset of a line and a column, both counted from 1.
+
+        A column behind the end of its line means the end.
+        """
         return self._lines.offset(line, column)
 
     def to_utf16(self, offset: int) -> tuple[int, int]:
@@ -76,9 +79,10 @@ class Text:
         return line - 1, len(self.content[start : start + column - 1].encode("utf-16-le", "surrogatepass")) // 2
 
     def from_utf16(self, line: int, unit: int) -> int:
-        """Return the offset of a UTF-16 position; between the units of one character, the offset of the character.
+        """Return the offset of a UTF-16 position.
 
-        A position behind the end of a line means its end, and one behind the last line the end of the text.
+        Between the units of one character, it is the offset of the character. A position behind the end of a line means
+        its end, and one behind the last line the end of the text.
         """
         start, end = self._lines.line(line + 1)
         units = self.content[start:end].encode("utf-16-le", "surrogatepass")[: 2 * max(unit, 0)]
@@ -143,7 +147,10 @@ class Documents:
         return files.read(path, is_input=is_input) if text is None else text.encode("utf-8", "surrogatepass")
 
     def models(self, folder: Path) -> list[Path]:
-        """Return the paths of all `.rscd` texts directly in a folder, in order. An unreadable folder has no files."""
+        """Return the paths of all `.rscd` texts directly in a folder, in order.
+
+        An unreadable folder has no files on disk.
+        """
         try:
             with os.scandir(folder) as entries:
                 names = {entry.name for entry in entries if entry.name.endswith(".rscd") and entry.is_file()}

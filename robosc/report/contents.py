@@ -118,7 +118,10 @@ def _requirements(
     shown: Shown,
     sources: printing.Sources,
 ) -> list[dict[str, Any]]:
-    """Return one entry for each requirement and property of the text; an entry can combine several of the model."""
+    """Return one entry for each requirement and property of the text.
+
+    An entry can combine several requirements of the model.
+    """
     guards = {guard.event: guard for guard in model.supervisor.guards} if model.supervisor else {}
     grouped: dict[str, list[sct.StatedRequirement]] = {}
     for requirement in stated:

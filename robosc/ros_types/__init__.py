@@ -126,7 +126,10 @@ class RosTypes:
         return next(known for known in self.distributions if known.name == f"ROS {ros}")
 
     def field_of_basic(self, package: str, name: str, section: Section) -> str:
-        """Return the field for a basic value: the only field of the section in one of the ROS versions, else `data`."""
+        """Return the field that carries a basic value.
+
+        That is the only field of the section in one of the ROS versions, else `data`.
+        """
         for distribution in self.distributions:
             try:
                 fields = distribution.fields(package, name, section)
@@ -137,7 +140,10 @@ class RosTypes:
         return _DATA
 
     def _make_known(self) -> str:
-        """Return the hint to make a type known; if a folder is too large to be searched, to name a smaller one."""
+        """Return the hint to make a type known.
+
+        If a folder is too large to be searched, the hint is to name a smaller one.
+        """
         large = next((found.folder for found in self._given["ROS 2"] if found.is_too_large), None)
         if large is None:
             return MAKE_KNOWN

@@ -34,7 +34,10 @@ class Share:
         self._read: dict[Path, list[Fields]] = {}
 
     def fields(self, package: str, name: str, section: Section) -> Fields | None:
-        """Return the fields of a section of a type, or None if the folder has no such type. Raises DefinitionError."""
+        """Return the fields of a section of a type, or None if the folder has no such type.
+
+        Raises DefinitionError.
+        """
         folder = FOLDERS[section.kind]
         for root in self.roots(package):
             path = root / folder / f"{name}.{folder}"

@@ -93,7 +93,10 @@ def transitions_of(plant: sct.Plant) -> list[list[sct.Edge]]:
 
 
 def _is_written(edge: sct.Edge) -> bool:
-    """Return whether the text has a transition for an edge; an event that a state ignores has an edge, too."""
+    """Return whether the text has a transition for an edge.
+
+    An event that a state ignores has an edge, too.
+    """
     left = origin(edge)
     silent = edge.target in (None, left) and not edge.updates
     return not silent or (edge.source is not None and str(edge.source) != str(edge.eContainer().source))
@@ -122,7 +125,10 @@ class _Describer:
         }
 
     def automaton(self, plant: sct.Plant) -> dict[str, Any]:
-        """Return an automaton with its states and transitions; a transition from every state has `source` null."""
+        """Return an automaton with its states and transitions.
+
+        A transition from every state has `source` null.
+        """
         position = {location: number for number, location in enumerate(plant.locations)}
         variables: list[sct.DiscreteVariable | rosgraph.NodeVariable] = [*plant.variables, *self._kept(plant)]
         return {

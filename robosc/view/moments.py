@@ -211,7 +211,10 @@ class Moments:
             self._changed.notify_all()
 
     def explained(self, number: int, event: str) -> dict[str, Any]:
-        """Return the explanation of an event at a moment, in words. Raises ActionError if there is no such event."""
+        """Return the explanation of an event at a moment, in words.
+
+        Raises ActionError if there is no such event.
+        """
         if event not in self.events or not self.first <= number < self.length:
             raise ActionError("there is no such event, or moment")
         state = self._states[number - self.first]

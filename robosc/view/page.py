@@ -26,7 +26,10 @@ class PageError(Exception):
 
 
 def page_files() -> dict[str, bytes]:
-    """Return the content of each of FILES. Raises PageError if the page has not been built, as in a fresh clone."""
+    """Return the content of each of FILES.
+
+    Raises PageError if the page has not been built, as in a fresh clone.
+    """
     try:
         return {name: (_FOLDER / name).read_bytes() for name in FILES}
     except FileNotFoundError:

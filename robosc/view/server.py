@@ -131,9 +131,10 @@ class _Answers:
 
 
 async def told(record: Moments) -> AsyncIterator[str]:
-    """Yield moments as server-sent events `{from, moments, status}`; they replace earlier ones from that number on.
+    """Yield moments as server-sent events `{from, moments, status}`.
 
-    If `from` skips numbers, the moments in between are no longer stored.
+    They replace earlier moments from the number `from` on. If `from` skips numbers, the moments in between are no
+    longer stored.
     """
     cuts, told, status = len(record.cuts), 0, ""
     while True:
@@ -146,7 +147,10 @@ async def told(record: Moments) -> AsyncIterator[str]:
 
 
 class _Guarded:
-    """Rejects requests to other hosts or without the token, so that pages of other sites cannot use the server."""
+    """Rejects requests to other hosts or without the token.
+
+    Otherwise pages of other sites could use the server in a user's name.
+    """
 
     def __init__(self, inner: ASGIApp, hosts: Collection[str], token: str | None) -> None:
         self._inner = inner

@@ -17,7 +17,10 @@ LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 
 
 def reachable(address: str) -> str:
-    """Return the address by which others reach a listener: the computer's own one if it listens on all addresses."""
+    """Return the address by which others reach a listener.
+
+    A listener on all addresses is reached by an address of this computer.
+    """
     family = {"0.0.0.0": socket.AF_INET, "::": socket.AF_INET6}.get(address)  # noqa: S104 - compared only
     if family is None:
         return address

@@ -126,7 +126,10 @@ def _fits(room: int, document: Document, following: list[tuple[int, bool, Docume
 
 
 def _width(part: str | Gap | Comment) -> int:
-    """Return the columns of a part. A comment to the end of its line counts as 0: no line break could shorten it."""
+    """Return the columns of a part.
+
+    A comment to the end of its line counts as 0, because no line break could shorten it.
+    """
     match part:
         case Gap():
             return int(part in {Gap.SPACE, Gap.BREAK})

@@ -184,12 +184,15 @@ class _Layout:
     # Gaps and the comments in them
 
     def _gap(self, node: Node, gap: Gap) -> Document:
-        """Return the gap before a node within an item, with its comments. Line breaks around the comments stay."""
+        """Return the gap before a node within an item, with its comments.
+
+        Line breaks around the comments stay.
+        """
         space = self._spaces[node.position]
         return self._comments(space, gap, _gaps(space))
 
     def _line(self, offset: int, *, first: bool = False) -> Document:
-        """Return the line break before an item, with its comments. Of several empty lines one stays."""
+        """Return the line break before an item, with its comments. At most one empty line stays."""
         space = self._spaces[offset]
         gaps = _gaps(space, Gap.BLANK)
         start = gaps[space.trailing] = Gap.BLANK if gaps[space.trailing] is Gap.BLANK and not first else Gap.LINE
