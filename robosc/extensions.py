@@ -1,4 +1,4 @@
-"""What other packages add to the tool: targets and synthesizers, found by the entry points of their packages."""
+"""Targets and synthesizers of other packages, found by the entry points of these packages."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from importlib.metadata import EntryPoint
 
-#: The groups of entry points.
+#: Groups of entry points.
 Group = Literal["robosc.targets", "robosc.synthesizers"]
 
 
@@ -29,23 +29,26 @@ class Extension:
 
     @property
     def name(self) -> str:
-        """What it is called on the command line."""
+        """The name of the extension on the command line."""
         return self.entry.name
 
     @property
     def package(self) -> str:
-        """The package that it comes from, with its version."""
+        """The package of the extension, with its version."""
         made_by = self.entry.dist
         return f"{made_by.name} {made_by.version}" if made_by else "an unknown package"
 
     @property
     def description(self) -> str:
-        """The package in one line, as it says itself."""
+        """The package's own summary in one line."""
         summary = self.entry.dist.metadata["Summary"] if self.entry.dist else None
         return visible(summary or self.package)
 
     def load(self, *functions: str) -> Any:
-        """The object of the entry point, which has these functions. Raises ModelError where it can't be had."""
+        """Return the object of the entry point, which has these functions.
+
+        Raises ModelError if it is unusable.
+        """
         with self.working():
             loaded = self.entry.load()
         for function in functions:
@@ -55,9 +58,9 @@ class Extension:
 
     @contextmanager
     def working(self) -> Iterator[None]:
-        """While it lasts the code of the package runs: whatever it raises is told as a fault of it, by a ModelError.
+        """Run code of the package in the `with` block; its exceptions become faults of the extension (ModelError).
 
-        What it prints goes to the standard error output: the other is the tool's own.
+        Its prints go to the standard error, because the standard output is the tool's own.
         """
         try:
             with redirect_stdout(sys.stderr):
@@ -68,13 +71,13 @@ class Extension:
             raise self.fault(f"{type(error).__name__}: {error}") from error
 
     def fault(self, reason: str) -> ModelError:
-        """What is wrong with it, located where its package declares it."""
+        """Return a fault of the extension, located at its declaration in the package."""
         hint = f"mend or remove it: `pip uninstall {self.entry.dist.name}`" if self.entry.dist else None
         message = f"`{self.name}` of {self.package} does not work: {visible(reason)}"
         return ModelError([Diagnostic(*self._declared(), Severity.ERROR, "extension", message, hint)])
 
     def _declared(self) -> tuple[str, Span]:
-        """The file that declares it, and where."""
+        """Return the file and the place of the declaration."""
         made_by = self.entry.dist
         files = (made_by.files if made_by else None) or []
         file = next((str(file.locate()) for file in files if file.name == "entry_points.txt"), self.entry.value)
@@ -87,7 +90,7 @@ class Extension:
 
 @cache
 def extensions(group: Group) -> Mapping[str, Extension]:
-    """What is installed of a group, by name; of two of one name the first by package."""
+    """Return the installed extensions of a group by name; of equal names, the first by package counts."""
     found: dict[str, Extension] = {}
     entries = [(entry.name, entry.dist.name if entry.dist else "", entry) for entry in entry_points(group=group)]
     for name, _, entry in sorted(entries, key=lambda triple: triple[:2]):

@@ -1,7 +1,7 @@
-"""Long work that its caller may interrupt: `checkpoint` in the work calls the check of the caller.
+"""Interruption of long work by its caller: `checkpoint` in the work calls the caller's check.
 
-A check returns where the work is to go on, and raises an exception where its result is no longer needed or it has
-taken too long. Between two checkpoints no state is left half changed.
+A check returns if the work is to continue. It raises an exception if the result is no longer needed or the work has
+taken too long. At a checkpoint no state is half changed.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def checking(check: Callable[[], None]) -> Iterator[None]:
 
 
 def current_check() -> Callable[[], None] | None:
-    """The check of the innermost `checking` block of this thread, or None."""
+    """Return the check of the innermost `checking` block of this thread, or None."""
     return _CHECK.get()
 
 

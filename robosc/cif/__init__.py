@@ -2,8 +2,8 @@
 
     reading = read("model.cif")
 
-`parsing` makes the objects of the grammar (grammar/cif.tx) of a text; `scopes` says what its names stand for, and makes
-the instances of definitions; `values` and `expressions` read expressions; `to_sct` makes the sct model.
+`parsing` turns a text into objects of the grammar (grammar/cif.tx). `scopes` resolves names and creates the instances
+of definitions. `values` and `expressions` read expressions. `to_sct` creates the sct model.
 """
 
 from __future__ import annotations
@@ -25,15 +25,18 @@ if TYPE_CHECKING:
 
 __all__ = ["Reading", "read", "read_supervised"]
 
-#: Annotations of CIF that change nothing of what a specification means.
+#: Annotations of CIF that do not affect synthesis.
 _MEANINGLESS = frozenset(["doc", "state", "controller:properties"])
-#: How the names of annotations begin that are requirements.
+#: Prefix of annotations that are requirements.
 _REQUIRED = "requirement:"
 
 
 @dataclass(frozen=True)
 class Reading:
-    """A specification that was read: its sct model, None where it has errors, findings, and texts by path."""
+    """Result of reading a specification: its sct model, the findings, and the texts by path.
+
+    `model` is None if the specification has errors.
+    """
 
     model: sct.SupervisoryControlModel | None
     findings: list[Diagnostic]
@@ -41,9 +44,9 @@ class Reading:
 
 
 def read(path: Path | str, documents: Documents | None = None, *, supervised: bool = False) -> Reading:
-    """Reads a specification and all that it imports. Raises OSError where the file itself can't be read.
+    """Read a specification and all that it imports. Raises OSError if the file itself cannot be read.
 
-    Supervisor automata are refused, or where they may be in it (`supervised`), taken as plants.
+    Supervisor automata are rejected or, if the specification may be `supervised`, read as plants.
     """
     files = _Files(Path(path), documents or Documents())
     if has_errors(files.findings):
@@ -61,9 +64,9 @@ def read(path: Path | str, documents: Documents | None = None, *, supervised: bo
 
 
 def read_supervised(model: sct.SupervisoryControlModel, text: str) -> Reading | None:
-    """Read a specification that imports the one that a model was read from, as if it were beside that.
+    """Read a specification that imports the one of a model, as if its file were beside the model's file.
 
-    Returns None where the model's own specification can't be read any more.
+    Returns None if the model's own specification is no longer readable.
     """
     assert model.source is not None
     assert model.source.file is not None
@@ -78,7 +81,7 @@ def read_supervised(model: sct.SupervisoryControlModel, text: str) -> Reading | 
 
 
 class _Files:
-    """A file and all that it imports, each parsed once: two may import each other."""
+    """A file and all that it imports, each parsed once: files may import each other."""
 
     def __init__(self, path: Path, documents: Documents) -> None:
         self.findings: list[Diagnostic] = []
@@ -87,7 +90,7 @@ class _Files:
         self._known = {path.resolve()}
         self._imports: list[tuple[Path, Any]] = []
         self._parse(path, documents.read(path))
-        for file, asked in self._imports:  # Which grows meanwhile.
+        for file, asked in self._imports:  # `_parse` extends the list during the loop.
             try:
                 content = documents.read(file)
             except OSError as error:
@@ -114,7 +117,7 @@ class _Files:
                     self._imports.append((imported, declaration))
 
     def _annotations(self, specification: Any) -> None:
-        """Refuses annotations that are requirements, and warns of those whose meaning is not known."""
+        """Reject annotations that are requirements, and warn about unknown ones."""
         for annotation in annotations_of(specification):
             name = annotation.name.lstrip("@")
             if name.startswith(_REQUIRED):

@@ -1,4 +1,4 @@
-"""From the flat expressions of the grammar to those of the sct metamodel, with their types."""
+"""From the flat expressions of the grammar to typed expressions of the sct metamodel."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from robosc.semantics.walks import copied, parts
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-#: Words before an operand that bind as unary operators.
+#: Words before an operand that bind like unary operators.
 _UNARY = ("not", "negate", "plus")
-#: Openings that are operators, too, where there is an operand before them.
+#: Words before an operand that are operators if another operand precedes them.
 _OPENINGS = {"-": "negate", "+": "plus", "case": "first case", "else": "first else"}
 _LEVELS = {word: level for word, (level, _) in OPERATORS.items()} | FOREIGN
 
 
 class Typed(NamedTuple):
-    """An expression with its type, and what of the text it was made of.
+    """An expression with its type and the object of the grammar from which it was created.
 
-    The type of an automaton, which is no value but in a `switch`, is the automaton's plant.
+    The type of an automaton is its plant; an automaton has a value only in a `switch`.
     """
 
     read: Any
@@ -34,7 +34,7 @@ class Typed(NamedTuple):
 
 @dataclass
 class _Open:
-    """What is yet to be completed: an operator, an `if` or a `switch` with its alternatives so far."""
+    """An incomplete operator, `if` or `switch`, with its alternatives so far."""
 
     word: str
     read: Any
@@ -49,9 +49,12 @@ class ExpressionReader:
     def __init__(
         self, read: Any, value_of: Callable[[Any, sct.Plant | None], Typed], grow: Callable[[Any, int], None]
     ) -> None:
-        """`value_of` makes what an operand stands for; of the key of a `switch` over an automaton, given that.
+        """Read the expression.
 
-        `grow` is told at which place how much is added that does not stand in the text.
+        `value_of` returns the value of an operand. Its second argument is the automaton of the `switch` if the operand
+        is a key.
+
+        `grow` is called with a place and the number of nodes added there beyond those of the text.
         """
         self._grow = grow
         self._done: list[Typed] = []
@@ -68,13 +71,13 @@ class ExpressionReader:
         [self.result] = self._done
 
     def _switched(self) -> sct.Plant | None:
-        """The automaton whose location an operand is the key of."""
+        """Return the automaton of the innermost `switch` whose key is read next, or None."""
         top = self._open[-1] if self._open else None
         plant = top.switched.type if top is not None and top.word == "case" and top.switched else None
         return plant if isinstance(plant, sct.Plant) else None
 
     def _take(self, word: str, token: Any) -> None:
-        """Any word but an operand."""
+        """Process a token that is not an operand."""
         if word == "sample" or (word[0] + word[-1] == "<>" and word not in _LEVELS):
             what = "distributions" if word == "sample" else "casts"
             raise construct(token, what, "write a value of the type that is asked for")
@@ -94,7 +97,7 @@ class ExpressionReader:
         self._alternative(top, word, token)
 
     def _alternative(self, top: _Open, word: str, token: Any) -> None:
-        """A word of an `if` or a `switch`, the innermost that is open."""
+        """Process a word of the innermost open `if` or `switch`."""
         match top.word, word:
             case (("if" | "elif"), ":"):
                 self._boolean(self._done[-1], "a condition is bool, this is {}")
@@ -115,7 +118,7 @@ class ExpressionReader:
                 return
             case ":", "end" if top.switched is not None:
                 self._open.pop()
-                # As CIF has it, the last case is what is left.
+                # In CIF, the last case applies if no other one does.
                 top.conditions.pop()
                 self._done.append(self._choice(top, self._done.pop()))
                 return
@@ -124,7 +127,7 @@ class ExpressionReader:
         top.word = "switch:" if top.word == "switch" else word
 
     def _reduce(self, level: int) -> None:
-        """Completes the operators that bind as tightly as this level or more, up to what is open around them."""
+        """Complete the operators that bind at least as tightly as `level`, up to the innermost open construct."""
         while self._open:
             top = self._open[-1]
             if top.word in _UNARY:
@@ -160,9 +163,9 @@ class ExpressionReader:
         return Typed(top.read, ex.UnaryMinus(operand=operand.expression), _checked(top.read, bounded, "-", values))
 
     def _is(self, switched: Typed, key: Typed) -> Typed:
-        """That what a `switch` looks at is a key."""
+        """Return the condition that the value of a `switch` equals a key."""
         if isinstance(switched.type, sct.Plant):
-            return key  # A location of the automaton, which is true where the automaton is in it.
+            return key  # The key is a location, which is true while the automaton is in it.
         _checked(key.read, combined, "=", switched.type, key.type)
         self._grow(key.read, sum(1 for _ in parts(switched.expression)))
         return Typed(key.read, ex.Equation(left=copied(switched.expression), right=key.expression), BOOLEAN)
@@ -183,7 +186,7 @@ class ExpressionReader:
 
 
 def _tokens(read: Any) -> Iterator[tuple[str | None, Any]]:
-    """The tokens of an expression, with their words; operands have none. A sign is no operator."""
+    """Yield the tokens of an expression with their words; operands have None. Signs are marked as unary."""
     further = [(None, read.first), *((other.operator, other.operand) for other in read.others)]
     for operator, operand in further:
         if operator is not None:
@@ -195,7 +198,7 @@ def _tokens(read: Any) -> Iterator[tuple[str | None, Any]]:
 
 
 def named(read: Any) -> Iterator[Any]:
-    """The names in an expression, but those that are keys of a `switch` by themselves."""
+    """Yield the names in an expression, except those that are keys of a `switch` by themselves."""
     pending = [read]
     while pending:
         here = pending.pop()
@@ -211,7 +214,7 @@ def named(read: Any) -> Iterator[Any]:
 
 
 def _checked(read: Any, rule: Callable[..., Any], *given: Any) -> Any:
-    """The type by a rule; what is wrong with it is so at this place."""
+    """Return the type by a rule; a TypeError becomes a fault of this place."""
     try:
         return rule(*given)
     except TypeError as fault:

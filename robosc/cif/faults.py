@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class CifFaultError(Exception):
-    """That something of a text is wrong: an object of the grammar, the rule, what is wrong and how to mend it."""
+    """A fault in a text: the object of the grammar, the rule, the message, and the repair or hint."""
 
     def __init__(self, read: Any, rule: str, message: str, repair: Repair | str | None = None) -> None:
         super().__init__(message)
@@ -24,15 +24,15 @@ class CifFaultError(Exception):
         self.repair = repair
 
     def finding(self) -> Diagnostic:
-        """The fault as a finding in its text."""
+        """Return the fault as a finding in its text."""
         return text_of(self.read).error(self.rule, *span(self.read), self.message, self.repair)
 
     def warning(self) -> Diagnostic:
-        """The fault as a finding that leaves the model usable."""
+        """Return the fault as a finding that leaves the model usable."""
         return replace(self.finding(), severity=Severity.WARNING)
 
 
-#: How to mend what a transformation of CIF's `cif2cif` takes out, by its name there.
+#: Hints for constructs that a transformation of CIF's `cif2cif` eliminates.
 CHANNELS = "CIF's `cif2cif -t linearize-product` makes events without data of them"
 CONDITIONAL_UPDATES = "CIF's `cif2cif -t elim-if-updates` takes them out"
 SUPERVISORS = "CIF's `cif2cif -t relabel-supervisors-as-plants` makes plants of them"
@@ -40,7 +40,7 @@ TAU = "CIF's `cif2cif -t elim-tau-event` gives it one: declare that as `uncontro
 
 
 def text_of(read: Any) -> Text:
-    """The text that an object of the grammar stands in; the specification around it keeps it."""
+    """Return the text of an object of the grammar; the specification around it stores the text."""
     while hasattr(read, "parent"):
         read = read.parent
     text: Text = read.whole_text
@@ -48,15 +48,15 @@ def text_of(read: Any) -> Text:
 
 
 def span(read: Any) -> tuple[int, int]:
-    """The offsets of an object of the grammar in its text."""
-    return read._tx_position, read._tx_position_end  # noqa: SLF001 - textX's own way to tell it
+    """Return the offsets of an object of the grammar in its text."""
+    return read._tx_position, read._tx_position_end  # noqa: SLF001 - textX has no public attribute for them
 
 
 def located(read: Any) -> Place:
-    """The place of an object of the grammar."""
+    """Return the place of an object of the grammar."""
     return text_of(read).source(*span(read))
 
 
 def construct(read: Any, what: str, hint: str) -> CifFaultError:
-    """That synthesis does not take a construct, and what removes it."""
+    """Return the fault of a construct that synthesis does not support, with the hint that removes it."""
     return CifFaultError(read, "cif-construct", f"synthesis does not take {what}", hint)

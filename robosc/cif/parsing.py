@@ -1,4 +1,7 @@
-"""The objects of the grammar that a text is, and what is wrong with it: the one place here that knows textX."""
+"""Parses a text into objects of the grammar and reports its faults.
+
+Only this module of the package uses textX.
+"""
 
 from __future__ import annotations
 
@@ -18,11 +21,11 @@ if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic
     from robosc.language.text import Text
 
-#: After so many faults of one text the rest is not looked at.
+#: Parsing stops after this many faults of one text.
 _MOST = 20
 _BLANK = re.compile(r"//[^\n]*|/\*.*?\*/|\s+", re.DOTALL)
 _TOKEN = re.compile(r'"(?:[^\\"\n]|\\.)*+"?|[$]?\w+(?:\.\w+)*|<=>|:=|=>|<=|>=|!=|\.\.|.', re.DOTALL)
-#: Where a statement ends, or the head of one with a body.
+#: End of a statement, or of the header of a statement with a body.
 _END = re.compile(r'"(?:[^\\"\n]|\\.)*+"?|//[^\n]*|/\*.*?(?:\*/|\Z)|;|:(?!=)|\bend\b', re.DOTALL)
 _RULES = {
     "Identifier": "a name",
@@ -32,10 +35,10 @@ _RULES = {
     "StringToken": "a string",
     "AnnotationName": "an annotation",
 }
-#: How deep brackets, groups and statements of functions may be nested, one in the other: the parser follows them by
-#: calls inside each other, which Python bounds.
+#: Maximum nesting depth of brackets, groups and statements of functions: the parser recurses for each level, and Python
+#: bounds the recursion depth.
 DEEPEST = 50
-#: Names are matched whole, so that a part of one is no keyword.
+#: Matches names as a whole, so that no part of a name counts as a keyword.
 _NESTING = re.compile(
     r'"(?:[^\\"\n]|\\.)*+"?|//[^\n]*|/\*.*?(?:\*/|\Z)|@@?[\w:]+|\.\.|[.^]?\$?\w+(?:\.\$?\w+)*|[][(){};]|:(?!=)',
     re.DOTALL,
@@ -43,24 +46,24 @@ _NESTING = re.compile(
 _CLOSINGS = {")": "(", "]": "[", "}": "{"}
 _BRACKETS = frozenset(_CLOSINGS.values())
 _BLOCKS = frozenset(["group", "location"])
-#: How to mend what is nested too deep, by what is.
+#: Hints for text that is nested too deep, by the nested construct.
 _MENDS = {
     **dict.fromkeys(_BRACKETS, "give parts of it to algebraic variables"),
     "group": "move it out of groups",
     "func": "take statements of its functions apart",
 }
-#: These end with `end` as groups do, but count in functions only: of expressions the parser reads them flat.
+#: Constructs with an `end` that count only in functions: in expressions the parser reads them without recursion.
 _FLAT = frozenset(["if", "switch", "while"])
-#: What starts a statement, and stands in no expression and in no list of parameters.
+#: Words that begin a statement and occur neither in expressions nor in parameter lists.
 _STARTERS = frozenset(["group", "plant", "requirement", "supervisor", "automaton", "invariant", "edge"]) | frozenset(
     ["disc", "const", "input", "enum", "equation", "initial", "marked"]
 )
-#: What several words stand for that the grammar wants at once.
+#: Phrases for words that the grammar expects only together.
 _GROUPS = (
     ("an expression", {"true", "NumberToken", "not"}),
     ("an operator", {"and", "or", "div"}),
 )
-#: What other languages write, and what CIF does.
+#: Operators of other languages and their equivalents in CIF.
 _MEANT = {"==": "=", "&&": "and", "||": "or", "!": "not", "<>": "!="}
 
 
@@ -71,7 +74,7 @@ def _grammar() -> Any:
 
 @cache
 def _identifier() -> re.Pattern[str]:
-    """The grammar's own expression for a name that is no keyword."""
+    """Return the grammar's own regular expression for a name that is not a keyword."""
     pending, seen = [_grammar()._parser_blueprint.parser_model], set[int]()  # noqa: SLF001 - textX has no other access
     while pending:
         rule = pending.pop()
@@ -83,13 +86,13 @@ def _identifier() -> re.Pattern[str]:
 
 
 def identifier(name: str) -> str:
-    """A name as a text has it: a keyword that stands alone needs a dollar sign before it."""
+    """Return a name as a text writes it: a keyword without a qualifier needs a dollar sign before it."""
     is_alone = "." not in name and not name.startswith("^")
     return f"${name}" if is_alone and _identifier().fullmatch(name) is None else name
 
 
 def parse(text: Text) -> tuple[Any, list[Diagnostic]]:
-    """The specification in a text, None where it has faults; these are findings of the rule `syntax`."""
+    """Return the specification in a text (None if it has faults), and its findings of the rule `syntax`."""
     content, findings = text.content, list[Any]()
     if (deep := _too_deep(text)) is not None:
         return None, [deep]
@@ -108,7 +111,7 @@ def parse(text: Text) -> tuple[Any, list[Diagnostic]]:
         assert isinstance(failed, arpeggio.NoMatch)
         start, end, found = _token(content, failed.position)
         if findings and (failed.position <= reported or found in {"end", ""}):
-            return None, findings  # It may well follow from what was found before.
+            return None, findings  # This fault is probably a consequence of the previous one.
         wanted = list(dict.fromkeys(map(_wanted, failed.rules)))
         findings.append(text.error("syntax", start, end, _message(found, wanted), _hint(found, wanted)))
         if len(findings) == _MOST:
@@ -125,18 +128,18 @@ def annotations_of(specification: Any) -> list[Any]:
 
 
 def _too_deep(text: Text) -> Diagnostic | None:
-    """Return the finding at the first bracket, group or statement that is nested too deep; None without one.
+    """Return the finding at the first bracket, group or statement that is nested too deep, or None.
 
-    A bracket that is not closed makes nothing deep that comes after its statement.
+    An unclosed bracket does not add to the depth of later statements.
     """
-    around: list[tuple[str, int]] = []  # what is open, and how deep it is
-    head = False  # whether a function may have begun, whose statements come after a colon
+    around: list[tuple[str, int]] = []  # the open constructs, each with its depth
+    head = False  # whether this may be the header of a function, whose statements follow a colon
     for token in _NESTING.finditer(text.content):
         word = token[0]
         _close(around, word)
         top, depth = around[-1] if around else ("", 0)
         if word in _STARTERS or (word in {"func", ";"} and top not in _BRACKETS):
-            head = word == "func"  # Where a semicolon comes first, it was a type.
+            head = word == "func"  # If a semicolon comes first, `func` was a type.
         opened = _opened(word, top, head=head)
         counts = opened in _MENDS and word != ":"
         if counts and depth == DEEPEST:
@@ -148,7 +151,7 @@ def _too_deep(text: Text) -> Diagnostic | None:
 
 
 def _close(around: list[tuple[str, int]], word: str) -> None:
-    """Takes off what a word ends."""
+    """Remove the constructs that a word closes."""
     if word in _STARTERS:
         while around and around[-1][0] not in _BLOCKS:
             around.pop()
@@ -160,18 +163,18 @@ def _close(around: list[tuple[str, int]], word: str) -> None:
 
 
 def _opened(word: str, top: str, *, head: bool) -> str:
-    """The block that a word opens; `func` for the statements of a function; empty: none."""
+    """Return the construct that a word opens (`func` for the statements of a function), or an empty string."""
     if word == ":":
         return "func" if head and top in {"", "group"} else ""
     if word in _FLAT:
         return "func" if top == "func" else word
-    # An automaton is open from its first location on; a location in brackets is a parameter.
+    # An automaton counts from its first location on; `location` in brackets is a parameter.
     is_automaton = word == "location" and top != word and top not in _BRACKETS
     return word if is_automaton or word in _BRACKETS or word == "group" else ""
 
 
 def _made(text: Text) -> Any:
-    """The objects of a text; one of nothing but comments has none, and is made so that it has."""
+    """Return the objects of a text; a text of comments alone gets an empty specification."""
     specification = _grammar().model_from_str(text.content)
     if isinstance(specification, str):
         specification = _Nothing()
@@ -180,7 +183,7 @@ def _made(text: Text) -> Any:
 
 
 class _Nothing:
-    """A specification without anything."""
+    """A specification without declarations."""
 
     declarations = ()
     _tx_position = 0
@@ -196,7 +199,7 @@ def _token(content: str, position: int) -> tuple[int, int, str]:
 
 
 def _statement(content: str, position: int) -> tuple[int, int]:
-    """The statement around a position, its semicolon included."""
+    """Return the range of the statement around a position, its semicolon included."""
     first = 0
     for mark in _END.finditer(content):
         word = mark[0]
@@ -232,12 +235,12 @@ def _message(found: str, wanted: list[str]) -> str:
 
 
 def _tells(word: str) -> bool:
-    """Whether a word is worth telling beside an expression or an operator."""
+    """Return whether an expected word is worth listing beside an expression or an operator."""
     return word in {";", ",", ":", ":=", ")", "do", "goto", "needs", "disables", "when"}
 
 
 def _hint(found: str, wanted: list[str]) -> Repair | str | None:
-    """How to mend it, where that can be told."""
+    """Return a repair or hint for an unexpected token, or None if there is none."""
     if found in _MEANT and _MEANT[found] in wanted:
         return Repair(f"write `{_MEANT[found]}`", _MEANT[found])
     if found == "=" and ":=" in wanted:

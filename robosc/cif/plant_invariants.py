@@ -1,7 +1,7 @@
-"""Plant invariants over states: the system itself never leaves them, so no edge leads out of them.
+"""Plant invariants over states: the system itself keeps them, so no edge leads to a state that violates one.
 
-An event that changes what such an invariant reads in one plant alone has it in the guards of its edges there. One that
-changes it in several plants at once is excluded where their edges together would lead out.
+If only one plant changes the elements of an invariant with an event, the guards of its edges get the invariant. If
+several plants change them together, the event is excluded in states in which their edges would violate it.
 """
 
 from __future__ import annotations
@@ -21,14 +21,17 @@ if TYPE_CHECKING:
 
     Element = sct.Plant | sct.DiscreteVariable
 
-#: So many ways to take an event in several plants are looked at, and so many operators and operands made of them.
+#: Limits for an event in several plants: combinations of edges, and operators and operands of the result.
 _MOST, _LARGEST = 1_000, 100_000
 
 
 def keep(
     invariant: ex.Expression, edges: dict[sct.Event, dict[sct.Plant, list[sct.Edge]]]
 ) -> Iterator[tuple[sct.Event, ex.Expression | None]]:
-    """Puts an invariant into guards; gives the events that are excluded, where not by what; None: in too many ways."""
+    """Add an invariant to guards; yield each event to exclude with its condition.
+
+    The condition is None if there are too many combinations of edges.
+    """
     read = set(_read(invariant))
     for event, by_plant in edges.items():
         changing = {plant: own for plant, own in by_plant.items() if any(read & set(_changed(edge)) for edge in own)}
@@ -43,7 +46,10 @@ def keep(
 
 
 def _together(invariant: ex.Expression, edges: Sequence[Sequence[sct.Edge]]) -> ex.Expression | None:
-    """That what edges of several plants do together keeps the invariant."""
+    """Return the condition under which joint edges of several plants keep the invariant.
+
+    Returns None if it would be too large.
+    """
     ways = prod(map(len, edges))
     if ways > _MOST or ways * sum(1 for _ in parts(invariant)) > _LARGEST:
         return None
@@ -56,7 +62,7 @@ def _together(invariant: ex.Expression, edges: Sequence[Sequence[sct.Edge]]) -> 
 
 
 def after(condition: ex.Expression, edges: Iterable[sct.Edge]) -> ex.Expression:
-    """That a condition holds after some edges of different plants, as a condition on the state before."""
+    """Return the condition on the state before edges of different plants under which a condition holds after them."""
     targets = {edge.target.eContainer(): edge.target for edge in edges}
     values = {update.variable: update.value for edge in edges for update in edge.updates}
 

@@ -1,8 +1,8 @@
 """Names of a specification: groups, automata, instances of definitions, and their declarations.
 
-`Specification` declares all that it has and makes every instance of a definition, a scope like a group or an
-automaton whose declarations are looked up where the definition stands. What is declared is a `Declared`; what a
-parameter stands for is found where the instance is made.
+`Specification` declares all names and creates every instance of a definition. An instance is a scope like a group or an
+automaton, but its names are looked up around the definition. A declaration is a `Declared`. The element behind a
+parameter is looked up around the instance.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic
     from robosc.metamodel import expression as ex
 
-#: So many groups, automata and instances a specification may have.
+#: Maximum number of groups, automata and instances of a specification.
 _MOST = 20_000
 _LISTS = {
     "Inputs": "names",
@@ -36,10 +36,10 @@ _LISTS = {
 
 @dataclass(eq=False)
 class Declared:
-    """Something with a name: `kind` is the rule of the grammar that it was declared by.
+    """A named element; `kind` is the grammar rule of its declaration.
 
-    `read` is its own object of the grammar and `outer` that of the statement, which has the type; `made` is what it
-    became, an element of the sct metamodel.
+    `read` is its own object of the grammar, and `outer` that of the statement with its type. `made` is the element of
+    the sct metamodel that was created for it.
     """
 
     kind: str
@@ -48,15 +48,15 @@ class Declared:
     outer: Any
     scope: Scope
     made: Any = None
-    #: The type of a variable.
+    #: Type of a variable.
     type: Any = None
-    #: Why a variable was not made.
+    #: Fault for which a variable was not created.
     fault: Any = None
 
 
 @dataclass(eq=False)
 class Argument:
-    """The argument of an instance: its expression, and in `named` the element that this names."""
+    """An argument of an instance: its expression, and the element that the expression names (`named`)."""
 
     read: Any
     scope: Scope
@@ -66,10 +66,10 @@ class Argument:
 
 @dataclass(eq=False)
 class Scope:
-    """A group, an automaton, or an instance of a definition; `kind` is that of an automaton, None of a group.
+    """A group, an automaton, or an instance of a definition; `kind` is the kind of an automaton, None for a group.
 
-    `path` is its absolute name, and `around` the scope in whose text it stands. `bodies` are the objects of the grammar
-    that say what is in it: several files may say something of one group.
+    `path` is its absolute name, and `around` the scope whose text contains it. `bodies` are the objects of the grammar
+    with its contents: several files can contribute to one group.
     """
 
     path: str
@@ -82,15 +82,15 @@ class Scope:
     events: list[Declared] = field(default_factory=list)
     plant: sct.Plant | None = None
     definition: Any = None
-    #: The scope that it is in by its absolute name.
+    #: The enclosing scope by its absolute name.
     parent: Scope | None = None
 
     def absolute(self, name: str) -> str:
-        """The absolute name of what is in it."""
+        """Return the absolute name of an element in the scope."""
         return f"{self.path}.{name}" if self.path else name
 
     def declarations(self, *rules: str) -> Iterator[Any]:
-        """Its declarations by these rules of the grammar."""
+        """Yield the declarations of the scope by these rules of the grammar."""
         for body in self.bodies:
             for declaration in body.declarations:
                 if type(declaration).__name__ in rules:
@@ -101,12 +101,12 @@ Name: TypeAlias = "Declared | Argument | Scope | sct.Location | ex.EnumerationLi
 
 
 def plain(identifier: str) -> str:
-    """An identifier without the dollar signs that tell it from keywords."""
+    """Return an identifier without the dollar signs that distinguish it from keywords."""
     return identifier.replace("$", "")
 
 
 def _meant(name: str, position: int, known: Iterable[str]) -> Repair | None:
-    """The repair that writes the closest name in place of one part of a name; None where none is close."""
+    """Return the repair that replaces one part of a name by the closest known name, or None if none is close."""
     absolute = name[0] if name[0] in ".^" else ""
     parts = name.lstrip(".^").split(".")
     close = closest(parts[position], known, cutoff=0.7)
@@ -117,7 +117,7 @@ def _meant(name: str, position: int, known: Iterable[str]) -> Repair | None:
 
 
 class Specification:
-    """All names of a specification. `findings` are the faults in what declares them."""
+    """All names of a specification. `findings` are the faults of their declarations."""
 
     def __init__(self) -> None:
         self.root = Scope("", None, None)
@@ -128,7 +128,7 @@ class Specification:
         self._scopes = 0
 
     def add(self, specification: Any) -> None:
-        """Declares what a file has."""
+        """Declare the names of a file."""
         scope = self.root
         self.first = self.first or specification
         try:
@@ -138,16 +138,16 @@ class Specification:
                         scope = self._inner(part, scope, declaration)
         except CifFaultError as fault:
             self.findings[fault.finding()] = None
-            return  # Its declarations are nowhere.
+            return  # Without its namespace, the file has no scope for its declarations.
         scope.bodies.append(specification)
         self._declare(scope, specification)
 
     def make_instances(self) -> None:
-        """Declares what is in the instances of definitions."""
-        for read, around, scope in self._instances:  # Which grows meanwhile.
+        """Declare the contents of the instances of definitions."""
+        for read, around, scope in self._instances:  # `_instantiate` extends the list during the loop.
             with self.reporting():
                 self._instantiate(read, around, scope)
-        # From the outermost instance on, so that each argument is looked up once.
+        # The outermost instance comes first, so that each argument is looked up only once.
         for _, _, scope in self._instances:
             for argument in scope.around.names.values() if scope.around else ():
                 if isinstance(argument, Argument) and not _is_algebraic(argument):
@@ -165,11 +165,11 @@ class Specification:
             self.findings[fault.finding()] = None
 
     def find(self, read: Any, scope: Scope) -> Name:
-        """Return the element that a name of the grammar stands for in a scope. Raises CifFaultError."""
+        """Return the element that a name of the grammar refers to in a scope. Raises CifFaultError."""
         return self.lookup(plain(read.text), read, scope)
 
     def lookup(self, name: str, read: Any, scope: Scope) -> Name:
-        """The same of its text."""
+        """Return the element that a name as text refers to in a scope. Raises CifFaultError."""
         first, *others = name.lstrip(".^").split(".")
         known: Scope | None = self._beginning(name, scope)
         found: Name | None = None
@@ -199,7 +199,10 @@ class Specification:
         return self.resolved(found)
 
     def _beginning(self, name: str, scope: Scope) -> Scope:
-        """Where a name is looked up first: with `^` the root, with `.` the definition around, or else the root."""
+        """Return the scope in which the search for a name begins.
+
+        That is the root for `^`, the definition around the scope (or the root) for `.`, and otherwise the scope itself.
+        """
         if name[0] == "^":
             return self.root
         while name[0] == "." and scope.definition is None and scope.around is not None:
@@ -247,7 +250,7 @@ class Specification:
                 self._declare_names(scope, read, rule)
 
     def _declare_names(self, scope: Scope, read: Any, rule: str) -> None:
-        """The named elements that are neither groups nor automata."""
+        """Declare the named elements that are neither groups nor automata."""
         match rule:
             case "GroupDefinition" | "AutomatonDefinition" | "Enumeration":
                 whole = self._name(rule, read, read, scope)
@@ -270,7 +273,7 @@ class Specification:
         return declared
 
     def _inner(self, name: str, scope: Scope, read: Any) -> Scope:
-        """The group of a name; what several texts say of one is put together."""
+        """Return the group of a name; contributions of several texts to one group are merged."""
         known = scope.names.get(name)
         if not isinstance(known, Scope) or known.kind is not None or known.definition is not None:
             known = self._scope(name, scope, read, bare=True)
@@ -289,7 +292,7 @@ class Specification:
         return made
 
     def _automaton(self, scope: Scope, read: Any) -> None:
-        """An automaton or an instance of one: its locations are names, too."""
+        """Declare an automaton or an instance of one, including its locations, which are names too."""
         scope.kind = read.kind or ""
         made = sct.PlantKind.requirement if read.kind == "requirement" else sct.PlantKind.behaviour
         scope.plant = sct.Plant(name=scope.path, kind=made, source=located(scope.read))
@@ -326,7 +329,7 @@ class Specification:
             )
         scope.bodies.append(definition)
         scope.definition = definition
-        # Specification in it are looked up where the definition stands; parameters are nearer than those.
+        # Names in the definition are looked up around the definition. Its parameters take precedence.
         inner = Scope(scope.path, found.scope, read)
         for (parameter, name), argument in zip(parameters, read.arguments, strict=True):
             inner.names[plain(name.name)] = Argument(argument, around, parameter)

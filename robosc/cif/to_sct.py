@@ -1,9 +1,9 @@
-"""From the automata of a specification to an sct model: what its synthesis is, as CIF defines it.
+"""From the automata of a specification to an sct model with the semantics of CIF's synthesis.
 
-All that CIF's synthesis does implicitly is written out: an automaton that only watches an event stays where it has no
-edge for it; a requirement automaton watches all of its events, and what it forbids is a requirement on its locations;
-an edge that would bring a variable out of its range is forbidden by a requirement; an input variable is a variable
-that an uncontrollable event gives any value.
+Implicit rules of CIF's synthesis become explicit. An automaton that monitors an event stays in its location if it has
+no edge for the event. A requirement automaton monitors all of its events, and its restrictions become requirements on
+its locations. A requirement forbids each edge that would assign a value out of range. An input variable becomes a
+variable to which an uncontrollable event assigns any value.
 """
 
 from __future__ import annotations
@@ -43,7 +43,10 @@ if TYPE_CHECKING:
 
 @dataclass
 class _Taken:
-    """An edge of the text with one of its events: where it is enabled, and where each variable stays in its range."""
+    """An edge of the text for one of its events.
+
+    `fits` has the condition under which each variable stays in range.
+    """
 
     location: sct.Location
     event: sct.Event
@@ -55,9 +58,9 @@ class _Taken:
 
 
 def to_sct(names: Specification, name: str, *, supervised: bool = False) -> sct.SupervisoryControlModel:
-    """The sct model of a specification; what is wrong with it is added to the findings of its names.
+    """Return the sct model of a specification; its faults are added to the findings of `names`.
 
-    Where it may be `supervised`, supervisor automata are plants.
+    If the specification may be `supervised`, supervisor automata become plants.
     """
     return _Transformation(names, name, supervised=supervised).model
 
@@ -95,7 +98,7 @@ class _Transformation:
     # Declarations
 
     def _declare(self, scope: Scope) -> None:
-        """The events, variables and inputs of a scope."""
+        """Create the events, variables and inputs of a scope."""
         if scope.kind == "supervisor" and not self._supervised:
             with self._names.reporting():
                 raise construct(scope.read, "supervisor automata", SUPERVISORS)
@@ -112,7 +115,7 @@ class _Transformation:
             self._controllable[event] = declared
         for known in scope.names.values():
             if isinstance(known, Declared) and known.kind in ("Variables", "Inputs"):
-                # Until its type is known, it can only be read by what that is made of.
+                # Until the type is known, only expressions in the type itself can read the variable.
                 known.fault = computed_from_itself(known)
                 try:
                     self._variable(known, scope)
@@ -122,7 +125,7 @@ class _Transformation:
                         raise
 
     def _plant(self, scope: Scope) -> sct.Plant:
-        """The plant of a scope; a group has one where it declares events or inputs."""
+        """Return the plant of a scope; a group has one if it declares events or inputs."""
         if scope.plant is None:
             scope.plant = sct.Plant(name=scope.path, kind=sct.PlantKind.behaviour)
             scope.plant.locations.append(sct.Location(name="L", initial=True, marked=True))
@@ -150,7 +153,7 @@ class _Transformation:
                 location.edges.append(edge)
 
     def _keep(self, scope: Scope, used: set[sct.Event]) -> None:
-        """The scope's plant becomes the model's, with those events that can happen."""
+        """Add the scope's plant to the model, with those of its events that can happen."""
         events = [declared.made for declared in scope.events if declared.made in used]
         if events:
             plant = self._plant(scope)
@@ -161,7 +164,7 @@ class _Transformation:
             self.model.plants.append(scope.plant)
 
     def _identify(self) -> None:
-        """Plants and enumerations get names that are identifiers, each its own; `origin` is their absolute name."""
+        """Give plants and enumerations unique names that are identifiers; `origin` is their absolute name."""
         names = Names()
         for plant in self.model.plants:
             plant.origin = plant.name or None
@@ -180,7 +183,7 @@ class _Transformation:
     # Automata
 
     def _fill(self, scope: Scope) -> None:
-        """The initial values and edges of an automaton."""
+        """Create the initial values and edges of an automaton."""
         for declared in scope.names.values():
             with self._names.reporting():
                 if isinstance(declared, Declared) and declared.kind in ("Constants", "Algebraics"):
@@ -201,7 +204,7 @@ class _Transformation:
                 raise CifFaultError(scope.read, "initial-state", message, "write `initial;` in one")
 
     def _edges_of(self, taken: list[_Taken], scope: Scope) -> None:
-        """The edges of an automaton, and what it requires."""
+        """Create the edges and the requirements of an automaton."""
         used = self._alphabet(taken, scope)
         watched = self._events(scope, "Monitor")
         if watched == []:
@@ -214,7 +217,7 @@ class _Transformation:
                 self._require(edges, event, scope)
 
     def _alphabet(self, taken: Iterable[_Taken], scope: Scope) -> list[sct.Event]:
-        """The events that an automaton takes part in."""
+        """Return the events in which an automaton takes part."""
         declared = self._events(scope, "Alphabet")
         for edge in taken:
             if declared is not None and edge.event not in declared:
@@ -262,7 +265,7 @@ class _Transformation:
     def _updates(
         self, read: Any, scope: Scope
     ) -> tuple[list[tuple[sct.DiscreteVariable, ex.Expression, Any]], dict[sct.DiscreteVariable, ex.Expression]]:
-        """The updates of an edge, and where each variable stays in its range."""
+        """Return the updates of an edge, and the conditions under which variables stay in range."""
         updates: list[tuple[sct.DiscreteVariable, ex.Expression, Any]] = []
         fits: dict[sct.DiscreteVariable, ex.Expression] = {}
         for update in read.updates:
@@ -295,7 +298,7 @@ class _Transformation:
         return found.made, value.expression, value.type
 
     def _place(self, edges: list[_Taken], event: sct.Event, scope: Scope, *, watching: bool) -> None:
-        """The edges of an event in a plant; where it only watches the event, it stays if no edge can be taken."""
+        """Create the edges of an event in a plant; if it monitors the event, it stays if no edge can be taken."""
         plant = scope.plant
         assert plant is not None
         for edge in edges:
@@ -319,9 +322,9 @@ class _Transformation:
             location.edges.append(sct.Edge(event=event, guard=never, target=location, source=located(scope.read)))
 
     def _stay_in_range(self, edge: _Taken, plant: sct.Plant, *, alone: bool) -> None:
-        """An event must not happen where an edge would bring a variable out of its range.
+        """Add the requirement that forbids an event if an edge would assign a value out of range.
 
-        `alone`: the plant takes no other edge with the event, so that it is this edge wherever the event happens.
+        `alone` means that the plant has no other edge for the event, so that the event always takes this edge.
         """
         fits = conjunction(map(copied, edge.fits.values()))
         assert fits is not None
@@ -339,7 +342,7 @@ class _Transformation:
         )
 
     def _require(self, edges: list[_Taken], event: sct.Event, scope: Scope) -> None:
-        """A requirement automaton lets an event happen where it has an edge for it."""
+        """Add the requirement that an event happens only if a requirement automaton has an edge for it."""
         plant = scope.plant
         assert plant is not None
         allowed = []
@@ -362,7 +365,7 @@ class _Transformation:
         )
 
     def _initialise(self, declared: Declared, scope: Scope) -> None:
-        """The initial value of a variable, or what holds of it at the start where it may have several."""
+        """Set the initial value of a variable, or add an initial predicate if it can have several."""
         variable, read = declared.made, declared.read
         if read.any:
             return
@@ -467,7 +470,7 @@ class _Transformation:
             )
 
     def _keep_invariants(self, plants: list[sct.Plant]) -> None:
-        """The system never leaves its plant invariants, and starts in them."""
+        """Make the system start in and never leave its plant invariants."""
         edges = edges_by_event(plants)
         for read, condition in self._plant_invariants:
             for event, excluding in plant_invariants.keep(condition, edges):
@@ -479,7 +482,7 @@ class _Transformation:
             self.model.initialPredicates.append(condition)
 
     def _exclude(self) -> None:
-        """Exclude by plants of one location what plant invariants exclude; drop requirements on unused events."""
+        """Exclude events by plant invariants in a plant with one location; drop requirements on unused events."""
         used = {edge.event for scope in _inside(self._names.root) if scope.plant for edge in _edges(scope.plant)}
         for requirement in [requirement for requirement in self.model.requirements if requirement.event not in used]:
             self.model.requirements.remove(requirement)
@@ -502,7 +505,7 @@ class _Transformation:
 
 
 def _inside(scope: Scope) -> Iterator[Scope]:
-    """A scope and all in it, in the order of the text."""
+    """Yield a scope and all scopes in it, in the order of the text."""
     pending = [scope]
     while pending:
         here = pending.pop()
@@ -515,7 +518,7 @@ def _is_automaton(scope: Scope) -> bool:
 
 
 def _elements(scope: Scope) -> Iterator[tuple[sct.Location, Any]]:
-    """The elements in the locations of an automaton, each with its location."""
+    """Yield the elements in the locations of an automaton, each with its location."""
     if _is_automaton(scope) and scope.plant is not None:
         for location, read in zip(scope.plant.locations, scope.bodies[0].locations, strict=True):
             for element in read.elements:
@@ -527,20 +530,20 @@ def _edges(plant: sct.Plant) -> Iterable[sct.Edge]:
 
 
 def _several(edges: Iterable[sct.Edge]) -> bool:
-    """Whether several of them leave one location."""
+    """Return whether several of the edges leave the same location."""
     left = [edge.eContainer() for edge in edges]
     return len(left) > len(set(left))
 
 
 def _at(location: sct.Location, plant: sct.Plant) -> list[ex.Expression]:
-    """That the plant is there, where it could be elsewhere."""
+    """Return the condition that the plant is in a location; empty if it has no other location."""
     return [sct.LocationReference(location=location)] if len(plant.locations) > 1 else []
 
 
 def _fitting(variable: sct.DiscreteVariable, value: ex.Expression, kind: Type) -> Iterator[ex.Expression]:
-    """That a value is in the range of its variable, as far as its type does not say so.
+    """Yield the conditions for a value to be in the range of its variable, unless its type guarantees them.
 
-    What is subtracted stands on the other side: CIF's synthesis takes a `-` in assignments only.
+    A subtrahend is moved to the other side, because CIF's synthesis supports `-` in assignments only.
     """
     if not isinstance(kind, range):
         return
@@ -568,14 +571,14 @@ def _type(kind: Type) -> ex.Type:
 
 
 def _default(kind: Type) -> Any:
-    """CIF's initial value where a declaration gives none."""
+    """Return CIF's default for a declaration without an initial value."""
     if isinstance(kind, range):
         return min(max(0, kind.start), kind.stop - 1)
     return kind.literals[0] if isinstance(kind, ex.Enumeration) else False
 
 
 def _words(read: Any) -> str:
-    """The text of an element, as one line."""
+    """Return the text of an element in one line."""
     start, end = span(read)
     return " ".join(text_of(read).content[start:end].split()).rstrip(";").strip()
 

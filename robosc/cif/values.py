@@ -1,4 +1,4 @@
-"""Names and types in expressions: constants, algebraic variables, types, and values that never change."""
+"""Values and types of expressions: constants, algebraic variables, named types."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
 
-#: So many operators and operands the names in an expression may stand for, and all names together.
+#: Size limits after expanding names, in operators and operands: of one expression, and of the whole specification.
 _LARGEST, _LARGEST_IN_ALL = 20_000, 100_000
-#: Operands that synthesis does not take, and what to write instead.
+#: Operands that synthesis does not support, and hints to replace them.
 _FOREIGN = {
     "Received": ("channels", CHANNELS),
     "Time": ("time", "model the passing of time by events"),
@@ -29,24 +29,24 @@ _FOREIGN = {
     "String": ("strings", "write an enumeration"),
     "Collection": ("lists, sets and dictionaries", "write a variable for each element"),
 }
-#: So deep definitions are read within each other; those that are read one after the other have no bound.
+#: Maximum nesting depth of definitions. Definitions that are read one after the other are unlimited.
 _DEEPEST = 30
-#: What a name with something behind it is.
+#: Constructs with a name and a suffix, by the first character of the suffix.
 _SUFFIXES = {"'": "derivatives", "(": "functions", "[": "elements of lists and tuples"}
 _DEFINED = ("Constants", "Algebraics", "Types")
 _MINMAX = {"min": min, "max": max}
 
 
-#: A constant, an algebraic variable, a name of a type, or what an algebraic parameter stands for.
+#: A constant, an algebraic variable, a named type, or the argument of an algebraic parameter.
 Definition: TypeAlias = Declared | Argument
 
 
 class Values:
-    """The expressions of a specification."""
+    """Reads the expressions of a specification."""
 
     def __init__(self, names: Specification) -> None:
         self.names = names
-        #: What definitions and arguments are, or what is wrong with them.
+        #: Values of definitions and arguments, or their faults.
         self._known: dict[Definition, Any] = {}
         self._open: set[Definition] = set()
         self._sizes: dict[Definition, int] = {}
@@ -55,19 +55,19 @@ class Values:
         self._exhausted: CifFaultError | None = None
 
     def typed(self, read: Any, scope: Scope) -> Typed:
-        """An expression of a scope. Raises CifFaultError."""
+        """Return the value of an expression in a scope. Raises CifFaultError."""
         made = self._nested(read, scope)
         if isinstance(made.type, sct.Plant):
             raise CifFaultError(read, "type", "an automaton is no value", "name one of its locations")
         return made
 
     def whole(self, read: Any, scope: Scope) -> Typed:
-        """The same, of an expression that stands by itself: it has a bound on its length."""
+        """Return the value of an expression that has its own size limit. Raises CifFaultError."""
         self._size = 0
         return self.typed(read, scope)
 
     def condition(self, reads: Sequence[Any], scope: Scope) -> ex.Expression | None:
-        """That all of some booleans hold; None of none."""
+        """Return the conjunction of boolean expressions, or None if there are none."""
         made = []
         for read in reads:
             boolean = self.whole(read, scope)
@@ -77,7 +77,7 @@ class Values:
         return conjunction(made)
 
     def constant(self, read: Any, scope: Scope) -> tuple[Any, Type]:
-        """A value that never changes, and its type."""
+        """Return the value of a constant expression, and its type."""
         made = self.whole(read, scope)
         value = constant_value(made.expression)
         if value is None:
@@ -155,7 +155,7 @@ class Values:
                 return self._copied(read, found)
             case Declared(kind="Variables" | "Inputs"):
                 if found.made is None:
-                    # One that is declared further on has no fault yet: nothing that is fixed can be made of it.
+                    # A variable that is declared later has no fault yet, but a constant cannot read it.
                     raise found.fault or CifFaultError(read, "type", "this is no constant")
                 return Typed(read, sct.VariableReference(variable=found.made), found.type)
             case Declared(kind="Literal"):
@@ -172,7 +172,7 @@ class Values:
         return Typed(read, copied(made.expression), made.type)
 
     def _grow(self, read: Any, more: int) -> None:
-        """Counts what a name adds to an expression. Raises CifFaultError where that is too much, the same for all."""
+        """Count the nodes that a name adds to an expression. Raises CifFaultError if a size limit is exceeded."""
         self._size += more
         self._size_in_all += more
         if self._size > _LARGEST:
@@ -185,10 +185,10 @@ class Values:
     # Definitions
 
     def known(self, found: Definition) -> Any:
-        """The value of a constant, an algebraic variable or an argument, or the type that a name stands for.
+        """Return the value of a constant, an algebraic variable or an argument, or the type behind a name.
 
-        What it is made of comes first: a chain of definitions may be longer than Python's stack is deep. What is wrong
-        with one is found once. Raises CifFaultError.
+        Its operands are settled first without recursion, because a chain of definitions may exceed Python's stack. The
+        fault of a definition is reported once. Raises CifFaultError.
         """
         if found not in self._known and found not in self._open:
             self._settle(found)
@@ -217,7 +217,7 @@ class Values:
                 path[used] = iter(self._uses(used))
 
     def _uses(self, found: Definition) -> Iterator[Definition]:
-        """The definitions and arguments that one names; a key of a `switch` may be a location of the same name."""
+        """Yield the definitions and arguments that one names, except those that are keys of a `switch`."""
         scope = found.scope
         types = [found.outer.type if found.kind != "Types" else found.read.type] if isinstance(found, Declared) else []
         reads = [
@@ -236,7 +236,7 @@ class Values:
                     yield used
 
     def _made(self, found: Definition) -> Any:
-        """The value of a definition or an argument, or its fault."""
+        """Return the value of a definition or an argument, or its fault."""
         if len(self._open) > _DEEPEST:
             return CifFaultError(found.read, "cif-construct", "definitions lie too deep within each other")
         before, self._size = self._size, 0
@@ -254,7 +254,7 @@ class Values:
             self._size = before
 
     def _computed(self, found: Declared) -> Typed:
-        """The value of a constant or an algebraic variable."""
+        """Return the value of a constant or an algebraic variable."""
         kind = self.declared_type(found.outer.type, found.scope)
         made = self._equation(found) if found.kind == "Algebraics" else self._fixed(found)
         if not (isinstance(made.type, range) if kind == "int" else contains(kind, made.type)):
@@ -266,7 +266,7 @@ class Values:
         return Typed(found.read, literal(value), kind)
 
     def _equation(self, found: Declared) -> Typed:
-        """The value of an algebraic variable: by its declaration, by an equation, or by one in each location."""
+        """Return the value of an algebraic variable from its declaration, an equation, or an equation per location."""
         if found.read.value is not None:
             return self.typed(found.read.value, found.scope)
         equations = self.equations(found.scope).get(found.name, [])
@@ -291,7 +291,7 @@ class Values:
         return made
 
     def equations(self, scope: Scope) -> dict[str, list[tuple[sct.Location | None, Any]]]:
-        """The equations of a scope by the variable that they are of, each with its location where it is in one."""
+        """Return the equations of a scope by variable; an equation in a location comes with that location."""
         if scope not in self._equations:
             known = self._equations[scope] = {}
             told: list[tuple[sct.Location | None, Any]] = [
@@ -311,7 +311,7 @@ class Values:
     # Types
 
     def declared_type(self, read: Any, scope: Scope) -> Type | str:
-        """A type of a text; `int` where it has no range."""
+        """Return the type of a declaration; `int` if it has no range."""
         match type(read).__name__:
             case "Boolean":
                 return BOOLEAN
@@ -336,7 +336,7 @@ class Values:
         return range(low, high + 1)
 
     def enumeration(self, declared: Declared) -> ex.Enumeration:
-        """The enumeration of a declaration."""
+        """Return the enumeration of a declaration."""
         if declared.made is None:
             declared.made = ex.Enumeration(name=declared.name, origin=declared.scope.path or None)
             declared.made.literals.extend(
@@ -352,7 +352,7 @@ def _too_large(read: Any, what: str, most: int) -> CifFaultError:
 
 
 def computed_from_itself(found: Definition) -> CifFaultError:
-    """That a definition or an argument is made of itself."""
+    """Return the fault of a definition or an argument that is computed from itself."""
     if isinstance(found, Declared):
         verb = "defined by" if found.kind == "Types" else "computed from"
         return CifFaultError(found.read, "cyclic-definition", f"`{found.name}` is {verb} itself")
@@ -360,11 +360,14 @@ def computed_from_itself(found: Definition) -> CifFaultError:
 
 
 class _ChangingError(Exception):
-    """That a value is no constant."""
+    """Signals that a value is not constant."""
 
 
 def constant_value(expression: ex.Expression) -> Any:
-    """The value of an expression: a bool, an int or the literal of an enumeration; None where it is no constant."""
+    """Return the value of a constant expression, or None if it is not constant.
+
+    The value is a bool, an int or an enumeration literal.
+    """
 
     def read(reference: ex.Expression) -> Any:
         if isinstance(reference, ex.EnumerationLiteralReference):
@@ -378,7 +381,7 @@ def constant_value(expression: ex.Expression) -> Any:
 
 
 def literal(value: Any) -> ex.Expression:
-    """A value as a literal."""
+    """Return a value as a literal."""
     if isinstance(value, bool):
         return ex.BooleanLiteral(value=value)
     if isinstance(value, ex.EnumerationLiteral):

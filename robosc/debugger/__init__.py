@@ -1,8 +1,8 @@
-"""The simulator as a debug adapter: a supervised robot is stepped through, event by event, where its text is written.
+"""The simulator as a debug adapter: the user steps through a supervised robot, event by event, in its text.
 
-`protocol` has the messages of the Debug Adapter Protocol, `adapter` answers them. `launching` finds what to run,
-`robosc.simulation.replay` runs it, forwards and backwards. `breakpoints` finds the elements of a model at which a run
-can stop, `stops` decides where it does, `views` shows its state there.
+`protocol` implements the messages of the Debug Adapter Protocol, and `adapter` answers them. `launching` selects the
+model and its script. `robosc.simulation.replay` runs them, forwards and backwards. `breakpoints` finds the elements of
+a model at which a run can stop, `stops` decides where it stops, and `views` shows its state there.
 """
 
 from robosc.debugger.adapter import Adapter

@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from robosc.metamodel import sct
     from robosc.simulation.replay import Moment
 
-#: The robot is all that runs.
+#: Identifier of the only thread: the robot.
 _THREAD = 1
-#: So many steps are made, and told, before the client is listened to again.
+#: Number of steps before the adapter sends output and reads requests again.
 _AT_ONCE = 100
 _HELP = """\
 EVENT [JSON]  let an event happen, with data: move, Lidar.scan {"value": "clear"}, message_move.c_trigger
@@ -41,7 +41,7 @@ STEP          a step of a scenario: response from scan with clear, error from li
 wait SECONDS  let time go by
 why EVENT     why an event can't happen here, and what would help
 NAME          a component's state, a variable's value, whether a state is the present one: Lidar, Lidar.free"""
-#: What can be asked while the robot runs.
+#: Requests that are allowed while the robot runs.
 _WHILE_RUNNING = (
     "pause",
     "threads",
@@ -67,7 +67,7 @@ _CAPABILITIES = {
 
 
 class _Run:
-    """One run: the replay, what is seen of it, where it stops."""
+    """One run: the replay, its views, and its stops."""
 
     def __init__(self, replay: Replay, launch: Launch) -> None:
         self.replay = replay
@@ -98,10 +98,10 @@ class Adapter:
     # Messages
 
     async def handle(self, message: dict[str, Any]) -> None:
-        """Answers a request."""
+        """Answer a request."""
         command, sequence = message.get("command"), message.get("seq")
         if message.get("type") == "response":
-            return  # nothing is ever asked of the client
+            return  # The adapter sends no requests.
         if message.get("type") != "request" or not isinstance(command, str) or not _is_integer(sequence):
             request = None
             if message.get("type") == "request" and _is_integer(sequence):
@@ -120,21 +120,21 @@ class Adapter:
                 self._output(as_text.render(error.findings, error.texts), "stderr")
             if command == "launch":
                 self._event("terminated")
-        except Exception as error:  # whatever is wrong, the client is told and may go on
+        except Exception as error:  # Report every fault to the client, which can then continue.
             traceback.print_exc(file=sys.stderr)
             self._refuse(answer, f"a fault of robosc itself, please report it: {type(error).__name__}: {error}")
         if after is not None:
             after()
 
     def malformed(self, fault: str, request: tuple[int, str] | None = None) -> None:
-        """Report a message that could not be read: to the request that it seems to be, or by an event."""
+        """Report an unreadable message: as the answer to its apparent request, or by an event."""
         if request is None:
             self._output(f"{fault}: it is left out\n", "stderr")
         else:
             self._refuse({"request_seq": request[0], "command": request[1]}, fault)
 
     def _refuse(self, answer: Mapping[str, Any], why: str) -> None:
-        # Braces would be the names of variables of the format.
+        # The format would read braces as names of variables.
         told = {"id": 1, "format": why.replace("{", "(").replace("}", ")"), "showUser": True}
         self._connection.send("response", **answer, success=False, message=why, body={"error": told})
 
@@ -146,7 +146,7 @@ class Adapter:
             self._event("output", {"category": category, "output": text})
 
     async def _answer(self, command: str, arguments: Any) -> tuple[Mapping[str, Any] | None, Callable[[], None] | None]:
-        """The body of the response, and what is done once it is sent."""
+        """Return the body of the response, and the function to call after it is sent."""
         if not isinstance(arguments, dict):
             raise RequestError("`arguments` are no object")
         answers = self._answers.get(command)
@@ -231,7 +231,7 @@ class Adapter:
         self._stopped(hit or Stop("step", run.views.told(moment)))
 
     def _over(self, run: _Run) -> None:
-        """Nothing is left to play."""
+        """Stop or terminate, because no step is left to play."""
         if run.replay.steps is None:
             self._stopped(run.stops.stuck)
         else:
@@ -273,15 +273,15 @@ class Adapter:
         return None, lambda: self._stopped(Stop("step", "one step back"))
 
     def _continue(self, _: Mapping[str, Any]) -> tuple[Mapping[str, Any], Callable[[], None]]:
-        self._debugged  # noqa: B018 - it has to be launched
+        self._debugged  # noqa: B018 - raises if nothing is launched
         return {"allThreadsContinued": True}, lambda: self._go_on(forward=True)
 
     def _reverse_continue(self, _: Mapping[str, Any]) -> tuple[None, Callable[[], None]]:
-        self._debugged  # noqa: B018 - it has to be launched
+        self._debugged  # noqa: B018 - raises if nothing is launched
         return None, lambda: self._go_on(forward=False)
 
     def _pause(self, _: Mapping[str, Any]) -> None:
-        self._debugged  # noqa: B018 - it has to be launched
+        self._debugged  # noqa: B018 - raises if nothing is launched
         self._pausing = True
 
     def _go_on(self, *, forward: bool) -> None:
@@ -293,10 +293,10 @@ class Adapter:
         )
 
     async def _play(self, run: _Run, step: Callable[[_Run, int], tuple[str, Stop | None, bool]]) -> None:
-        """Makes steps until one stops the run."""
+        """Make steps until one stops the run."""
         try:
             await self._played(run, step)
-        except Exception as error:  # whatever is wrong, the client is told and may go on
+        except Exception as error:  # Report every fault to the client, which can then continue.
             traceback.print_exc(file=sys.stderr)
             self._running = None
             fault = f"{type(error).__name__}: {error}"
@@ -347,7 +347,7 @@ class Adapter:
         last = run.replay.past[-1] if run.replay.past else None
         stop: Stop | None = None
         if last is not None:
-            # What a step hits is known from before it and after it.
+            # The hits of a step depend on the states before and after it.
             run.replay.back()
             run.stops.look()
             run.replay.forward()
@@ -410,7 +410,7 @@ class Adapter:
         lines = [line for line in self._debugged.stops.lines(_path(arguments)) if first <= line <= last]
         return {"breakpoints": [{"line": self._shown_line(line)} for line in lines]}
 
-    # What is seen
+    # Views
 
     def _threads(self, _: Mapping[str, Any]) -> Mapping[str, Any]:
         name = self._run.replay.engine.model.name if self._run else "robot"
@@ -555,7 +555,7 @@ class Adapter:
     def _shown_line(self, line: int) -> int:
         return line - 1 + self._first_line
 
-    #: The requests that are answered.
+    #: The methods that answer requests, by the commands of the protocol.
     _answers: ClassVar[Mapping[str, Callable[..., Any]]] = {
         "setBreakpoints": _set_breakpoints,
         "setFunctionBreakpoints": _set_function_breakpoints,
@@ -587,7 +587,7 @@ class Adapter:
 
 
 def _event(model: sct.SupervisoryControlModel, text: str) -> tuple[str, Mapping[str, Any]]:
-    """An event as it is typed, by its name or in words, and its data. Raises NamingError, RequestError."""
+    """Return an event and its data as typed, by its name or in words. Raises NamingError, RequestError."""
     word, _, rest = text.partition(" ")
     try:
         event = event_named(model, word)
@@ -603,7 +603,10 @@ def _event(model: sct.SupervisoryControlModel, text: str) -> tuple[str, Mapping[
 
 
 def _data(text: str, event: sct.Event) -> Mapping[str, Any]:
-    """The data of an event as it is typed: that of the event log, or the value alone. Raises RequestError."""
+    """Return the data of an event as typed: data as in the event log, or the bare value.
+
+    Raises RequestError.
+    """
     if not text:
         return {}
     try:

@@ -1,4 +1,4 @@
-"""Where a run stops: at transitions, states, requirements and communications by line, at events by name, at values."""
+"""Places at which a run can stop: elements of the text by line, events by name, values."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
     from robosc.diagnostics import Span
     from robosc.simulation.replay import Moment, Replay
 
-#: Of events: what keeps each from happening, and which requirements on it fail.
+#: For each event: the reason that it is blocked, and the requirements on it that fail.
 _Seen: TypeAlias = dict[str, "tuple[Blocked | None, tuple[sct.Requirement, ...]]"]
-#: What forbids a command that the robot is ready for.
+#: Reasons by which the supervisor, not the robot, blocks an event.
 _SUPERVISOR = (Blocked.REQUIREMENT, Blocked.SYNTHESIS)
-#: What a name of a function breakpoint may begin with.
+#: Prefixes of the name of a function breakpoint.
 _FORBIDDEN, _ALLOWED = "forbidden ", "allowed "
 
 
 class Watcher:
-    """Which events the supervisor forbids, and which requirements do so: before the last step and after it."""
+    """Compares, before and after the last step, which events the supervisor forbids and by which requirements."""
 
     def __init__(self, replay: Replay) -> None:
         self._replay = replay
@@ -39,38 +39,41 @@ class Watcher:
         self._now: _Seen = {}
 
     def look(self) -> None:
-        """Looks at the present state; what was seen last is what was before."""
+        """Read the present state, after moving the previous reading to the state before."""
         engine = self._replay.engine
         self._before = self._now
         self._now = {event: (engine.blocked_by(event), tuple(engine.failing(event))) for event in self._events}
 
     def watch(self, events: set[str]) -> None:
-        """From now on these events are looked at."""
+        """Watch these events from now on."""
         self._events = events
         self.look()
         self._before = self._now
 
     def forbidden(self, event: str) -> bool:
-        """Whether the supervisor forbids an event that it allowed, or that the robot was not ready for, before."""
+        """Return whether the supervisor has begun to forbid an event.
+
+        Before the step, the supervisor allowed the event, or the robot was not ready for it.
+        """
         return self._now[event][0] in _SUPERVISOR and self._before[event][0] not in _SUPERVISOR
 
     def allowed(self, event: str) -> bool:
-        """Whether an event can happen that could not before."""
+        """Return whether an event has become possible."""
         return self._now[event][0] is None and self._before[event][0] is not None
 
     def fails(self, requirement: sct.Requirement) -> bool:
-        """Whether a requirement forbids its event, and did not before."""
+        """Return whether a requirement has begun to forbid its event."""
         event = event_name(requirement.event)
         return requirement in self._now[event][1] and requirement not in self._before[event][1]
 
 
-#: Whether a step that was just made is one to stop at.
+#: Returns whether the last step is one to stop at.
 _Hit = Callable[["Moment", Watcher], bool]
 
 
 @dataclass(frozen=True)
 class Target:
-    """Something to stop at: in words, where it stands, and when it is hit; `events` are those to be watched for it."""
+    """A place to stop: its description, its span, the test of a step (`hit`), and the events to watch for it."""
 
     what: str
     span: Span | None
@@ -79,7 +82,7 @@ class Target:
 
 
 class Targets:
-    """What of a model a run can stop at."""
+    """All targets of a model at which a run can stop."""
 
     def __init__(self, replay: Replay) -> None:
         self._replay = replay
@@ -91,7 +94,10 @@ class Targets:
                 self._by_file.setdefault(real(file), []).append(Target(target.what, span, target.hit, target.events))
 
     def at(self, file: str, line: int) -> list[Target]:
-        """What stands in a line: what begins there, else the innermost around it; from the text's inside outwards."""
+        """Return the targets in a line, from the inside outwards.
+
+        These are the targets that begin in the line, else those that span it and begin last.
+        """
         targets = [target for target in self._by_file.get(real(file), ()) if target.span is not None]
         begun = [target for target in targets if target.span is not None and target.span.line == line]
         if begun:
@@ -103,11 +109,14 @@ class Targets:
         return [target for target in around if target.span and (target.span.line, target.span.column) == innermost]
 
     def lines(self, file: str) -> list[int]:
-        """The lines of a file in which something begins."""
+        """Return the lines of a file in which a target begins."""
         return sorted({target.span.line for target in self._by_file.get(real(file), ()) if target.span is not None})
 
     def named(self, text: str) -> list[Target]:
-        """What a name stands for: `move`, `forbidden move`, `allowed move`, or a requirement. Raises NamingError."""
+        """Return the targets of `move`, `forbidden move`, `allowed move`, or a requirement.
+
+        Raises NamingError.
+        """
         for prefix, make in ((_FORBIDDEN, self._becomes_forbidden), (_ALLOWED, self._becomes_allowed)):
             if text.startswith(prefix):
                 return [make(event_named(self.model, text.removeprefix(prefix).strip()))]
@@ -123,7 +132,10 @@ class Targets:
             raise NamingError(str(error), "") from None
 
     def forbidding(self, text: str = "") -> list[Target]:
-        """That a command becomes forbidden: those named, with commas between, or any. Raises NamingError."""
+        """Return targets for commands that become forbidden: those in a comma-separated list, or any.
+
+        Raises NamingError.
+        """
         if text.strip():
             return [self._becomes_forbidden(event_named(self.model, name.strip())) for name in text.split(",")]
         kinds = (sct.EventKind.trigger, sct.EventKind.plain)
@@ -187,8 +199,8 @@ class Targets:
 
 
 def real(file: str) -> str:
-    """The same name for a file, by whatever path it is named."""
+    """Return a canonical path, equal for all paths of the same file."""
     try:
         return os.path.normcase(os.path.realpath(file))
-    except ValueError:  # a null character: no file has that name
+    except ValueError:  # A null character, which no path has.
         return file

@@ -1,4 +1,4 @@
-"""What a client launches: a model, and what is played with it."""
+"""The launch request: the model, and the script or counterexample to play with it."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from robosc.m2t.models import Models
     from robosc.simulation import Simulation, Step
 
-#: So many events happen at random before a run that nothing stops is stopped, if nothing else is said.
+#: Default number of random events after which a run stops by itself.
 _MOST_AT_RANDOM = 10_000
-#: What a configuration for `launch` may say; editors add keys of their own.
+#: Keys of a `launch` configuration with types and descriptions; editors add keys of their own.
 _KEYS: Mapping[str, tuple[Any, str]] = {
     "program": (str, "the path of a model"),
     "script": (str, "the path of a script or event log"),
@@ -31,12 +31,12 @@ _KEYS: Mapping[str, tuple[Any, str]] = {
 
 
 class RequestError(Exception):
-    """A request that can't be answered: the message says why, and how to ask."""
+    """A request that cannot be answered: the message explains why, and how to correct it."""
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """The model that is to be launched, where its libraries and ROS definitions are, values of its parameters."""
+    """The model to launch, its folders for libraries and ROS definitions, and the values of its parameters."""
 
     program: str
     libraries: tuple[str, ...] = ()
@@ -44,13 +44,13 @@ class Wanted:
     parameters: Mapping[str, Any] = field(default_factory=dict)
 
 
-#: Gives a model with its supervisor, and with the findings about it, such as warnings. Raises PlayError.
+#: Loads a model with its supervisor, its findings such as warnings, and the texts of its files. Raises PlayError.
 Loader = Callable[[Wanted], tuple["Models", "Sequence[Diagnostic]", Mapping[str, str]]]
 
 
 @dataclass(frozen=True)
 class Launch:
-    """What a client says about a run: `most` are the events that happen at random before it stops."""
+    """The arguments of a launch; `most` is the number of random events after which the run stops."""
 
     wanted: Wanted
     script: str | None
@@ -61,7 +61,7 @@ class Launch:
 
     @classmethod
     def of(cls, arguments: Mapping[str, Any]) -> Launch:
-        """What the arguments of the request say. Raises RequestError."""
+        """Return the launch of a request's arguments. Raises RequestError."""
         for name, (kind, expected) in _KEYS.items():
             given = arguments.get(name)
             if given is not None and (not isinstance(given, kind) or (isinstance(given, bool) and kind is int)):
@@ -85,9 +85,9 @@ class Launch:
         )
 
     def steps(self, simulation: Simulation) -> tuple[list[Step] | None, str]:
-        """What is played, None for whatever can happen; and what is to be said about it.
+        """Return the steps to play (None to play random events), and a message about them.
 
-        Raises PlayError, and OSError where the script can't be read.
+        Raises PlayError, and OSError if the script cannot be read.
         """
         if self.script is not None:
             return script_steps(simulation, self.script), ""

@@ -1,4 +1,4 @@
-"""The messages of the Debug Adapter Protocol: JSON behind a header with its length, over pipes or a socket.
+"""Messages of the Debug Adapter Protocol: JSON after a header with its length, over pipes or a socket.
 
 https://microsoft.github.io/debug-adapter-protocol/overview
 """
@@ -18,22 +18,22 @@ from robosc.files.json_reading import JsonError, json_value
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-#: The most that a message, and a line of its header, may have.
+#: Maximum size in bytes of a message, and of a line of its header.
 MOST_BYTES, _MOST_HEADER = 16 << 20, 4096
 _CHUNK = 1 << 16
-#: The parts of a message that can be read where the message itself is no JSON.
+#: The parts of a message that can be read even if the message is not valid JSON.
 _SEQUENCE = re.compile(r'"seq"\s{0,9}:\s{0,9}(\d{1,9})\b')
 _COMMAND = re.compile(r'"command"\s{0,9}:\s{0,9}"(\w{1,99})"')
 
 
 class FramingError(Exception):
-    """Where the next message begins can't be told any more."""
+    """The start of the next message is unknown, so that the stream is unusable."""
 
 
 class MessageError(Exception):
-    """A message that is none; the next one can be read.
+    """An invalid message; the next one is readable.
 
-    `request` is the `seq` and the `command` of the request that it seems to be; None where it has no `seq`.
+    `request` has the `seq` and the `command` of the apparent request, or None if there is no `seq`.
     """
 
     def __init__(self, fault: str, text: str = "") -> None:
@@ -46,18 +46,18 @@ class Handler(Protocol):
     """Answers the messages of one client."""
 
     async def handle(self, message: dict[str, Any]) -> None:
-        """Answers a message."""
+        """Answer a message."""
 
     def malformed(self, fault: str, request: tuple[int, str] | None = None) -> None:
-        """Report a message that could not be read: to the request that it seems to be, or by an event."""
+        """Report an unreadable message: as the answer to its apparent request, or by an event."""
 
     @property
     def ended(self) -> bool:
-        """Whether the client is done."""
+        """Whether the client has disconnected."""
 
 
 class Connection:
-    """One client: messages come from a stream and go out through `write`, numbered."""
+    """One client: messages arrive in a stream and leave through `write`, numbered."""
 
     def __init__(self, reader: asyncio.StreamReader, write: Callable[[bytes], None]) -> None:
         self._reader = reader
@@ -65,13 +65,16 @@ class Connection:
         self._sent = 0
 
     def send(self, kind: str, **content: Any) -> None:
-        """Sends a response or an event."""
+        """Send a response or an event."""
         self._sent += 1
         body = json.dumps({"seq": self._sent, "type": kind, **content}).encode()
         self._write(b"Content-Length: %d\r\n\r\n%s" % (len(body), body))
 
     async def receive(self) -> dict[str, Any] | None:
-        """The next message; None at the end. Raises MessageError, and FramingError, after which nothing can be read."""
+        """Return the next message, or None at the end of the stream.
+
+        Raises MessageError, and FramingError if the stream is no longer usable.
+        """
         length = await self._length()
         if length is None:
             return None
@@ -94,7 +97,7 @@ class Connection:
         while True:
             try:
                 line = await self._reader.readline()
-            except ValueError:  # longer than the limit of the stream
+            except ValueError:  # The line exceeds the limit of the stream.
                 raise FramingError("a line of a header is too long") from None
             if not line and not started:
                 return None
@@ -114,7 +117,7 @@ class Connection:
 
 
 async def converse(connection: Connection, handler: Handler) -> str | None:
-    """Hands messages to the handler until either is done; what is wrong with the stream, if that has ended it."""
+    """Pass messages to the handler until it or the stream ends; return the fault of the stream, or None."""
     while not handler.ended:
         try:
             message = await connection.receive()
@@ -130,14 +133,14 @@ async def converse(connection: Connection, handler: Handler) -> str | None:
 
 
 def serve_stdio(handler: Callable[[Connection], Handler]) -> str | None:
-    """Serves the client at the other end of the standard input and output; what is wrong with the stream, else None.
+    """Serve the client at the standard input and output; return the fault of the stream, or None.
 
-    Nothing else gets to the standard output meanwhile: what is printed goes to the standard error output.
+    Meanwhile, printed text goes to the standard error, so that only messages reach the standard output.
     """
 
     async def serve() -> str | None:
         reader = asyncio.StreamReader(limit=MOST_BYTES)
-        # A thread, as no event loop waits for whatever a standard input may be.
+        # A thread reads the standard input, because event loops do not support every kind of it.
         Thread(target=_feed, args=(sys.stdin.buffer, asyncio.get_running_loop(), reader), daemon=True).start()
 
         def write(message: bytes) -> None:
@@ -159,15 +162,15 @@ def _feed(source: IO[bytes], loop: asyncio.AbstractEventLoop, reader: asyncio.St
             loop.call_soon_threadsafe(reader.feed_data, chunk)
         loop.call_soon_threadsafe(reader.feed_eof)
     except (OSError, ValueError, RuntimeError):
-        pass  # the stream, or the loop, is closed: nobody wants more
+        pass  # The stream or the loop is closed, so that no more input is needed.
 
 
 def serve_port(
     port: int, handler: Callable[[Connection], Handler], listening: Callable[[int], None], *, once: bool = False
 ) -> None:
-    """Serves clients on a port of this machine, each on its own, until an interrupt; with `once` the first one only.
+    """Serve clients on a port of this machine, each separately, until an interrupt; with `once`, only the first.
 
-    `listening` is told the port, which is chosen where 0 is given.
+    `listening` is called with the port. Port 0 selects a free one.
     """
 
     async def serve() -> None:
@@ -181,7 +184,7 @@ def serve_port(
                     print(fault, file=sys.stderr)  # noqa: T201
                 await writer.drain()
             except (ConnectionError, asyncio.CancelledError):
-                pass  # the client is gone, or all is over
+                pass  # The client has disconnected, or the server stops.
             finally:
                 writer.close()
                 if once:

@@ -1,4 +1,4 @@
-"""The breakpoints that a client has set, of each kind, and whether a step hits one."""
+"""The breakpoints that a client has set, by kind, and the test whether a step hits one."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from robosc.simulation.replay import Moment, Replay
 
 REFUSED, FORBIDDEN, STUCK = "refused", "forbidden", "stuck"
-#: What else than breakpoints may stop a run.
+#: Reasons other than breakpoints for which a run can stop.
 FILTERS = [
     {
         "filter": REFUSED,
@@ -44,7 +44,7 @@ FILTERS = [
 
 @dataclass
 class Stop:
-    """Why a run has stopped."""
+    """The reason for which a run has stopped."""
 
     reason: str
     description: str
@@ -58,7 +58,7 @@ class _Breakpoint:
 
 
 class Stops:
-    """The breakpoints of a run. What sets them answers as the protocol has it, lines counted from 1."""
+    """The breakpoints of a run. Methods that set them return answers of the protocol, with lines from 1."""
 
     def __init__(self, replay: Replay, views: Views, script: str | None) -> None:
         self._replay = replay
@@ -75,11 +75,11 @@ class Stops:
         self._filters: dict[str, list[Target]] = {REFUSED: [], STUCK: []}
 
     def look(self) -> None:
-        """Has to be called after each step, forwards or backwards: what it changes is known from before and after."""
+        """Compare states; must be called after each step, forwards or backwards."""
         self._watcher.look()
 
     def hit(self, moment: Moment) -> Stop | None:
-        """Why a step that was just made stops the run; None where it does not."""
+        """Return the reason for which the last step stops the run, or None if it does not."""
         if moment.by is not None and REFUSED in self._filters:
             return Stop("exception", self._views.told(moment))
         for reason, points in (("breakpoint", self._in_files), ("function breakpoint", self._by_name)):
@@ -96,14 +96,14 @@ class Stops:
         return Stop("exception", forbidden[0]) if forbidden else None
 
     def before_line(self, line: int | None) -> Stop | None:
-        """Why the run stops before a line of the script; None where it does not."""
+        """Return the reason to stop before a line of the script, or None if there is none."""
         if line not in self._in_script:
             return None
         return Stop("breakpoint", f"line {line} of the script", [self._in_script[line]])
 
     @property
     def stuck(self) -> Stop:
-        """Why the run stops where nothing can happen any more: it can't go on, whatever the client wants."""
+        """Stop of a run in which no event can happen any more, whether or not its filter is set."""
         return Stop("exception" if STUCK in self._filters else "pause", "nothing can happen any more")
 
     @property
@@ -116,7 +116,7 @@ class Stops:
     # Set by the client, each kind as a whole
 
     def in_file(self, path: str, lines: Sequence[int]) -> list[dict[str, Any]]:
-        """Breakpoints in lines of a model, or of the script."""
+        """Set breakpoints in lines of a model or of the script."""
         if real(path) == self._script:
             return self._set_in_script(lines)
         points, told = [], []
@@ -140,7 +140,7 @@ class Stops:
         return told
 
     def by_name(self, names: Iterable[str]) -> list[dict[str, Any]]:
-        """Breakpoints at events, requirements and components by their names."""
+        """Set breakpoints at events, requirements and components by their names."""
         self._by_name.clear()
         told = []
         for name in names:
@@ -154,7 +154,7 @@ class Stops:
         return told
 
     def by_value(self, names: Iterable[str]) -> list[dict[str, Any]]:
-        """Breakpoints where parts of the state change."""
+        """Set breakpoints at changes of parts of the state."""
         self._by_value.clear()
         told = []
         for name in names:
@@ -165,7 +165,10 @@ class Stops:
         return told
 
     def filters(self, wanted: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
-        """What else stops the run: `filterId`, with a `condition` that names commands where only these count."""
+        """Set the filters that also stop the run.
+
+        Each has a `filterId`, and optionally a `condition`: the commands to which it applies.
+        """
         self._filters = {}
         told: list[dict[str, Any]] = []
         for requested in wanted:
@@ -182,7 +185,7 @@ class Stops:
         return told
 
     def lines(self, path: str) -> list[int]:
-        """The lines of a file at which a run can stop."""
+        """Return the lines of a file at which a run can stop."""
         return sorted(self._script_lines) if real(path) == self._script else self._targets.lines(path)
 
     def _answer(self, targets: Sequence[Target], fault: str) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What is seen where a run stands: where each component is in its text, values, times, events and why they can't be."""
+"""Views of the present state of a run: places of components, values, timers, possible and impossible events."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _COMMUNICATIONS = (sct.PlantKind.message, sct.PlantKind.service, sct.PlantKind.a
 
 @dataclass(frozen=True)
 class Frame:
-    """A line of the stack: a name, a place in a text (None: there is no text), and the plant that it is about."""
+    """A frame of the stack: a name, a place in a text (None if there is no text), and the plant that it shows."""
 
     name: str
     file: str | None
@@ -43,7 +43,7 @@ class Frame:
 
 @dataclass(frozen=True)
 class Variable:
-    """Something with a value; `children` are made when they are asked for. `path` names it to the debug console."""
+    """A name with a value; `children` are computed on demand. `path` is its name in the debug console."""
 
     name: str
     value: str
@@ -52,7 +52,7 @@ class Variable:
 
 
 class Views:
-    """Of the present state of a run."""
+    """Views of the present state of a run."""
 
     def __init__(self, replay: Replay, script: str | None) -> None:
         self._replay = replay
@@ -66,7 +66,7 @@ class Views:
     # The stack
 
     def frames(self) -> list[Frame]:
-        """What has happened last, then each component, at its state, then the next line of the script."""
+        """Return the stack: the last step, then each component at its state, then the next line of the script."""
         last = self._replay.past[-1] if self._replay.past else None
         frames = [self._last(last)]
         for plant in self._model.plants:
@@ -89,7 +89,7 @@ class Views:
         return self._frame(self.told(last), next(iter(last.edges), event))
 
     def told(self, moment: Moment) -> str:
-        """A step in words."""
+        """Return a step in words."""
         if moment.event == WAIT:
             return f"{_seconds(moment.end.timers[0])} on the clock"
         said = (
@@ -109,7 +109,7 @@ class Views:
             return Frame(said, None, plant=plant)
         return Frame(
             said,
-            os.path.abspath(file),  # noqa: PTH100 - a link stays one: the editor has it open by this name
+            os.path.abspath(file),  # noqa: PTH100 - must not resolve links: the editor has the file open by this path
             span.line,
             self._units(file, span.line, span.column),
             span.end_line,
@@ -118,7 +118,7 @@ class Views:
         )
 
     def _units(self, file: str, line: int, column: int) -> int:
-        """A column in units of UTF-16, as editors count them, from 1."""
+        """Return a column in UTF-16 units, as editors count them, from 1."""
         if file not in self._texts:
             try:
                 self._texts[file] = files.read(file).decode("utf-8", errors="replace").split("\n")
@@ -131,7 +131,7 @@ class Views:
     # Variables
 
     def scopes(self, plant: sct.Plant | None) -> list[Variable]:
-        """What a frame shows: the component that it is about first."""
+        """Return the scopes of a frame, its own component first."""
         own = [] if plant is None else [Variable(name(plant), "", lambda: self._component(plant))]
         scopes = [
             Variable(
@@ -197,7 +197,7 @@ class Views:
         return lambda: self._reasons(self.explained(event))
 
     def explained(self, event: str) -> Explanation:
-        """What `explain` says of an event in the present state."""
+        """Return the explanation of `explain` for an event in the present state."""
         key = event, self._engine.state
         if key not in self._explained:
             codes = state_given(self._model, json.dumps({"state": whole_state(self._engine)}))
@@ -220,7 +220,7 @@ class Views:
     # Names in the debug console
 
     def value(self, text: str) -> str | None:
-        """The value of what a name stands for: a component, its variable, one of its states; None: nothing."""
+        """Return the value of a component, a variable or a state by its name, or None if there is none."""
         owner, _, last = text.rpartition(".")
         for plant in self._model.plants:
             here = plant.locations[self._engine.location(plant)].name
@@ -237,7 +237,7 @@ class Views:
         return None
 
     def state_name(self, text: str) -> str | None:
-        """What the state calls a component or variable; None where it is no part of what changes."""
+        """Return the name of a component or variable in the state, or None if it never changes."""
         state = self._engine.state
         owner, _, last = text.rpartition(".")
         for plant in self._model.plants:
@@ -250,13 +250,13 @@ class Views:
 
 
 def at(element: Any) -> str:
-    """Where an element stands: `file:line:column`, without the file's folder, as there is little room."""
+    """Return the place of an element as `file:line:column`, without the file's folder to save room."""
     file, span = place(element)
     return f"{Path(file).name}:{span.line}:{span.column}"
 
 
 def shown(value: object) -> str:
-    """A value as the language writes it."""
+    """Return a value as the language writes it."""
     return json.dumps(value) if isinstance(value, bool) else str(value)
 
 

@@ -1,6 +1,6 @@
-"""What a finding is: where, what, which rule, how to mend it.
+"""Findings: place, message, rule, and repair.
 
-How findings are shown is in `as_text`, `as_json` and `as_sarif`; what their rules mean is in `rules`.
+`as_text`, `as_json` and `as_sarif` render findings. `rules` finds the pages of their rules.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Severity(StrEnum):
-    """How much a finding matters: an error keeps the model from being used."""
+    """Severity of a finding: a model with errors is unusable."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -22,7 +22,7 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True, order=True)
 class Span:
-    """A range of text, counted from 1 in lines and code points, the end exclusive."""
+    """A range of text in lines and code points, counted from 1, the end exclusive."""
 
     line: int
     column: int
@@ -30,18 +30,18 @@ class Span:
     end_column: int
 
     def contains(self, other: Span) -> bool:
-        """Whether the other span lies within this one."""
+        """Return whether the other span lies within this one."""
         starts = (self.line, self.column) <= (other.line, other.column)
         return starts and (other.end_line, other.end_column) <= (self.end_line, self.end_column)
 
 
-#: Where a finding stands that concerns a whole file.
+#: Span of a finding about a whole file.
 START = Span(1, 1, 1, 1)
 
 
 @dataclass(frozen=True, order=True)
 class Edit:
-    """A change of a text: `text` takes the place of what stands in a span, which may be empty."""
+    """A change of a text: `text` replaces the contents of a span, which may be empty."""
 
     span: Span
     text: str
@@ -49,18 +49,18 @@ class Edit:
 
 @dataclass(frozen=True, order=True)
 class Alternative:
-    """One way of several to do what a hint says, among which a person chooses: in words, and the edits."""
+    """One of several ways to apply a hint, for a user to choose: a title and the edits."""
 
     title: str
     edits: tuple[Edit, ...]
 
 
 class Repair(NamedTuple):
-    """How to mend a finding.
+    """A way to fix a finding.
 
-    `hint`: the sentence for a person. `text`: replaces the text of the finding's span; None: no single replacement
-    mends it. `choices`: replacements of which a person picks one. `elsewhere`: further replacements in the same file,
-    as (start, end, text), offsets in code points from 0, the end exclusive.
+    `hint` is a sentence for the user. `text` replaces the text of the finding's span; None if no single replacement
+    fixes the finding. `choices` are replacements of which the user picks one. `elsewhere` lists further replacements in
+    the same file as (start, end, text), with offsets in code points from 0, the end exclusive.
     """
 
     hint: str
@@ -71,7 +71,7 @@ class Repair(NamedTuple):
 
 @dataclass(frozen=True, order=True)
 class Related:
-    """A place that a finding speaks of, and what is there."""
+    """A further place of a finding, with its message."""
 
     file: str
     span: Span
@@ -82,9 +82,9 @@ class Related:
 class Diagnostic:
     """One finding of one rule at one place.
 
-    `hint` says how to mend it. Where there is one way, and a program can go it, `edits` do it in the finding's file;
-    where a person is to choose, `alternatives` are the ways. `related` are other places that it speaks of. `follows` is
-    0, or the number of findings from its cause to it, each of which follows from the one before.
+    `hint` explains how to fix it. If exactly one fix can be applied automatically, `edits` apply it in the finding's
+    file. If the user must choose, `alternatives` are the fixes. `related` are further places. `follows` is the number
+    of steps in the chain from the original finding to this consequence, or 0.
     """
 
     file: str
@@ -100,7 +100,7 @@ class Diagnostic:
 
 
 class ModelError(Exception):
-    """A model that can't be used, with all that was found wrong with it."""
+    """A model that cannot be used, with all findings."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
         self.diagnostics = list(diagnostics)
@@ -108,7 +108,7 @@ class ModelError(Exception):
 
 
 def in_order(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Each finding once, by file, position and rule; causes before what follows from them."""
+    """Return each finding once, sorted by file, position and rule; causes come before their consequences."""
     return sorted(
         dict.fromkeys(findings),
         key=lambda found: (
@@ -125,5 +125,5 @@ def in_order(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 
 def has_errors(findings: Iterable[Diagnostic]) -> bool:
-    """Whether one of the findings keeps the model from being used."""
+    """Return whether one of the findings makes the model unusable."""
     return any(finding.severity is Severity.ERROR for finding in findings)

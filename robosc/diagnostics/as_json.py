@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 
 
 def render(findings: Iterable[Diagnostic]) -> str:
-    """A JSON array of all findings in order; `hint` is null where there is none. Ends with a line break."""
+    """Return a JSON array of all findings in order, ended by a line break.
+
+    `hint` is null if there is none.
+    """
     return json.dumps([_object(finding) for finding in in_order(findings)], indent=2) + "\n"
 
 

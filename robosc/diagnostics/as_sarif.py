@@ -19,10 +19,10 @@ _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sa
 
 
 def render(findings: Iterable[Diagnostic], version: str) -> str:
-    """A SARIF log of one run by this version of the tool, with the findings in order. Ends with a line break.
+    """Return a SARIF log of one run by this version of the tool, with the findings in order. Ends with a line break.
 
-    Regions count columns in code points. Edits are fixes, and so is each alternative. The rules that drew a
-    finding are described from their pages.
+    Regions count columns in code points. Edits become fixes, and so does each alternative. Rules with findings have the
+    description of their page.
     """
     found = in_order(findings)
     rules = sorted({finding.rule for finding in found})
@@ -85,5 +85,5 @@ def _region(span: Span) -> dict[str, int]:
 
 def _uri(file: str) -> str:
     path = PurePath(file)
-    # Undecodable bytes of a file name go out as they came in.
+    # Undecodable bytes of a file name stay as they are.
     return path.as_uri() if path.is_absolute() else quote(path.as_posix().encode(errors="surrogateescape"))

@@ -17,23 +17,23 @@ if TYPE_CHECKING:
 Part: TypeAlias = Literal["place", "error", "warning", "rule", "caret", "hint"]
 _TAB = 4
 _MARGIN = "    "
-#: More findings than anybody reads are counted only, errors shown first; of a long line or message a part is shown.
+#: Maximum number of findings shown (errors first), and limits of the shown parts of long lines and messages.
 MOST = 100
 _LONGEST_LINE, _BEFORE_FAULT = 160, 60
 _LONGEST_TEXT = 4000
 
 
 def plain(_part: Part, text: str) -> str:
-    """No colour."""
+    """Return a text without color."""
     return text
 
 
 def render(findings: Iterable[Diagnostic], texts: Mapping[str, str], paint: Callable[[Part, str], str] = plain) -> str:
-    """All findings in order, each as `file:line:column: severity: message [rule]` with its line, carets and hint.
+    """Return all findings in order, each as `file:line:column: severity: message [rule]` with line, carets and hint.
 
-    `texts` holds the source of each file; of a file that is not there no line is shown. `paint` colours a part of the
-    output. Empty for no findings, else it ends with a line break. Where there are more than `MOST` findings, that many
-    are shown, errors before warnings, and the number of the others.
+    `texts` maps files to their source; without it, a finding is shown without its line. `paint` colors a part of the
+    output. The text is empty for no findings, else it ends with a line break. At most `MOST` findings are shown, errors
+    before warnings, followed by the number of the others.
     """
     found = in_order(findings)
     shown = in_order(sorted(found, key=lambda finding: finding.severity is not Severity.ERROR)[:MOST])
@@ -45,7 +45,7 @@ def render(findings: Iterable[Diagnostic], texts: Mapping[str, str], paint: Call
 
 
 def summary(findings: Iterable[Diagnostic]) -> str:
-    """How many errors and warnings there are, such as `2 errors, 1 warning`; empty for none."""
+    """Return the number of errors and warnings, such as `2 errors, 1 warning`; empty for none."""
     found = in_order(findings)
     counts = [(sum(finding.severity is severity for finding in found), severity.value) for severity in Severity]
     return ", ".join(f"{count} {word}{'s' if count > 1 else ''}" for count, word in counts if count)
@@ -66,16 +66,16 @@ def _render(finding: Diagnostic, lines: list[str], paint: Callable[[Part, str], 
 
 
 def underlined(finding: Diagnostic, line: str) -> tuple[str, str]:
-    """The first line of the finding as a terminal shows it, and the carets that stand under its span there.
+    """Return the first line of a finding as a terminal shows it, and the carets under its span.
 
-    Tabs are expanded; a wide character takes two columns and a combining one none. Of a span over several lines the
-    rest of the first is underlined. Of a long line only what is around the start of the span is shown.
+    Tabs are expanded. A wide character takes two columns and a combining one none. If the span has several lines, the
+    rest of its first line is underlined. Only the part of a long line around the start of the span is shown.
     """
     line = line.removesuffix("\r")
     span = finding.span
     start = span.column - 1
     end = span.end_column - 1 if span.end_line == span.line else len(line.rstrip())
-    # A combining character belongs to the one before it: it neither starts nor ends an underline.
+    # A combining character belongs to the one before it, so it neither starts nor ends an underline.
     while 0 < start < len(line) and unicodedata.combining(line[start]):
         start -= 1
     before = after = ""
@@ -89,7 +89,7 @@ def underlined(finding: Diagnostic, line: str) -> tuple[str, str]:
 
 
 def _shown(text: str) -> str:
-    """The text with tabs expanded to columns, and nothing in it that a terminal would obey."""
+    """Return a text with tabs expanded, and without characters that a terminal would interpret."""
     shown, column = [], 0
     for piece in re.split("(\t)", text):
         part = " " * (_TAB - column % _TAB) if piece == "\t" else visible(piece)

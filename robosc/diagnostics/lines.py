@@ -1,4 +1,4 @@
-"""The lines of a text: from offsets to lines and columns, and back."""
+"""Lines of a text: conversion of offsets to lines and columns, and back."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import lru_cache
 
 
 class Lines:
-    """Where the lines of a text start, whose line breaks are line feeds.
+    """Start offsets of the lines of a text, whose line breaks are line feeds.
 
     Offsets count code points from 0, lines and columns from 1.
     """
@@ -21,20 +21,20 @@ class Lines:
             position = content.find("\n", position + 1)
 
     def place(self, offset: int) -> tuple[int, int]:
-        """The line and the column of an offset; one behind the end is the end."""
+        """Return the line and the column of an offset; an offset behind the end means the end."""
         offset = min(offset, self._length)
         line = bisect_right(self.starts, offset)
         return line, offset - self.starts[line - 1] + 1
 
     def line(self, number: int) -> tuple[int, int]:
-        """The offsets of the start and the end of a line, its line break left out; behind the last line the end."""
+        """Return the start and end offset of a line without its line break; behind the last line, the end twice."""
         if number > len(self.starts):
             return self._length, self._length
         end = self.starts[number] - 1 if number < len(self.starts) else self._length
         return self.starts[number - 1], end
 
     def offset(self, line: int, column: int) -> int:
-        """The offset of a line and a column; what lies behind the end of a line is its end."""
+        """Return the offset of a line and a column; a column behind the end of its line means the end."""
         if line < 1 or column < 1:
             return 0
         start, end = self.line(line)
@@ -43,5 +43,5 @@ class Lines:
 
 @lru_cache(maxsize=4)
 def lines(content: str) -> Lines:
-    """The lines of a text; those of the last few texts are kept."""
+    """Return the lines of a text; the last few texts are cached."""
     return Lines(content)

@@ -1,4 +1,4 @@
-"""What each rule means: its page, which ships with the tool."""
+"""Pages of the rules, which ship with the tool."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from robosc.files.resources import locate
 
 @cache
 def rules() -> tuple[str, ...]:
-    """The identifiers of all rules that have a page, in alphabetical order."""
+    """Return the identifiers of all rules that have a page, in alphabetical order."""
     return tuple(sorted(path.stem for path in locate("docs/rules").glob("*.md")))
 
 
 def page(rule: str) -> str | None:
-    """The page of a rule in Markdown; None where there is no such rule."""
+    """Return the page of a rule in Markdown, or None if there is no such rule."""
     return locate(f"docs/rules/{rule}.md").read_text(encoding="utf-8") if rule in rules() else None
 
 
 def address(rule: str) -> str | None:
-    """The URI of the page of a rule on this computer; None where there is no such rule."""
+    """Return the URI of the page of a rule on this computer, or None if there is no such rule."""
     return locate(f"docs/rules/{rule}.md").as_uri() if rule in rules() else None
 
 
 def summary(text: str) -> str:
-    """The paragraph after a page's title, on one line."""
+    """Return the paragraph after a page's title, in one line."""
     return " ".join(text.split("\n\n")[1].split())

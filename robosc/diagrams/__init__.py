@@ -1,4 +1,4 @@
-"""Diagrams of the metamodels, and of robots: the behaviour of components, the plants, the ROS graph."""
+"""Diagrams of the metamodels, and of robots: behavior of components, plants, ROS graph."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ GRAPH_NOTATIONS = {"mermaid": notations.mermaid, "dot": notations.dot, "svg": no
 
 
 def diagram(graph: Graph, notation: str) -> str:
-    """What `behaviour_graph`, `plants_graph` or `ros_graph` made, in one of GRAPH_NOTATIONS; the same text every time.
+    """Return the text of a `behaviour_graph`, `plants_graph` or `ros_graph` in one of GRAPH_NOTATIONS.
 
-    Mermaid and Graphviz (`dot`) leave the layout to their own tools; SVG is laid out here. Raises ValueError for a
-    notation that is none of these.
+    The text is reproducible. Mermaid and Graphviz (`dot`) leave the layout to their own tools; SVG is laid out here.
+    Raises ValueError for another notation.
     """
     if notation not in GRAPH_NOTATIONS:
         raise ValueError(f"no diagram in {notation}: it is {', '.join(GRAPH_NOTATIONS)}")
@@ -32,10 +32,10 @@ def diagram(graph: Graph, notation: str) -> str:
 
 
 def metamodel_diagram(name: str, notation: str) -> str:
-    """The class diagram of one of METAMODELS in one of NOTATIONS, made of its .ecore file; the same text every time.
+    """Return the class diagram of one of METAMODELS in one of NOTATIONS, from its .ecore file.
 
-    Mermaid and PlantUML leave the layout to their own tools; SVG is laid out here. Raises ValueError for a name or a
-    notation that is none of these.
+    The text is reproducible. Mermaid and PlantUML leave the layout to their own tools; SVG is laid out here. Raises
+    ValueError for another name or notation.
     """
     if name not in METAMODELS or notation not in NOTATIONS:
         raise ValueError(f"no diagram of {name} in {notation}: it is {METAMODELS} in {NOTATIONS}")

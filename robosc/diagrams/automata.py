@@ -1,4 +1,4 @@
-"""Automata as groups of a diagram: those of components, as their text has them, and the plants of an sct model."""
+"""Automata as groups of a diagram: behaviors of components as in their text, and the plants of an sct model."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def behaviour_graph(base: robosc.Base) -> Graph:
-    """The components of a robot or a library that have a behaviour, imported ones included, each as a group."""
+    """Return the components of a robot or library that have a behavior, including imported ones, each as a group."""
     instances = Instances(base)
     shown = [instance for instance in instances if instance.automaton is not None]
     groups = [_Component(instance, instances).group(f"c{number}") for number, instance in enumerate(shown, 1)]
@@ -34,14 +34,14 @@ def behaviour_graph(base: robosc.Base) -> Graph:
 
 
 def plants_graph(model: sct.SupervisoryControlModel) -> Graph:
-    """All plants of an sct model, each as a group, in the order of the model."""
+    """Return all plants of an sct model, each as a group, in the order of the model."""
     groups = [_Plant(plant).group(f"p{number}") for number, plant in enumerate(model.plants, 1)]
     return Graph(f"{visible(model.name)}: plants", groups)
 
 
 @dataclass(frozen=True)
 class _Step:
-    """From a state, or every one (None), to another, or (None) to where it is."""
+    """A step from a state (None: from every state) to another one (None: it stays)."""
 
     source: State | None
     target: State | None
@@ -53,9 +53,9 @@ class _Step:
 
 
 def _automaton(key: str, title: str, remarks: Sequence[str], states: Sequence[State], steps: Sequence[_Step]) -> Group:
-    """The group of an automaton: steps that stay are rows of their state, those between two states one arrow.
+    """Return the group of an automaton: steps that stay are rows of their state, steps between two states one arrow.
 
-    The group's nodes have keys that begin with its own.
+    The keys of the group's nodes begin with the key of the group.
     """
     keys: dict[State | None, str] = {None: f"{key}_every"}
     keys |= {state: f"{key}_{number}" for number, state in enumerate(states, 1)}
@@ -78,7 +78,7 @@ def _automaton(key: str, title: str, remarks: Sequence[str], states: Sequence[St
 
 
 class _Component(RoboscPrinter):
-    """Says what one component does, its own names without the component before them."""
+    """Prints the behavior of one component; its own names are not qualified."""
 
     def __init__(self, instance: Instance, instances: Instances) -> None:
         self.instance = instance
@@ -122,11 +122,11 @@ class _Component(RoboscPrinter):
 
     def assignments(self, assignments: Sequence[robosc.Assignment]) -> list[str]:
         texts = [f"{self(assignment.item)} := {self(assignment.value)}" for assignment in assignments]
-        # A line for each, with the comma that parts it from the next.
+        # One line per assignment, ended by the comma before the next one.
         return ("do " + ",\n".join(texts)).split("\n") if texts else []
 
     def communication(self, reference: robosc.CommunicationReference) -> str:
-        """Its name; with its component where two share the name and it is the other's."""
+        """Return the name of a communication, qualified if it is of another component and the name is ambiguous."""
         port = self.instances.port(reference, self.instance)
         assert port is not None
         name = written(port.communication.name)
@@ -134,13 +134,13 @@ class _Component(RoboscPrinter):
         return name if port.instance is self.instance or others == 1 else f"{written(port.instance.name)}.{name}"
 
     def owner(self, component: robosc.Component) -> str:
-        """A name of the component itself stands without the component."""
+        """Return the qualifier of a name, which is empty for the component itself."""
         own = self.instances.instance(component, self.instance) is self.instance
         return "" if own else super().owner(component)
 
 
 class _Plant(SctPrinter):
-    """Says what one plant does, its own names without the plant before them."""
+    """Prints the behavior of one plant; its own names are not qualified."""
 
     def __init__(self, plant: sct.Plant) -> None:
         self.plant = plant
@@ -173,7 +173,10 @@ class _Plant(SctPrinter):
         return (edge.event.name if own else event_name(edge.event), *timer, *guard, *updates)
 
     def atom(self, expression: ex.Expression) -> str:
-        """A location or variable of the plant itself by its bare name; an input by its own, as its event is near."""
+        """Print an atom.
+
+        Locations and variables of the plant itself, and inputs of the event, are not qualified.
+        """
         match expression:
             case sct.LocationReference() if expression.location.eContainer() is self.plant:
                 return expression.location.name
@@ -185,9 +188,10 @@ class _Plant(SctPrinter):
 
 
 def _joined(steps: list[_Step], locations: int, *, alike: bool) -> list[_Step]:
-    """What happens in every location in one way, said once: it leads to the same one from all, or stays in each.
+    """Merge steps that every location has into one, if all lead to the same location or all stay.
 
-    With two locations a cycle between them is told apart from that, unless the locations are `alike` on purpose.
+    With two locations a cycle between them would look like that, so they are only merged if they are `alike` on
+    purpose.
     """
     if locations < (2 if alike else 3):
         return steps

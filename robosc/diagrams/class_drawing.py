@@ -1,4 +1,4 @@
-"""A class diagram as a picture."""
+"""Drawing of a class diagram."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ if TYPE_CHECKING:
     from robosc.diagrams.picture import Picture
 
 _ROW, _PADDING, _TIP = 17.0, 8.0, 13.0
-#: The kinds of links; those that matter most for the layout first.
+#: The kinds of links, those with the most weight for the layout first.
 _KINDS = ("inheritance", "containment", "reference")
 
 
 class _Shape:
-    """The rectangle of a class with its texts; heights count from its upper edge.
+    """The rectangle of a class with its texts; heights are measured from its upper edge.
 
-    Features have their links at `ports`; inheritance leaves and arrives at the `middle` of the head, references arrive
+    Links of features start at `ports`. Inheritance links start and end at the `middle` of the head, references end
     `low` in it.
     """
 
@@ -50,7 +50,7 @@ class _Shape:
 
 
 def draw(diagram: ClassDiagram) -> Picture:
-    """Lays the diagram out. Inheritance and containment run from left to right where they form no circle."""
+    """Lay out and draw a diagram. Inheritance and containment run from left to right, except in cycles."""
     shapes = {shown.name: _Shape(shown) for shown in diagram.classes}
     links = _links(diagram, shapes)
     arranged = arrange({name: shape.size for name, shape in shapes.items()}, [link for _, link in links])
@@ -66,7 +66,7 @@ def draw(diagram: ClassDiagram) -> Picture:
 
 
 def _links(diagram: ClassDiagram, shapes: dict[str, _Shape]) -> list[tuple[str, Link]]:
-    """The links with their kinds."""
+    """Return the links with their kinds."""
     found: list[tuple[str, Link]] = []
     for shown in diagram.classes:
         own = shapes[shown.name]
@@ -93,7 +93,7 @@ def _row(feature: Feature, owner: Class) -> str:
 
 
 def _draw_link(pen: Pen, kind: str, route: Route) -> None:
-    """Draws a link with its tip: a triangle or a diamond where it starts, an arrowhead where a reference ends."""
+    """Draw a link with its tip: a triangle or a diamond at the start, or the arrowhead of a reference at the end."""
     (x, y), (end_x, end_y), way = route.points[0], route.points[-1], route.leaves
     start = x + way * (_TIP if kind == "inheritance" else _TIP - 1)
     points = route.points if kind == "reference" else [(start, y), *route.points[1:]]

@@ -1,4 +1,4 @@
-"""What a class diagram of a metamodel shows."""
+"""Contents of the class diagram of a metamodel."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _TYPES |= dict.fromkeys(("EDouble", "EDoubleObject"), "Double")
 
 @dataclass(frozen=True)
 class Feature:
-    """An attribute, or a reference if `reference`; `own` says that its type is of the same metamodel."""
+    """An attribute, or a reference if `reference`; `own` is true if its type is of the same metamodel."""
 
     name: str
     type: str
@@ -29,7 +29,7 @@ class Feature:
 
 @dataclass(frozen=True)
 class Class:
-    """A class, or an enumeration if it has literals. Parents of other metamodels are named with the metamodel."""
+    """A class, or an enumeration if it has literals. Parents of other metamodels are qualified."""
 
     name: str
     abstract: bool
@@ -50,7 +50,7 @@ class ClassDiagram:
 
     @classmethod
     def of(cls, name: str) -> ClassDiagram:
-        """The diagram of a metamodel."""
+        """Return the diagram of a metamodel."""
         package = metamodel(name)
         shown = [classifier for classifier in package.eClassifiers if classifier.name not in _TYPES]
         return cls(name, documentation(package), [_class(classifier, package) for classifier in shown])

@@ -1,4 +1,4 @@
-"""What a diagram of a robot shows: groups of nodes, with arrows between the nodes of a group."""
+"""Contents of a diagram of a robot: groups of nodes, with arrows between the nodes of a group."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    #: What is said about one transition, or one use of a topic: a line, and lines that belong to it.
+    #: Text of one transition, or of one use of a topic: a line, and further lines that belong to it.
     Label = Sequence[str]
 
 
 @dataclass(frozen=True)
 class Node:
-    """A state, or what stands for all states (`every`); the `controller`; a `topic`, a `service`, an `action`.
+    """A state or the node for all states (`every`); the `controller`; a `topic`, a `service` or an `action`.
 
-    `key` is unique in the diagram, and a name in every notation. Rows say what happens without leaving a state, or what
-    a topic is used for.
+    `key` is unique in the diagram, and a valid name in every notation. Rows are the steps that stay in a state, or the
+    uses of a topic.
     """
 
     key: str
@@ -30,7 +30,7 @@ class Node:
 
 @dataclass(frozen=True)
 class Arrow:
-    """From one node to another, or `both` ways; each label is a way to go."""
+    """An arrow between two nodes, or `both` ways; each label is one transition."""
 
     source: str
     target: str
@@ -40,7 +40,7 @@ class Arrow:
 
 @dataclass(frozen=True)
 class Group:
-    """What belongs together, under a title with remarks."""
+    """Nodes and arrows that belong together, under a title with remarks."""
 
     key: str
     title: str
@@ -51,12 +51,12 @@ class Group:
 
 @dataclass(frozen=True)
 class Graph:
-    """A diagram; its groups have frames around them where they have titles."""
+    """A diagram; groups with titles have frames."""
 
     title: str
     groups: Sequence[Group]
 
     @property
     def nodes(self) -> list[Node]:
-        """Those of all groups."""
+        """The nodes of all groups."""
         return [node for group in self.groups for node in group.nodes]

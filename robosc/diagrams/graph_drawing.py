@@ -1,4 +1,4 @@
-"""A diagram of a robot as a picture."""
+"""Drawing of a diagram of a robot."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from robosc.diagrams.picture import Picture, Point
 
 _GAP, _FRAME = 16.0, 14.0
-#: Frames stand side by side up to this width.
+#: Frames are placed side by side up to this width.
 _WIDTH = 1100.0
 _HEAD_LENGTH, _HEAD_WIDTH = 9.0, 4.0
 
 
 def draw(graph: Graph) -> Picture:
-    """Lays the diagram out: groups with titles as frames in rows, their arrows downwards; others to the right."""
+    """Lay out and draw a diagram: groups with titles as frames in rows with downward arrows, others rightwards."""
     pen = Pen()
     x, y, row, width = MARGIN, MARGIN + TITLE, 0.0, 1.1 * text_width(graph.title, 18)
     for group in graph.groups:
@@ -36,7 +36,7 @@ def draw(graph: Graph) -> Picture:
 
 
 def _draw_head(pen: Pen, tip: Point, way: Point) -> None:
-    """Draws an arrowhead that points one way."""
+    """Draw an arrowhead in a direction."""
     back = (tip[0] - way[0] * _HEAD_LENGTH, tip[1] - way[1] * _HEAD_LENGTH)
     side = (way[1] * _HEAD_WIDTH, way[0] * _HEAD_WIDTH)
     pen.tip("head", [(back[0] + side[0], back[1] + side[1]), tip, (back[0] - side[0], back[1] - side[1])])
@@ -103,7 +103,7 @@ class _Panel:
 
 
 def _way(points: Sequence[Point], axis: int) -> Point:
-    """One step in the direction in which a path arrives at its last point, along an axis (0: across, 1: down)."""
+    """Return the direction in which a path arrives at its last point, along an axis (0: across, 1: down)."""
     end = points[-1][axis]
     before = next((point[axis] for point in reversed(points) if point[axis] != end), end - 1)
     step = 1.0 if end > before else -1.0
@@ -111,5 +111,5 @@ def _way(points: Sequence[Point], axis: int) -> Point:
 
 
 def _short(point: Point, way: Point) -> Point:
-    """Where a line ends, so that it does not show beside the tip of its head."""
+    """Return the end of a line, shortened so that it does not show beside the tip of its head."""
     return point[0] - way[0] * (_HEAD_LENGTH - 1), point[1] - way[1] * (_HEAD_LENGTH - 1)

@@ -1,4 +1,4 @@
-"""Where the nodes, labels and arrows of a group go."""
+"""Positions of the nodes, labels and arrows of a group."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ if TYPE_CHECKING:
     from robosc.diagrams.picture import Point
 
 TITLE_SIZE, ROW_SIZE = 13, 11
-#: Heights of the part of a node with its title, and of a line below it.
+#: Height of the title part of a node, and of each line below it.
 HEAD, LINE = 26.0, 15.0
 PADDING, INDENT = 10.0, 10.0
 #: Room for the mark before an initial state.
 MARK = 22.0
-#: The least distance of two arrows on one side of a node.
+#: Minimum distance between two arrows on one side of a node.
 _PORT = 16.0
-#: Between ranks, downwards and to the right.
+#: Gap between ranks, for downward and for rightward arrows.
 _GAPS = (30.0, 64.0)
-#: A page may be long; what is longer than this is folded.
+#: Number of ranks after which a layout is folded; pages may be long.
 _MOST_RANKS = 60
 
 
 @dataclass(frozen=True)
 class Rectangle:
-    """Its upper left corner and its size."""
+    """A rectangle by its upper left corner and its size."""
 
     x: float
     y: float
@@ -44,7 +44,7 @@ class Rectangle:
 
 @dataclass(frozen=True)
 class Layout:
-    """A rectangle for each node, a corner for each arrow's labels (None without), points for each arrow, the size."""
+    """Rectangles of nodes, corners of the labels of arrows (None without labels), points of arrows, and the size."""
 
     nodes: Mapping[str, Rectangle]
     labels: Sequence[Point | None]
@@ -54,23 +54,26 @@ class Layout:
 
 
 def lines(labels: Iterable[Label]) -> list[tuple[float, str]]:
-    """The lines of labels in order, each with how far it is indented: what follows a first line is."""
+    """Return the lines of labels in order with their indent; continuation lines are indented."""
     return [(0.0 if number == 0 else INDENT, text) for label in labels for number, text in enumerate(label)]
 
 
 def lay_out(group: Group, *, downwards: bool) -> Layout:
-    """Arranges a group: arrows run down, or else to the right, where they form no circle."""
+    """Arrange a group: arrows run downwards, or else to the right, except in cycles."""
     return _Layouter(group, downwards).layout()
 
 
 class _Layouter:
-    """Works in two directions, along the ranks and across them. Labels take part as boxes that arrows run through."""
+    """Works in two directions, along the ranks and across them.
+
+    Labels are boxes on the way of their arrows.
+    """
 
     def __init__(self, group: Group, downwards: bool) -> None:
         self.group = group
         self.downwards = downwards
         self.forward = _forward(group)
-        #: The sides of each node: before it (0) and behind it (1), each with the arrows there by number.
+        #: Arrows at each side of each node, by number; side 0 is before the node, side 1 behind it.
         self.sides: dict[tuple[str, int], list[int]] = {}
         for number, arrow in enumerate(group.arrows):
             self.sides.setdefault((arrow.source, int(self.forward[number])), []).append(number)
@@ -80,7 +83,7 @@ class _Layouter:
         sizes = {node.key: self.size(node) for node in self.group.nodes}
         sizes |= {_label(number): _label_size(arrow) for number, arrow in enumerate(self.group.arrows) if arrow.labels}
         first = self.arranged(sizes)
-        # Once more, with the arrows at each side of a node in the order in which they leave for their labels.
+        # Second pass: sorts the arrows at each side of a node by the positions of their labels.
         for (key, _), numbers in self.sides.items():
             numbers.sort(key={number: self.neighbour(first, sizes, key, number) for number in numbers}.__getitem__)
         arranged = self.arranged(sizes)
@@ -103,7 +106,7 @@ class _Layouter:
         return arrange(boxes, list(chain.from_iterable(self.links(sizes))), _GAPS[not self.downwards], _MOST_RANKS)
 
     def links(self, sizes: Mapping[str, Point]) -> list[list[Link]]:
-        """For each arrow the links that it consists of, from its earlier node to its later one."""
+        """Return, for each arrow, its links from its earlier node to its later one."""
         found = []
         for number, arrow in enumerate(self.group.arrows):
             ends = (arrow.source, arrow.target) if self.forward[number] else (arrow.target, arrow.source)
@@ -128,7 +131,7 @@ class _Layouter:
         return start + across * (numbers.index(number) + 1) / (len(numbers) + 1)
 
     def neighbour(self, arranged: Arrangement, sizes: Mapping[str, Point], key: str, number: int) -> float:
-        """How far across the other end of an arrow's first link is."""
+        """Return the position across the ranks of the other end of an arrow's first link."""
         arrow = self.group.arrows[number]
         if arrow.labels:
             return arranged.places[_label(number)][1]
@@ -144,7 +147,7 @@ class _Layouter:
         return found
 
     def size(self, node: Node) -> Point:
-        """Width and height of a node, with room for all its arrows and its mark."""
+        """Return width and height of a node, with room for all its arrows and its mark."""
         rows = lines(node.rows)
         texts = [1.1 * text_width(node.title, TITLE_SIZE), *(x + text_width(text, ROW_SIZE) for x, text in rows)]
         most = max(len(self.sides.get((node.key, side), ())) for side in (0, 1))
@@ -168,7 +171,7 @@ def _label(number: int) -> str:
 
 
 def _forward(group: Group) -> list[bool]:
-    """Which arrows lead on, and which back: those that close a circle, looked at from the initial states onwards."""
+    """Return which arrows lead forward; the others close a cycle, seen from the initial states."""
     reached = nx.DiGraph()
     reached.add_nodes_from(node.key for node in group.nodes)
     reached.add_edges_from((arrow.source, arrow.target) for arrow in group.arrows)

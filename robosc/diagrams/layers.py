@@ -1,9 +1,9 @@
-"""A layered drawing: boxes in columns, links between them with nothing in their way.
+"""A layered layout: boxes in columns, and links between them that cross no box.
 
-The steps of Sugiyama, Tagawa and Toda, "Methods for Visual Understanding of Hierarchical System Structures" (1981):
-boxes get ranks along the links, long links get a place in every column that they cross, the order in the columns is
-improved by barycenters, and heights follow by isotonic regression, which keeps that order. Where there are many ranks
-the columns turn round half way, so that the drawing is no ribbon.
+The method is that of Sugiyama, Tagawa and Toda, "Methods for Visual Understanding of Hierarchical System Structures"
+(1981). Boxes get ranks along the links. Long links get a position in every column that they cross. Barycenters improve
+the order in the columns. Isotonic regression computes the heights and keeps that order. If there are many ranks, the
+columns turn back half way, so that the drawing does not become a ribbon.
 """
 
 from __future__ import annotations
@@ -24,13 +24,16 @@ _COLUMN_GAP = 64.0
 _ROW_GAP = 22.0
 _LINK_GAP = 9.0
 _BESIDE = 8.0
-#: More ranks than this are folded.
+#: Number of ranks after which a layout is folded.
 _MOST_COLUMNS = 9
 
 
 @dataclass(frozen=True)
 class Link:
-    """A link between two boxes; the ports are heights below their upper edges. `ranking` ones decide the ranks."""
+    """A link between two boxes.
+
+    Ports are measured from the upper edges of the boxes. Only `ranking` links determine ranks.
+    """
 
     source: str
     target: str
@@ -41,9 +44,9 @@ class Link:
 
 @dataclass(frozen=True)
 class Route:
-    """Where a link runs: points from its source to its target.
+    """The path of a link: points from its source to its target.
 
-    It leaves its source to the right (1) or to the left (-1), and arrives at its target going right (1) or left (-1).
+    `leaves` and `arrives` are the directions at the source and at the target: 1 to the right, -1 to the left.
     """
 
     points: Sequence[tuple[float, float]]
@@ -53,7 +56,7 @@ class Route:
 
 @dataclass(frozen=True)
 class Arrangement:
-    """Where the upper left corners of the boxes are, where the links run, and how large it all is."""
+    """The upper left corners of the boxes, the routes of the links, and the total size."""
 
     places: Mapping[str, tuple[float, float]]
     routes: Sequence[Route]
@@ -63,13 +66,13 @@ class Arrangement:
 
 @dataclass(eq=False)
 class _Item:
-    """A box in its column, or (without a name) a place where a link crosses the column."""
+    """A box in its column, or (without a name) a position at which a link crosses the column."""
 
     name: str
     column: int
     height: float
     top: float = 0.0
-    #: Neighbours in the next and in the previous column: the item there, its port, the own port.
+    #: Neighbors in the next and in the previous column: the item there, its port, the own port.
     right: list[tuple[_Item, float, float]] = field(default_factory=list)
     left: list[tuple[_Item, float, float]] = field(default_factory=list)
 
@@ -80,9 +83,9 @@ def arrange(
     column_gap: float = _COLUMN_GAP,
     most_columns: int = _MOST_COLUMNS,
 ) -> Arrangement:
-    """Arranges boxes of given widths and heights. Ranking links run from rank to rank, but for those in circles.
+    """Arrange boxes by their widths and heights. Ranking links run from rank to rank, except in cycles.
 
-    More ranks than `most_columns` are folded. A link from a box to itself is not arranged, and must not be given.
+    More ranks than `most_columns` are folded. A link from a box to itself is not allowed.
     """
     columns = _columns(sizes, links, most_columns)
     boxes = {name: _Item(name, columns[name], height) for name, (_, height) in sizes.items()}
@@ -96,7 +99,7 @@ def arrange(
 
 
 def _columns(names: Iterable[str], links: Sequence[Link], most: int) -> dict[str, int]:
-    """The column of each box: its rank, or on the way back."""
+    """Return the column of each box: its rank, or a column on the way back."""
     ranks = _ranks(names, links)
     last = max(ranks.values(), default=0)
     if last < most:
@@ -118,14 +121,14 @@ def _ranks(names: Iterable[str], links: Sequence[Link]) -> dict[str, int]:
     for name in reversed(order):
         after = [ranks[successor] for successor in graph.successors(name)]
         if not graph.in_degree(name):
-            # What nothing ranks stands just before what it links to.
+            # A box without a ranking predecessor is placed right before the boxes to which it links.
             after = after or [ranks[link.target] for link in links if link.source == name]
             ranks[name] = max(min(after, default=1) - 1, 0)
     return ranks
 
 
 def _chain(boxes: Mapping[str, _Item], link: Link) -> list[_Item]:
-    """The items of a link from its source to its target, joined to each other; two in the same column are not."""
+    """Return the items of a link from its source to its target, and connect them if their columns differ."""
     first, last = boxes[link.source], boxes[link.target]
     way = 1 if first.column < last.column else -1
     between = [_Item("", column, 0.0) for column in range(first.column + way, last.column, way)]
@@ -141,7 +144,7 @@ def _chain(boxes: Mapping[str, _Item], link: Link) -> list[_Item]:
 
 
 def _ordered(boxes: Iterable[_Item], chains: Sequence[Sequence[_Item]]) -> list[_Item]:
-    """All items, what is linked near each other."""
+    """Return all items, with linked items near each other."""
     found: dict[_Item, None] = {}
     pending = list(boxes)[::-1]
     while pending:
@@ -169,7 +172,7 @@ def _barycenter(item: _Item, positions: Mapping[_Item, int], *, forward: bool) -
     near = item.left if forward else item.right
     if not near:
         return positions[item]
-    # The port decides between links of one box: a lower row of it belongs lower.
+    # The port decides between links of one box: a lower row belongs lower.
     return total(positions[neighbour] + port / (neighbour.height + 1) for neighbour, port, _ in near) / len(near)
 
 
@@ -206,14 +209,14 @@ def _set_tops(layers: Sequence[Sequence[_Item]]) -> None:
 
 
 def _place(layer: Sequence[_Item], wanted: Sequence[float]) -> None:
-    """Puts the items as near to the wanted heights as their order and the gaps between them allow (least squares)."""
+    """Move items as close to the wanted heights as their order and gaps allow (least squares)."""
     offsets, offset = [], 0.0
     for item, following in zip(layer, [*layer[1:], None], strict=True):
         offsets.append(offset)
         if following is not None:
             gap = _ROW_GAP if item.name and following.name else _LINK_GAP
             offset += item.height + gap
-    # Pools of neighbours that touch each other: the mean of what they want, and how many they are.
+    # Pools of adjacent items that touch each other: the mean of their wanted heights, and their number.
     pools: list[tuple[float, int]] = []
     for height, base in zip(wanted, offsets, strict=True):
         pools.append((height - base, 1))
@@ -226,7 +229,7 @@ def _place(layer: Sequence[_Item], wanted: Sequence[float]) -> None:
 
 
 class _Geometry:
-    """Turns columns and heights into coordinates."""
+    """Converts columns and heights to coordinates."""
 
     def __init__(
         self,
@@ -240,7 +243,7 @@ class _Geometry:
         self._boxes = boxes
         self._chains = chains
         self._height = max((item.top + item.height for layer in layers for item in layer), default=0.0)
-        #: The left and the right edge of each column; links within a column widen the gap that they run through.
+        #: Left and right edge of each column; links within a column widen the gap beside it.
         self._edges: list[tuple[float, float]] = []
         self._width = left = 0.0
         for column, layer in enumerate(layers):
@@ -252,7 +255,7 @@ class _Geometry:
         self._beside = [0] * len(layers)
 
     def arrangement(self, links: Sequence[Link]) -> Arrangement:
-        """All coordinates."""
+        """Return all coordinates."""
         places = {name: (self._edges[item.column][0], item.top) for name, item in self._boxes.items()}
         routes = [self._route(link, chain) for link, chain in zip(links, self._chains, strict=True)]
         return Arrangement(places, routes, self._width, self._height)
@@ -270,14 +273,14 @@ class _Geometry:
         return Route([*points, *self._leave(last, end, -way)[::-1]], way, way)
 
     def _route_beside(self, first: _Item, last: _Item, start: float, end: float) -> Route:
-        """Through the gap to the right of the column, each link on a line of its own."""
+        """Return a route through the gap to the right of the column, where each link has its own line."""
         self._beside[first.column] += 1
         outside = self._edges[first.column][1] + _BESIDE * (self._beside[first.column] + 1)
         points = [self._leave(first, start, 1)[0], (outside, start), (outside, end), self._leave(last, end, 1)[0]]
         return Route(points, 1, -1)
 
     def _leave(self, item: _Item, height: float, way: int) -> list[tuple[float, float]]:
-        """From a side of a box to the edge of its column."""
+        """Return the points from a side of a box to the edge of its column."""
         left, right = self._edges[item.column]
         if way < 0:
             return [(left, height)]

@@ -1,4 +1,4 @@
-"""Diagrams of robots as text in each notation; whatever a model holds stays in its place."""
+"""Diagrams of robots as text in each notation, with the contents of models escaped."""
 
 from __future__ import annotations
 
@@ -27,23 +27,23 @@ _DOT_SHAPES = {
     "service": "shape=component",
     "action": "shape=hexagon",
 }
-#: What Mermaid takes as it is in all places; anything else could mean something to one of its grammars.
+#: Characters other than those that all grammars of Mermaid read literally.
 _PLAIN = re.compile(r"[^A-Za-z0-9_ .,/()=+*-]")
 
 
 def mermaid(graph: Graph) -> str:
-    """A state diagram where groups have titles, else a flow chart."""
+    """Return a state diagram if groups have titles, else a flow chart."""
     name = "states" if _is_states(graph) else "ros"
     return render(f"{name}.mermaid.j2", graph=graph, shapes=_MERMAID_SHAPES)
 
 
 def dot(graph: Graph) -> str:
-    """A graph for Graphviz, a cluster for each group that has a title."""
+    """Return a graph for Graphviz, with a cluster for each group that has a title."""
     return render("graph.dot.j2", graph=graph, shapes=_DOT_SHAPES, states=_is_states(graph))
 
 
 def svg(graph: Graph) -> str:
-    """A picture, laid out here."""
+    """Return a picture with its own layout."""
     return render("picture.svg.j2", picture=draw(graph))
 
 
@@ -52,20 +52,20 @@ def _is_states(graph: Graph) -> bool:
 
 
 def render(template: str, **values: object) -> str:
-    """What a template of this folder makes of values, which are escaped in SVG."""
+    """Render a template of this package; values are escaped in SVG."""
     templates = environment("robosc.diagrams", escapes=".svg." in template)
     templates.filters |= {"dot": _dot, "dot_labels": _dot_labels, "dot_node": _dot_node, "mermaid": _mermaid}
     return templates.get_template(template).render(**values)
 
 
 def _mermaid(text: str | Label) -> str:
-    """Text for a label: lines with `<br/>` between, and codes for all characters that could mean something else."""
+    """Return text for a label: lines joined by `<br/>`, and codes for all characters that may have a meaning."""
     lines = [text] if isinstance(text, str) else text
     return "<br/>".join(_PLAIN.sub(lambda found: f"#{ord(found[0])};", line) for line in lines)
 
 
 def _dot(text: str) -> str:
-    """A quoted string in which backslashes, quotes and entities have no meaning."""
+    """Return a quoted string in which backslashes, quotes and entities have no meaning."""
     return f'"{_dot_line(text)}"'
 
 
@@ -83,6 +83,6 @@ def _dot_node(node: Node) -> str:
 
 
 def _dot_rows(labels: Sequence[Label]) -> str:
-    """Lines to the left, those that belong to another indented."""
+    """Return left-aligned lines; continuation lines are indented."""
     lines = [("" if number == 0 else "  ") + text for label in labels for number, text in enumerate(label)]
     return "".join(rf"{_dot_line(line)}\l" for line in lines)

@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 MARGIN = 20.0
 #: Height of the picture's title.
 TITLE = 34.0
-#: Widths of characters in a sans-serif face, in parts of its size; what is not named is 0.58 wide, East Asian 1.
+#: Character widths of a sans-serif font, relative to its size; the default is 0.58, and 1 for East Asian characters.
 _NARROW = dict.fromkeys("ijlI.,:;'|![]() ft", 0.36)
 _WIDE = dict.fromkeys("mwMW@", 0.92) | dict.fromkeys("ABCDEFGHKNOPQRSUVXYZ", 0.7)
 
 
 @dataclass(frozen=True)
 class Box:
-    """A rectangle of a kind, which the template's style sheet names, with a `note` to be shown on demand."""
+    """A rectangle of a kind from the template's style sheet, with a `note` that is shown on demand."""
 
     kind: str
     x: float
@@ -36,7 +36,7 @@ class Box:
 
 @dataclass(frozen=True)
 class Line:
-    """A path of a kind."""
+    """A path of a kind from the template's style sheet."""
 
     kind: str
     path: str
@@ -44,7 +44,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Text:
-    """A line of text: where its baseline starts, or its middle in a style that centres it."""
+    """A line of text: the start of its baseline, or its middle in a centered style."""
 
     style: str
     x: float
@@ -54,7 +54,7 @@ class Text:
 
 @dataclass(frozen=True)
 class Picture:
-    """All there is to draw, in this order."""
+    """All parts of a picture in drawing order."""
 
     title: str
     width: float
@@ -65,7 +65,7 @@ class Picture:
 
 
 class Pen:
-    """Collects what is drawn; coordinates given to it count from `origin`."""
+    """Collects the parts of a picture; coordinates are relative to `origin`."""
 
     def __init__(self) -> None:
         self.boxes: list[Box] = []
@@ -74,16 +74,16 @@ class Pen:
         self.origin: Point = (0.0, 0.0)
 
     def text(self, style: str, x: float, y: float, text: str) -> None:
-        """Writes a line of text."""
+        """Write a line of text."""
         self.texts.append(Text(style, *self._moved((x, y)), text))
 
     def box(self, kind: str, corner: Point, size: Point, radius: float, note: str = "") -> None:
-        """Draws a rectangle with rounded corners, given its upper left corner, its width and its height."""
+        """Draw a rectangle with rounded corners from its upper left corner and its size."""
         width, height = map(coordinate, size)
         self.boxes.append(Box(kind, *self._moved(corner), width, height, radius, note))
 
     def line(self, kind: str, points: Sequence[Point], *, downwards: bool = False) -> None:
-        """Draws straight lines along the axes, and curves between them; these leave and arrive level, or upright."""
+        """Draw straight lines along the axes, and curves between them with horizontal (or vertical) ends."""
         x, y = self._moved(points[0])
         drawn = f"M{x} {y}"
         for point in points[1:]:
@@ -102,12 +102,12 @@ class Pen:
         self.lines.append(Line(kind, drawn))
 
     def tip(self, kind: str, corners: Sequence[Point], *, closed: bool = True) -> None:
-        """Draws the shape at an end of a line, given its corners."""
+        """Draw the shape at an end of a line from its corners."""
         drawn = "L".join("{} {}".format(*self._moved(corner)) for corner in corners)
         self.lines.append(Line(kind, f"M{drawn}{'z' if closed else ''}"))
 
     def picture(self, title: str, width: float, height: float) -> Picture:
-        """The picture of that title, as large as what is drawn and a margin around it."""
+        """Return the picture with a title, as large as its contents and a margin around them."""
         return Picture(title, round(width + 2 * MARGIN), round(height + MARGIN), self.boxes, self.lines, self.texts)
 
     def _moved(self, point: Point) -> Point:
@@ -115,7 +115,7 @@ class Pen:
 
 
 def text_width(text: str, size: float) -> float:
-    """How wide a line of text is at most, about, in a face of that size."""
+    """Return an estimate of the maximum width of a line of text in a font of this size."""
     widths = (
         _NARROW.get(character, _WIDE.get(character, 1.0 if east_asian_width(character) in "WF" else 0.58))
         for character in text
@@ -124,10 +124,10 @@ def text_width(text: str, size: float) -> float:
 
 
 def total(numbers: Iterable[float]) -> float:
-    """Their sum, the same with each Python: `sum` rounds otherwise from 3.12 on."""
+    """Return the sum of numbers, the same in each Python version: `sum` rounds differently from 3.12 on."""
     return reduce(add, numbers, 0.0)
 
 
 def coordinate(value: float) -> float:
-    """A coordinate with a tenth of a pixel, so that no platform's rounding shows."""
+    """Return a coordinate rounded to a tenth of a pixel, so that the result is the same on all platforms."""
     return round(value, 1) + 0.0

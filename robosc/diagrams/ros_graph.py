@@ -1,4 +1,4 @@
-"""The node of a controller and what it is connected to."""
+"""The node of a controller and its connections."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _KEYS = {"topic": "t", "service": "s", "action": "a"}
 
 
 class Connection(NamedTuple):
-    """A topic, service or action: `direction` is `in`, `out` or `both`, `types` are those of ROS.
+    """A topic, service or action: `direction` is `in`, `out` or `both`; `types` are ROS types.
 
-    `uses` are the communications that use it, by the names of their components.
+    `uses` are the communications that use it, qualified by their components.
     """
 
     name: str
@@ -33,9 +33,9 @@ class Connection(NamedTuple):
 
 
 def ros_graph(graph: rosgraph.RosGraph) -> Graph:
-    """The controller's node with its topics, services and actions: their types, directions, and what uses them.
+    """Return the controller's node with its topics, services and actions: their types, directions and uses.
 
-    An arrow goes the way that data goes; a service or an action, asked and answering, has one with two heads.
+    An arrow has the direction of the data. Services and actions have arrows with two heads.
     """
     found = connections(graph)
     numbers = {kind: count(1) for kind in _KEYS}
@@ -54,7 +54,7 @@ def ros_graph(graph: rosgraph.RosGraph) -> Graph:
 
 
 def connections(graph: rosgraph.RosGraph) -> list[Connection]:
-    """The topics, services and actions of a controller, in this order, with names and types that can be shown."""
+    """Return the topics, services and actions of a controller, in this order, with printable names and types."""
     return [*_topics(graph), *_servers("service", graph.serviceClients), *_servers("action", graph.actionClients)]
 
 

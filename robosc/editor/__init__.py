@@ -1,5 +1,5 @@
-"""The language server: what editors ask by the Language Server Protocol, answered from `robosc.language`.
+"""The language server: answers requests of the Language Server Protocol with `robosc.language`.
 
-`project` holds the texts and what was read of them, `server` speaks the protocol, every other module answers one kind
-of question about a `Snapshot` of the project. What knows the language stands in `robosc.language`.
+`project` holds the texts and their analyses, and `server` implements the protocol. Every other module answers one kind
+of request about a `Snapshot` of the project. Knowledge of the language itself belongs into `robosc.language`.
 """

@@ -1,4 +1,4 @@
-"""What goes to the process of synthesis and comes from it."""
+"""Messages to and from the synthesis process."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Request:
-    """A robot's path, the texts that stand in place of files, and the folders for libraries and ROS packages."""
+    """A robot's path, the texts that replace files, and the folders for libraries and ROS packages."""
 
     path: str
     texts: Mapping[str, str]
@@ -21,9 +21,9 @@ class Request:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What to say of the robot, of its requirements by their lines in its own text, and of its communication.
+    """Texts for the robot, for its requirements by their lines in its own text, and for its communications.
 
-    `guards` has, by the communication with its component, what allows its events, each as `request: guard`.
+    `guards` maps a communication, with its component, to the guards of its events, each as `request: guard`.
     """
 
     robot: str

@@ -1,4 +1,4 @@
-"""Inlay hints, and the call hierarchy, read as who can make a state change: a state "calls" those that it leads to."""
+"""Inlay hints, and the call hierarchy of states: a state "calls" the states to which its transitions lead."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def inlay_hints(snapshot: Snapshot, analysis: Analysis, params: types.InlayHintParams) -> list[types.InlayHint]:
-    """The types of `value`, the parameters of arguments and the units of data, in a range."""
+    """Return the types of `value`, the parameters of arguments and the units of data in a range."""
     text = analysis.text
     start, end = to_offset(text, params.range.start), to_offset(text, params.range.end)
     return [
@@ -38,7 +38,7 @@ def inlay_hints(snapshot: Snapshot, analysis: Analysis, params: types.InlayHintP
 def prepare_call_hierarchy(
     snapshot: Snapshot, analysis: Analysis, params: types.CallHierarchyPrepareParams
 ) -> list[types.CallHierarchyItem]:
-    """The state at a position."""
+    """Return the state at a position."""
     name = analysis.file.name_at(to_offset(analysis.text, params.position))
     state = name.target if name is not None else None
     found = analysis.declarations.get(state) if isinstance(state, rsc.State) else None
@@ -48,7 +48,10 @@ def prepare_call_hierarchy(
 def incoming_calls(
     snapshot: Snapshot, analysis: Analysis, params: types.CallHierarchyIncomingCallsParams
 ) -> list[types.CallHierarchyIncomingCall]:
-    """The states from which transitions lead to a state, with these; of transitions of every state, the component."""
+    """Return the states with transitions to a state, with these transitions.
+
+    The component stands for transitions from every state.
+    """
     found: dict[Any, list[rsc.Transition]] = {}
     state = _state(analysis, params.item)
     for transition in _transitions(state):
@@ -63,7 +66,7 @@ def incoming_calls(
 def outgoing_calls(
     snapshot: Snapshot, analysis: Analysis, params: types.CallHierarchyOutgoingCallsParams
 ) -> list[types.CallHierarchyOutgoingCall]:
-    """The states to which transitions lead from a state, and these transitions."""
+    """Return the states to which transitions lead from a state, with these transitions."""
     found: dict[Any, list[rsc.Transition]] = {}
     state = _state(analysis, params.item)
     for transition in _transitions(state):
@@ -77,7 +80,7 @@ def outgoing_calls(
 
 
 def _state(analysis: Analysis, item: types.CallHierarchyItem) -> Any:
-    """The state declared in the text that an item stands for; None where the text has changed."""
+    """Return the state of an item as declared in the text, or None if the text has changed."""
     name = analysis.file.name_at(to_offset(analysis.text, item.selection_range.start))
     state = name.target if name is not None else None
     return state if isinstance(state, rsc.State) and state in analysis.file.declared_names else None
@@ -96,7 +99,7 @@ def _source(transition: rsc.Transition) -> Any:
 
 
 def _transitions(state: Any) -> Iterator[rsc.Transition]:
-    """The transitions of the behaviour that a state belongs to."""
+    """Yield the transitions of the behavior that contains a state."""
     for definition in state.eContainer().definitions if state is not None else ():
         if isinstance(definition, rsc.Transition):
             yield definition

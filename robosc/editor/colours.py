@@ -16,13 +16,13 @@ LEGEND = types.SemanticTokensLegend(list(CLASSES), list(_MODIFIERS))
 
 
 def semantic_tokens(_: Snapshot, analysis: Analysis, params: types.SemanticTokensParams) -> types.SemanticTokens:
-    """The words of a text and what they are, each told by its distance from the one before."""
+    """Return the words of a text and their kinds, each position relative to the previous word."""
     text, data = analysis.text, list[int]()
     before = (0, 0)
     for word in classify(analysis.file):
         modifiers = word.declares + 2 * word.readonly
         start = word.start
-        # No token goes over the end of its line.
+        # A token must not extend beyond the end of its line.
         for piece in text.content[word.start : word.end].split("\n"):
             line, unit = text.to_utf16(start)
             length = len(piece.encode("utf-16-le", "surrogatepass")) // 2

@@ -65,7 +65,7 @@ def completion(snapshot: Snapshot, analysis: Analysis, params: types.CompletionP
 
 
 def _topics(snapshot: Snapshot, place: types.Range) -> list[types.CompletionItem]:
-    """The names that the project and its libraries give to topics, services and actions."""
+    """Return the names of topics, services and actions in the project and its libraries."""
     found: dict[str, str] = {}
     analyses = [analysis for path in snapshot.models() if (analysis := snapshot.analysis(path)) is not None]
     for file in (file for analysis in analyses for file in analysis.reading.files.values()):
@@ -87,7 +87,7 @@ def _items(proposal: Proposal, place: types.Range) -> list[types.CompletionItem]
     elif proposal.is_ros:
         kind = types.CompletionItemKind.Struct
     edit = types.TextEdit(place, proposal.text)
-    # Names before words of the language, those before whole definitions.
+    # Names come before words of the language, and these before whole definitions.
     order = "0" if kind is not types.CompletionItemKind.Keyword else "1"
     detail = summary(proposal.element) if proposal.element is not None else None
     found = [
@@ -110,7 +110,7 @@ def _items(proposal: Proposal, place: types.Range) -> list[types.CompletionItem]
 
 
 def signature_help(_: Snapshot, analysis: Analysis, params: types.SignatureHelpParams) -> types.SignatureHelp | None:
-    """The parameters of what is called at a position."""
+    """Return the signature of the call around a position."""
     found = signature(analysis.reading, to_offset(analysis.text, params.position))
     if found is None:
         return None

@@ -1,4 +1,4 @@
-"""Findings as the protocol has them."""
+"""Findings as diagnostics of the protocol."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from robosc.editor.project import Analysis, Snapshot
     from robosc.language import Reference, Text
 
-#: The command that adds a folder, by its URI, to those in which libraries are looked for.
+#: The command that adds a folder, by its URI, to the folders searched for libraries.
 ADD_LIBRARY_FOLDER = "robosc.addLibraryFolder"
-#: How many ways to mend findings are tried for one request: each reads the model anew.
+#: Maximum number of fixes that are tried for one request: each reads the model again.
 _MOST_WAYS = 20
 _MEND_ALL = "source.fixAll.robosc"
 CODE_ACTION_OPTIONS = types.CodeActionOptions([types.CodeActionKind.QuickFix, _MEND_ALL])
@@ -40,7 +40,7 @@ _SEVERITIES = {
 
 
 def published(snapshot: Snapshot, analyses: Iterable[Analysis]) -> dict[Path, list[types.Diagnostic]]:
-    """Return the findings in each text that these analyses read, by its path, each once."""
+    """Return the findings in each text that these analyses read, by its path, each finding once."""
     findings: dict[str, list[Diagnostic]] = {}
     texts: dict[str, Text] = {}
     for analysis in analyses:
@@ -54,14 +54,14 @@ def published(snapshot: Snapshot, analyses: Iterable[Analysis]) -> dict[Path, li
 
 
 def abandoned(why: str) -> types.Diagnostic:
-    """Return the finding of a text whose findings were abandoned."""
+    """Return the diagnostic of a text whose analysis was abandoned."""
     place = types.Range(types.Position(0, 0), types.Position(0, 1))
     message = f"{why}: the findings of this text are missing\nhint: run `robosc check` on it"
     return types.Diagnostic(place, message, severity=types.DiagnosticSeverity.Warning, source="robosc")
 
 
 def quickly(snapshot: Snapshot, path: Path) -> list[types.Diagnostic] | None:
-    """Return the findings in a large text before it is read in whole; None where that is impossible."""
+    """Return the findings in a large text before it is read as a whole, or None if that is impossible."""
     found = snapshot.quick_findings(path)
     if found is None:
         return None
@@ -70,7 +70,7 @@ def quickly(snapshot: Snapshot, path: Path) -> list[types.Diagnostic] | None:
 
 
 def diagnostic(snapshot: Snapshot, finding: Diagnostic, texts: Mapping[str, Text]) -> types.Diagnostic:
-    """A finding with its hint below, the page of its rule as a link, and the places that it speaks of."""
+    """Return a finding as a diagnostic with its hint, the page of its rule as a link, and its related places."""
     page = address(finding.rule)
     related = []
     for other in finding.related:
@@ -112,9 +112,9 @@ def code_actions(snapshot: Snapshot, analysis: Analysis, params: types.CodeActio
 def _quick_fixes(
     snapshot: Snapshot, analysis: Analysis, params: types.CodeActionParams, findings: Sequence[Diagnostic]
 ) -> Iterator[types.CodeAction]:
-    """The ways to mend findings that break nothing; of many findings those of the first.
+    """Yield the fixes of findings that do no harm, at most `_MOST_WAYS`.
 
-    The edit of a hint is preferred where `check --fix` may apply it, too.
+    The edit of a hint is preferred if `check --fix` may apply it, too.
     """
     ways = ((finding, title, edits) for finding in findings for title, edits in _ways(finding))
     for finding, title, edits in islice(ways, _MOST_WAYS):
@@ -143,7 +143,10 @@ def _change(
     finding: Diagnostic,
     edits: Sequence[Edit],
 ) -> types.WorkspaceEdit | None:
-    """Edits in the whole project where they rename; None where its texts would then mean something else."""
+    """Return edits as a workspace edit, extended to the whole project if they rename.
+
+    Returns None if a text of the project would change its meaning.
+    """
     renaming = renaming_of(analysis.file, edits)
     if renaming is None:
         return types.WorkspaceEdit({params.text_document.uri: to_edits(analysis.text, edits)})
@@ -154,7 +157,7 @@ def _change(
 
 
 def _checked(snapshot: Snapshot, analysis: Analysis, content: str) -> Analysis:
-    """The analysis of another text in place of one."""
+    """Return the analysis with another content of the text."""
     document = snapshot.documents[analysis.path]
     after = snapshot.with_documents({**snapshot.documents, analysis.path: replace(document, content=content)})
     found = after.analysis(analysis.path)
@@ -163,7 +166,7 @@ def _checked(snapshot: Snapshot, analysis: Analysis, content: str) -> Analysis:
 
 
 def _library_folders(snapshot: Snapshot, analysis: Analysis, place: types.Range) -> list[types.CodeAction]:
-    """For each library in a range that is not found the folders of the project that have it."""
+    """Return an action for each folder of the project with a library in a range that the search did not find."""
     found = []
     for name in analysis.file.names:
         at = to_range(analysis.text, name.start, name.end)

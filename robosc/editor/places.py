@@ -1,4 +1,4 @@
-"""Places of the language's texts as the protocol has them."""
+"""Conversion of places in texts to and from the protocol."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ if TYPE_CHECKING:
 
 
 def to_range(text: Text, start: int, end: int) -> types.Range:
-    """The range between two offsets."""
+    """Return the range between two offsets."""
     return types.Range(types.Position(*text.to_utf16(start)), types.Position(*text.to_utf16(max(start, end))))
 
 
 def span_range(text: Text, span: Span) -> types.Range:
-    """The range of a span."""
+    """Return the range of a span."""
     return to_range(text, text.offset(span.line, span.column), text.offset(span.end_line, span.end_column))
 
 
 def to_edits(text: Text, edits: Iterable[Edit]) -> list[types.TextEdit]:
-    """The edits of a text."""
+    """Return the edits of a text."""
     return [types.TextEdit(span_range(text, edit.span), edit.text) for edit in edits]
 
 
 def to_offset(text: Text, position: types.Position) -> int:
-    """The offset of a position."""
+    """Return the offset of a position."""
     return text.from_utf16(position.line, position.character)
 
 
 def location(snapshot: Snapshot, text: Text, start: int, end: int) -> types.Location:
-    """The range between two offsets of a text, with the text's URI."""
+    """Return the range between two offsets of a text, with the text's URI."""
     return types.Location(snapshot.uri(text.file), to_range(text, start, end))

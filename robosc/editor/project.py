@@ -1,6 +1,6 @@
-"""The texts of an editor and what was read of them.
+"""Texts of an editor and their analyses.
 
-The server changes texts as its messages come; answers are computed from a `Snapshot`, which never changes.
+The server changes texts with each message. Answers are computed from a `Snapshot`, which never changes.
 """
 
 from __future__ import annotations
@@ -37,15 +37,15 @@ if TYPE_CHECKING:
     from robosc.language import File, Reading, Reference
 
 _BREAK = re.compile(r"\r\n|\r|\n")
-#: So many analyses leave their models to the collector of circles before it is called.
+#: Number of analyses after which the garbage collector for reference cycles runs.
 _COLLECTED = 16
-#: Seconds between two checkpoints of a thread that waits for the analysis of another one.
+#: Seconds between two checkpoints of a thread that waits for the analysis by another one.
 _WAIT = 0.05
 
 
 @dataclass(frozen=True)
 class Document:
-    """An open text, as the editor counts its versions."""
+    """An open text, with the version number of the editor."""
 
     uri: str
     version: int | None
@@ -56,7 +56,7 @@ class Project:
     """The open texts of an editor, its folders, and the settings of the server."""
 
     def __init__(self, libraries: Sequence[Path | str] = (), interfaces: Sequence[Path | str] = ()) -> None:
-        """`libraries` are the folders for libraries after a text's own, `interfaces` those with ROS packages below."""
+        """Search `libraries` after a text's own folder, and ROS packages below the folders `interfaces`."""
         self.libraries = tuple(Path(folder).resolve() for folder in libraries)
         self.interfaces = tuple(interfaces)
         self.folders: tuple[Path, ...] = ()
@@ -65,18 +65,21 @@ class Project:
         self._ros_types: RosTypes | None = None
 
     def path(self, uri: str) -> Path:
-        """The path of a document. One that can have no file, such as an unsaved text, is in the first folder."""
+        """Return the path of a document.
+
+        A document without a file, such as an unsaved text, is in the first folder.
+        """
         name = to_fs_path(uri)
         if name is not None:
             try:
                 return Path(name).resolve()
-            except (ValueError, RuntimeError):  # A character that no path has, or links in a circle.
+            except (ValueError, RuntimeError):  # An invalid character, or a cycle of links.
                 pass
         folder = self.folders[0] if self.folders else Path.cwd()
         return folder / quote(uri, safe="", errors="surrogatepass")
 
     def put(self, uri: str, version: int | None, content: str) -> Path:
-        """Puts a text in place of a file, or what it is now in place of what it was."""
+        """Replace a file by an open text, or an open text by its new content."""
         path = self.path(uri)
         if path not in self._documents:
             self._memory.forget()
@@ -84,7 +87,7 @@ class Project:
         return path
 
     def change(self, uri: str, version: int | None, changes: Iterable[tuple[Range | None, str]]) -> None:
-        """Replaces ranges of an open text, in UTF-16 positions, one after the other; None: the whole text."""
+        """Replace ranges of an open text, in UTF-16 positions, one after the other; None means the whole text."""
         document = self._documents.get(self.path(uri))
         if document is None:
             return
@@ -94,32 +97,32 @@ class Project:
         self.put(uri, version, content)
 
     def close(self, uri: str) -> None:
-        """Lets the file count again."""
+        """Close an open text, so that its file counts again."""
         path = self.path(uri)
         self._documents = {other: document for other, document in self._documents.items() if other != path}
         self._memory.forget()
 
     def forget(self) -> None:
-        """Reads everything again: files or settings have changed."""
+        """Drop all analyses, because files or settings have changed."""
         self._memory.forget()
         self._ros_types = None
 
     def snapshot(self) -> Snapshot:
-        """The project as it is now."""
+        """Return the current state of the project."""
         self._ros_types = self._ros_types or RosTypes(self.interfaces)
         return Snapshot(self._documents, self.folders, self.libraries, self._ros_types, self._memory)
 
     def is_current(self, snapshot: Snapshot) -> bool:
-        """Whether no text has changed since a snapshot was taken."""
+        """Return whether no text has changed since a snapshot was taken."""
         return snapshot.documents is self._documents
 
 
-#: The first line and unit, the last line and unit.
+#: First line and unit, last line and unit.
 Range = tuple[int, int, int, int]
 
 
 def _replaced(content: str, place: Range, text: str) -> str:
-    """A text, its line breaks as the editor has them, with another one in place of a range."""
+    """Replace a range of a text; the text has the line breaks of the editor."""
     line, unit, end_line, end_unit = place
     breaks = [found.span() for found in _BREAK.finditer(content)]
     start = _offset(content, breaks, line, unit)
@@ -145,17 +148,17 @@ class Analysis:
 
     @property
     def file(self) -> File:
-        """The text itself."""
+        """The file of the text itself."""
         return self.reading.file
 
     @property
     def text(self) -> Text:
-        """The text itself, its line breaks line feeds."""
+        """The text itself, with line feeds as line breaks."""
         return self.file.text
 
     @cached_property
     def declarations(self) -> Mapping[Any, tuple[File, Reference]]:
-        """Where the names of all elements are declared, libraries included."""
+        """Declarations of the names of all elements, including those of libraries."""
         return {
             name.target: (file, name)
             for file in self.reading.files.values()
@@ -165,23 +168,23 @@ class Analysis:
 
     @property
     def is_large(self) -> bool:
-        """Whether typing must not wait until it is read in whole."""
+        """Whether the text is too large to read it as a whole after each change."""
         return self.text.content.count("\n") >= LARGE
 
     @cached_property
     def slices(self) -> Slices:
-        """Its definitions, for what is typed into one of them."""
+        """Its definitions, for changes within one of them."""
         return Slices(self.file, self.findings)
 
     def key(self, element: Any) -> tuple[str, int] | None:
-        """The identity of an element in the analysis of any text: the file and offset of its name."""
+        """Return an identity of an element that all analyses share: the file and offset of its name."""
         found = self.declarations.get(element)
         return None if found is None else (found[0].text.file, found[1].start)
 
 
 @dataclass
 class _Memory:
-    """The last analysis of each text, and what it depends on."""
+    """The last analysis of each text, and the texts on which it depends."""
 
     analyses: dict[Path, tuple[Analysis, Mapping[Path, str], Mapping[Path, str | None]]] = field(default_factory=dict)
     made: int = 0
@@ -189,7 +192,10 @@ class _Memory:
 
     @contextmanager
     def only_one(self, path: Path) -> Iterator[None]:
-        """Let one thread analyze a text: another one waits for its result, unless its own check interrupts it."""
+        """Let only one thread analyze a text.
+
+        Other threads wait for its result, unless their own check interrupts them.
+        """
         lock = self.locks[path]
         while not lock.acquire(timeout=_WAIT):
             checkpoint()
@@ -202,7 +208,7 @@ class _Memory:
         self.analyses = {}
 
     def count(self) -> None:
-        """Models hold each other in circles: those of texts that have gone are collected now and then."""
+        """Count an analysis; collect garbage now and then, because models contain reference cycles."""
         self.made += 1
         if self.made % _COLLECTED == 0:
             gc.collect()
@@ -210,7 +216,7 @@ class _Memory:
 
 @dataclass(frozen=True, eq=False)
 class Snapshot:
-    """The project at one moment. Analyses are made when they are asked for, and kept for later snapshots."""
+    """The project at one moment. Analyses are created on demand and reused by later snapshots."""
 
     documents: Mapping[Path, Document]
     folders: tuple[Path, ...]
@@ -220,11 +226,11 @@ class Snapshot:
 
     @cached_property
     def texts(self) -> Documents:
-        """The open texts over the files."""
+        """The open texts, which take precedence over the files."""
         return Documents({str(path): document.content for path, document in self.documents.items()})
 
     def analysis(self, path: Path) -> Analysis | None:
-        """Return the analysis of the text at a path; None where no such text can be read."""
+        """Return the analysis of the text at a path, or None if the text cannot be read."""
         with self.memory.only_one(path):
             return self._analysis(path)
 
@@ -250,9 +256,9 @@ class Snapshot:
         return analysis
 
     def quick_findings(self, path: Path) -> tuple[Text, dict[str, Text], list[Diagnostic]] | None:
-        """Return the findings in a large text that changed within one definition, reading only that again.
+        """Return a large text, all texts by file, and the findings, after a change within one definition.
 
-        With the text, and all texts by the files that the findings carry. None where that can't be told so.
+        Only the changed definition is read again. Returns None if its findings cannot be determined this way.
         """
         document, known = self.documents.get(path), self.memory.analyses.get(path)
         if document is None or known is None or document.content.count("\n") < LARGE:
@@ -278,14 +284,14 @@ class Snapshot:
 
     @cached_property
     def _headers(self) -> Mapping[Path, str | None]:
-        """Which open text declares which library: when one is renamed, other texts find another one."""
+        """Names of the libraries that open texts declare: renaming one affects the imports of other texts."""
         return {
             path: declared_name(document.content.encode("utf-8", "surrogatepass"))
             for path, document in self.documents.items()
         }
 
     def edited(self, edits: Mapping[Path, Iterable[Edit]]) -> Snapshot:
-        """The project as it would be after edits of texts, by their paths."""
+        """Return the project after edits of texts, by their paths."""
         documents = dict(self.documents)
         for path, changes in edits.items():
             before = documents.get(path) or Document(path.as_uri(), None, self.texts.read(path).decode())
@@ -294,18 +300,18 @@ class Snapshot:
         return self.with_documents(documents)
 
     def with_documents(self, documents: Mapping[Path, Document]) -> Snapshot:
-        """The project as it would be with other texts."""
+        """Return the project with other texts."""
         return replace(self, documents=documents, memory=_Memory())
 
     def models(self) -> list[Path]:
-        """All texts that the editor has open or that are in its folders, without those in hidden folders."""
+        """Return the paths of all open texts and of all texts in the editor's folders, hidden folders excluded."""
         found = dict.fromkeys(self.documents)
         for folder in self.folders:
             found |= dict.fromkeys(Path(path).resolve() for path in files_below(folder, ".rscd"))
         return list(found)
 
     def analyses_with(self, word: str) -> Iterator[Analysis]:
-        """The analyses of all texts of the project in which a word stands."""
+        """Yield the analyses of all texts of the project that contain a word."""
         for path in self.models():
             try:
                 content = self.texts.read(path, is_input=False)
@@ -317,6 +323,6 @@ class Snapshot:
                     yield analysis
 
     def uri(self, file: str) -> str:
-        """The URI of a file, as the editor itself writes it where it has the file open."""
+        """Return the URI of a file; if the file is open, the URI of the editor."""
         document = self.documents.get(Path(file).resolve())
         return document.uri if document is not None else str(from_fs_path(os.fspath(file)))

@@ -1,4 +1,4 @@
-"""What is in a text: symbols, folds, hovers, where names are declared and used, the layout."""
+"""Symbols, folds, hovers, references and formatting of a text."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def _kind(element: object) -> types.SymbolKind:
 
 
 def symbols(_: Snapshot, analysis: Analysis, params: types.DocumentSymbolParams) -> list[types.DocumentSymbol]:
-    """The definitions of a text, each in the one that it stands in."""
+    """Return the definitions of a text, nested as in the text."""
     return _symbols(analysis.text, outline(analysis.file))
 
 
@@ -67,7 +67,7 @@ def _symbols(text: Text, items: Iterable[Item]) -> list[types.DocumentSymbol]:
 
 
 def workspace_symbols(snapshot: Snapshot, query: str) -> list[types.WorkspaceSymbol]:
-    """The named definitions of the project whose names have the letters of a query in their order."""
+    """Return the named definitions of the project whose names contain the letters of a query in this order."""
     found = []
     for path in snapshot.models():
         analysis = snapshot.analysis(path)
@@ -92,7 +92,7 @@ def _matches(query: str, name: str) -> bool:
 
 
 def folding_ranges(_: Snapshot, analysis: Analysis, params: types.FoldingRangeParams) -> list[types.FoldingRange]:
-    """What can be folded, and blocks of comments."""
+    """Return the foldable ranges of a text, including blocks of comments."""
     text = analysis.text
     lines = {
         (text.to_utf16(start)[0], text.to_utf16(end)[0]): types.FoldingRangeKind.Region
@@ -111,7 +111,7 @@ def folding_ranges(_: Snapshot, analysis: Analysis, params: types.FoldingRangePa
 
 
 def selection_ranges(_: Snapshot, analysis: Analysis, params: types.SelectionRangeParams) -> list[types.SelectionRange]:
-    """For each position that is asked for the ranges around it, each within the next."""
+    """Return, for each position of the request, the ranges around it, each within the next one."""
     return [_selection(analysis, position) for position in params.positions]
 
 
@@ -124,7 +124,7 @@ def _selection(analysis: Analysis, position: types.Position) -> types.SelectionR
 
 
 def hover(snapshot: Snapshot, analysis: Analysis, params: types.HoverParams) -> types.Hover | None:
-    """What there is to say of the name at a position."""
+    """Return the description of the name at a position."""
     name = analysis.file.name_at(to_offset(analysis.text, params.position))
     said = describe(analysis.reading, name.target, snapshot.ros_types) if name is not None else None
     if name is None or said is None:
@@ -134,7 +134,7 @@ def hover(snapshot: Snapshot, analysis: Analysis, params: types.HoverParams) -> 
 
 
 def definition(snapshot: Snapshot, analysis: Analysis, params: types.DefinitionParams) -> list[types.LocationLink]:
-    """Where the name at a position is declared; of a library's name, its file."""
+    """Return the declaration of the name at a position; for the name of a library, its file."""
     name = analysis.file.name_at(to_offset(analysis.text, params.position))
     if name is None or name.target is None:
         return []
@@ -148,7 +148,7 @@ def definition(snapshot: Snapshot, analysis: Analysis, params: types.DefinitionP
 
 
 def occurrences(snapshot: Snapshot, analysis: Analysis, offset: int) -> list[tuple[File, Reference]]:
-    """All places of the project where the element is named that is named at an offset; empty where none is."""
+    """Return all references in the project to the element named at an offset; empty if there is no name."""
     name = analysis.file.name_at(offset)
     key = analysis.key(name.target) if name is not None and name.target is not None else None
     if name is None or key is None:
@@ -163,7 +163,7 @@ def occurrences(snapshot: Snapshot, analysis: Analysis, offset: int) -> list[tup
 
 
 def references(snapshot: Snapshot, analysis: Analysis, params: types.ReferenceParams) -> list[types.Location]:
-    """Where the element is named that is named at a position."""
+    """Return the references to the element named at a position."""
     return [
         location(snapshot, file.text, name.start, name.end)
         for file, name in occurrences(snapshot, analysis, to_offset(analysis.text, params.position))
@@ -172,7 +172,7 @@ def references(snapshot: Snapshot, analysis: Analysis, params: types.ReferencePa
 
 
 def highlights(_: Snapshot, analysis: Analysis, params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
-    """Where the text names the element that it names at a position."""
+    """Return the references within the text to the element named at a position."""
     name = analysis.file.name_at(to_offset(analysis.text, params.position))
     if name is None or name.target is None:
         return []
@@ -187,20 +187,20 @@ def highlights(_: Snapshot, analysis: Analysis, params: types.DocumentHighlightP
 
 
 def formatting(_: Snapshot, analysis: Analysis, params: types.DocumentFormattingParams) -> list[types.TextEdit]:
-    """What lays a text out; nothing where it has syntax errors."""
+    """Return the edits that format a text; none if it has syntax errors."""
     return _edits(analysis, 0, len(analysis.text.content))
 
 
 def range_formatting(
     _: Snapshot, analysis: Analysis, params: types.DocumentRangeFormattingParams
 ) -> list[types.TextEdit]:
-    """The same for what is in a range."""
+    """Return the edits that format a range of a text; none if the text has syntax errors."""
     text = analysis.text
     return _edits(analysis, to_offset(text, params.range.start), to_offset(text, params.range.end))
 
 
 def _edits(analysis: Analysis, start: int, end: int) -> list[types.TextEdit]:
     text = analysis.text
-    if analysis.file.findings:  # It has syntax errors, as reading it has said already.
+    if analysis.file.findings:  # These are its syntax errors, reported when it was read.
         return []
     return [types.TextEdit(to_range(text, first, last), new) for first, last, new in format_edits(text, start, end)]

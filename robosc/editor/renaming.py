@@ -1,4 +1,4 @@
-"""Renaming, which never changes what a model means: the new texts are read before anything is answered."""
+"""Renaming that preserves the meaning of models: the new texts are read and checked before the answer."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _FAILED = int(types.LSPErrorCodes.RequestFailed)
 def prepare_rename(
     snapshot: Snapshot, analysis: Analysis, params: types.PrepareRenameParams
 ) -> types.PrepareRenamePlaceholder | None:
-    """The name at a position that can be renamed; None where none stands there."""
+    """Return the name at a position if it can be renamed, or None if there is no name."""
     name = analysis.file.name_at(to_offset(analysis.text, params.position))
     if name is None or name.target is None:
         return None
@@ -38,10 +38,9 @@ def prepare_rename(
 
 
 def rename(snapshot: Snapshot, analysis: Analysis, params: types.RenameParams) -> types.WorkspaceEdit | None:
-    """The edits that give the element at a position a new name, in all files of the project.
+    """Return the edits that rename the element at a position, in all files of the project.
 
-    Raises JsonRpcException, which the editor shows, where the name can't be one, or the texts would mean something
-    else.
+    Raises JsonRpcException, which the editor shows, if the new name is invalid or the texts would change their meaning.
     """
     new, offset = params.new_name.removeprefix("^"), to_offset(analysis.text, params.position)
     name = analysis.file.name_at(offset)
@@ -54,7 +53,7 @@ def rename(snapshot: Snapshot, analysis: Analysis, params: types.RenameParams) -
 
 
 class Renaming(NamedTuple):
-    """A name of the element to rename, the new name, and further edits of the text that belong to it."""
+    """A name of the element to rename, the new name, and further edits of the text that belong to the renaming."""
 
     name: Reference
     new: str
@@ -64,9 +63,9 @@ class Renaming(NamedTuple):
 def rename_everywhere(
     snapshot: Snapshot, analysis: Analysis, renaming: Renaming, mended: Sequence[Diagnostic] = ()
 ) -> types.WorkspaceEdit:
-    """The edits that rename an element in all files of the project; `mended` are the findings that they are to mend.
+    """Return the edits that rename an element in all files of the project; they must fix the findings `mended`.
 
-    Raises JsonRpcException where the texts would mean something else.
+    Raises JsonRpcException if the texts would change their meaning.
     """
     name, new, others = renaming
     texts = {analysis.text.file: analysis.text}
@@ -81,7 +80,7 @@ def rename_everywhere(
 
 
 def renaming_of(file: File, edits: Collection[Edit]) -> Renaming | None:
-    """The renaming that edits are; None where they do not replace the declared name of an element and all its uses."""
+    """Return the renaming that edits amount to, or None if they do not replace a declared name and all its uses."""
     texts = {edit.span: edit.text for edit in edits}
     for name in file.names:
         new = texts.get(file.text.span(name.start, name.end)) if name.is_declaration else None
@@ -108,9 +107,9 @@ def _require_same(
     edits: Mapping[str, Sequence[Edit]],
     mended: Sequence[Diagnostic],
 ) -> None:
-    """Read the texts as they would be; refuse edits after which a model is worse.
+    """Check the texts after the edits, and reject edits that make a model worse.
 
-    A text that can't be read in part is no basis where the word stands in that part.
+    They are also rejected if the word occurs in an unreadable part of a text.
     """
     analyses = {analysis.path: analysis} | {found.path: found for found in snapshot.analyses_with(word)}
     for found in analyses.values():

@@ -1,9 +1,9 @@
-"""The server: messages of the protocol in, answers and findings out.
+"""The server: receives messages of the protocol, and sends answers and findings.
 
-The thread of the event loop takes messages as they come. A second thread computes answers one after the other, a third
-one looks for findings, so that neither typing nor an answer waits for them. The server abandons work whose result
-nobody needs: of a request that the editor canceled, on texts that have changed (the answer is "content modified"), and
-work that takes too long (the answer is "request failed").
+The thread of the event loop receives messages. A second thread computes answers one after the other. A third thread
+computes findings, so that neither typing nor an answer waits for them. The server abandons three kinds of work:
+requests that the editor canceled, work on texts that have changed ("content modified"), and work that takes too long
+("request failed").
 """
 
 from __future__ import annotations
@@ -44,11 +44,11 @@ if TYPE_CHECKING:
     from robosc.editor.synthesis import Question
 
 _Answer = TypeVar("_Answer")
-#: How long after the last key findings are looked for, in seconds, where the editor sets nothing else.
+#: Default delay in seconds between the last keystroke and the search for findings.
 _PAUSE = 0.15
-#: How long after that a large text is read in whole, if what was typed could be looked at by itself.
+#: Further delay in seconds before a large text is read as a whole, if its changed part was checked by itself.
 _REST = 0.6
-#: What is asked about one text, and what answers it: of the project, of the text, and of what was asked.
+#: Handlers of requests about one text: functions of the project, the text, and the parameters of the request.
 ANSWERS: Mapping[str, Callable[[Snapshot, Analysis, Any], Any]] = {
     types.TEXT_DOCUMENT_DOCUMENT_SYMBOL: reading.symbols,
     types.TEXT_DOCUMENT_FOLDING_RANGE: reading.folding_ranges,
@@ -75,7 +75,7 @@ _OPTIONS: Mapping[str, Any] = {
     types.TEXT_DOCUMENT_CODE_ACTION: CODE_ACTION_OPTIONS,
     types.TEXT_DOCUMENT_RENAME: types.RenameOptions(prepare_provider=True),
 }
-#: The processor time in seconds after which an answer, or the findings of one text, are abandoned.
+#: Limit of processor time in seconds for an answer, or for the findings of one text.
 _LONGEST = 30.0
 _CONTENT_MODIFIED = int(types.LSPErrorCodes.ContentModified)
 _REQUEST_FAILED = int(types.LSPErrorCodes.RequestFailed)
@@ -85,13 +85,13 @@ _TOO_LONG = f"this took more than {_LONGEST:.0f} seconds of processor time"
 class _Protocol(LanguageServerProtocol):
     @lsp_method(types.INITIALIZE)
     def lsp_initialize(self, params: types.InitializeParams) -> Generator[Any, Any, types.InitializeResult]:
-        """Positions are in units of UTF-16, which every editor must know, whatever else it offers."""
+        """Initialize with UTF-16 positions, which every editor supports, whatever else it offers."""
         if params.capabilities.general is not None:
             params.capabilities.general.position_encodings = None
         return (yield from super().lsp_initialize(params))
 
     def _execute_handler(self, msg_id: Any, handler: Any, callback: Any, *rest: Any, **options: Any) -> None:
-        """Forgets what has been handled: pygls 2.1 keeps the future of each notification for as long as it runs."""
+        """Drop futures when they are done: pygls 2.1 keeps the future of each notification as long as it runs."""
 
         def done(future: Any) -> None:
             self._request_futures.pop(msg_id, None)
@@ -100,7 +100,7 @@ class _Protocol(LanguageServerProtocol):
         super()._execute_handler(msg_id, handler, done, *rest, **options)
 
     def structure_message(self, data: dict[str, Any]) -> Any:
-        """Answer a request whose parameters are no parameters of its method: pygls 2.1 only logs it."""
+        """Reject a request whose parameters do not fit its method: pygls 2.1 only logs it."""
         try:
             return super().structure_message(data)
         except JsonRpcException as error:
@@ -113,12 +113,12 @@ class Server(LanguageServer):
     """A language server for one editor."""
 
     def __init__(self, version: str, libraries: Sequence[str] = (), interfaces: Sequence[str] = ()) -> None:
-        """`version` is robosc's; `libraries` and `interfaces` are the folders that its call names."""
+        """Create a server of this version of robosc with the library and interface folders of the command line."""
         super().__init__("robosc", version, protocol_cls=_Protocol)
         self.project = Project(libraries, interfaces)
         self._worker = ThreadPoolExecutor(1, "answers")
         self._finder = ThreadPoolExecutor(1, "findings")
-        #: What is typed into a large text is looked at beside the questions about the whole.
+        #: Checks changes within a large text in parallel to requests about the whole text.
         self._quick = ThreadPoolExecutor(1, "slices")
         self._pause = _PAUSE
         self._ended = False
@@ -130,7 +130,7 @@ class Server(LanguageServer):
         _register(self)
 
     def shutdown(self) -> None:
-        """Ends the server."""
+        """Stop the server."""
         self._ended = True
         self.verdicts.cancel()
         for worker in (self._worker, self._finder, self._quick):
@@ -138,10 +138,10 @@ class Server(LanguageServer):
         super().shutdown()  # type: ignore[no-untyped-call]
 
     def configure(self, params: types.InitializeParams) -> None:
-        """Takes the editor's folders and settings.
+        """Apply the editor's folders and settings.
 
-        These are `libraryPaths`, `interfacePaths`, `pause` in milliseconds, and `commands`, which says that the editor
-        has those of the extension for VS Code.
+        The settings are `libraryPaths`, `interfacePaths`, `pause` in milliseconds, and `commands`. The latter is true
+        if the editor has the commands of the extension for VS Code.
         """
         options = params.initialization_options
         given: Mapping[str, Any] = options if isinstance(options, dict) else {}
@@ -152,20 +152,20 @@ class Server(LanguageServer):
         self.take_folders()
 
     def add_library_folder(self, folder: str) -> None:
-        """Looks for libraries in one folder more."""
+        """Search one more folder for libraries."""
         self.project.libraries = (*self.project.libraries, self.project.path(folder))
         self.project.forget()
         self.changed()
 
     def take_folders(self) -> None:
-        """Takes the editor's folders."""
+        """Apply the editor's folders."""
         uris = list(self.workspace.folders)
         if not uris and self.workspace.root_uri:
             uris = [self.workspace.root_uri]
         self.project.folders = tuple(self.project.path(uri) for uri in uris)
 
     async def answer(self, uri: str, job: Callable[[Snapshot, Analysis], _Answer]) -> _Answer | None:
-        """Run a job on a text when its turn comes; None where there is no such text."""
+        """Run a job on a text when its turn comes; return None if there is no such text."""
         path = self.project.path(uri)
 
         def with_text(snapshot: Snapshot) -> _Answer | None:
@@ -191,7 +191,7 @@ class Server(LanguageServer):
             raise
 
     def _check(self, snapshot: Snapshot, canceled: threading.Event | None = None) -> Callable[[], None]:
-        """Return what raises JsonRpcException as soon as nobody needs the work of this thread, or it takes too long."""
+        """Return a check that raises JsonRpcException if the work of this thread is obsolete or takes too long."""
         project, end = self.project, time.thread_time() + _LONGEST
 
         def check() -> None:
@@ -203,14 +203,17 @@ class Server(LanguageServer):
         return check
 
     def changed(self, typed: Path | None = None) -> None:
-        """Looks for findings after a pause, unless something changes before; `typed` is a text that was typed into."""
+        """Search for findings after a pause without further changes.
+
+        `typed` is the text in which the user typed.
+        """
         self.verdicts.cancel()
         if self._waiting is not None:
             self._waiting.cancel()
         self._waiting = asyncio.get_running_loop().create_task(self._find(typed))
 
     def verdict(self, asked: Question) -> Verdict | str | None:
-        """Return the verdict of synthesis once it is known; None before."""
+        """Return the verdict of synthesis, or None if it is not yet known."""
         project = self.project
         return self.verdicts.ask(asked, list(map(str, project.libraries)), list(map(str, project.interfaces)))
 
@@ -220,7 +223,7 @@ class Server(LanguageServer):
             self.workspace_code_lens_refresh(None)
 
     def tell_again(self, path: Path) -> None:
-        """Tells the findings of a text that has been opened, even if they are those of before."""
+        """Publish the findings of an opened text even if they have not changed."""
         self._published.pop(path, None)
 
     async def _find(self, typed: Path | None) -> None:
@@ -232,12 +235,12 @@ class Server(LanguageServer):
         try:
             found = await asyncio.get_running_loop().run_in_executor(self._finder, self._findings, snapshot)
         except (RuntimeError, JsonRpcException):
-            return  # The server ends, or a text has changed.
+            return  # The server stops, or a text has changed.
         if self.project.is_current(snapshot):
             self._publish(snapshot, found)
 
     def _findings(self, snapshot: Snapshot) -> dict[Path, list[types.Diagnostic]]:
-        """Return what to publish of all texts. Raises JsonRpcException where one of them has changed."""
+        """Return the diagnostics to publish for all texts. Raises JsonRpcException if one of them has changed."""
         analyses, told = [], {}
         for path in snapshot.documents:
             try:
@@ -257,7 +260,7 @@ class Server(LanguageServer):
         return told
 
     async def _find_quickly(self, snapshot: Snapshot, path: Path) -> bool:
-        """Tells what is found in the definition in which was typed; whether that can be told."""
+        """Publish the findings of the definition in which the user typed, and return whether this is possible."""
 
         def in_turn() -> list[types.Diagnostic] | None:
             with checking(self._check(snapshot)):
@@ -266,7 +269,7 @@ class Server(LanguageServer):
         try:
             found = await asyncio.get_running_loop().run_in_executor(self._quick, in_turn)
         except (RuntimeError, JsonRpcException):
-            return False  # The server ends, a text has changed, or it took too long.
+            return False  # The server stops, a text has changed, or the search took too long.
         if found is not None and self.project.is_current(snapshot):
             version = snapshot.documents[path].version
             self._published[path] = version, found
@@ -275,7 +278,10 @@ class Server(LanguageServer):
         return found is not None
 
     def _publish(self, snapshot: Snapshot, found: Mapping[Path, list[types.Diagnostic]]) -> None:
-        """Tells the editor what has changed: of files that it has not open only what is wrong with them."""
+        """Publish changed diagnostics.
+
+        A file that is not open is published only if it has, or had, findings.
+        """
         for path in [*found, *(path for path in self._published if path not in found)]:
             document = snapshot.documents.get(path)
             version, diagnostics = document.version if document else None, found.get(path, [])
@@ -341,7 +347,7 @@ def _register_texts(server: Server) -> None:
 
 
 async def _watch_files(server: Server) -> None:
-    """Asks the editor to tell of changes to files that it has not open, where it can."""
+    """Ask the editor to report changes of files that are not open, if it supports this."""
     workspace = server.client_capabilities.workspace
     watched = workspace.did_change_watched_files if workspace else None
     if watched is None or not watched.dynamic_registration:
@@ -388,7 +394,7 @@ def _register_answers(server: Server) -> None:
 
         answer = await server.answer(params.text_document.uri, job)
         found, named, asked = answer or (None, None, None)
-        # Who asks again has it, also in an editor without code lenses.
+        # A later hover shows the verdict, even in an editor without code lenses.
         known = server.verdict(asked) if asked is not None else None
         if found is not None and named is not None and isinstance(known, Verdict) and named in known.guards:
             assert isinstance(found.contents, types.MarkupContent)
@@ -419,10 +425,10 @@ def _handler(server: Server, job: Callable[[Snapshot, Analysis, Any], Any]) -> C
 
 
 def serve(server: Server, port: int | None = None) -> None:
-    """Serves one editor over the standard input and output, or over a port of this computer, until it says `exit`."""
+    """Serve one editor over the standard input and output, or over a local port, until it sends `exit`."""
     logging.basicConfig(stream=sys.stderr, level=logging.WARNING, format="%(message)s")
     language()
-    # The grammar stays; the models of texts that have gone are collected.
+    # The grammar is permanent; the models of closed texts are collected.
     gc.freeze()
     gc.set_threshold(50_000, 10, 10)
     if port is None:

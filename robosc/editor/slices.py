@@ -1,8 +1,8 @@
-"""Findings in the definition that the user edits, before a whole large text is read again.
+"""Findings in the definition that the user edits, before the whole large text is read again.
 
-A change within one definition is looked at in a slice of the text: this definition, all that it may name, and what
-names it; everything else is blank, so that lines and columns are those of the text. Findings in the definition are
-those of the slice; all others are those of before, moved. As soon as the typing rests the whole text is read.
+A change within one definition is checked in a slice of the text: this definition, everything that it may name, and
+everything that names it. The rest is blank, so that lines and columns stay the same. Findings in the definition come
+from the slice. All others are the previous ones, moved. The whole text is read when the user stops typing.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic
     from robosc.language import File, Text
 
-#: Texts of fewer lines are read in whole.
+#: Texts with fewer lines are always read as a whole.
 LARGE = 200
 _WORD = re.compile(r"[A-Za-z_]\w*")
-#: What other definitions can name without naming the definition around it.
+#: Elements that other definitions can name without naming the definition around them.
 _VISIBLE = (
     rsc.Component,
     rsc.ComplexDataType,
@@ -37,25 +37,25 @@ _VISIBLE = (
     rsc.EnumValue,
     rsc.AutomatonRequirement,
 )
-#: Components whose communication is declared elsewhere.
+#: Types of components whose communication is declared elsewhere.
 _MADE = (rsc.ImportedComponent, rsc.InstantiatedComponent)
 
 
 class Slices:
-    """The definitions of a text that was read in whole, and what names what in it."""
+    """The definitions of a text that was read as a whole, and the references between them."""
 
     def __init__(self, file: File, findings: Sequence[Diagnostic]) -> None:
-        """`findings` are all that was found in the text and in those that it imports from."""
+        """Take a file with all findings in its text and in the texts that it imports."""
         self._file = file
         self._findings = findings
 
     def prepare(self) -> None:
-        """Finds out what the first slice needs."""
+        """Compute the data for the first slice in advance."""
         self._needed(set(), set())
         _ = self._naming, self._visible, self._made
 
     def slice(self, text: Text) -> Slice | None:
-        """The slice for a text that has come of this one by changes within one definition; else None."""
+        """Return the slice for a text that differs from this one within one definition, or None."""
         before, after = self._file.text.content, text.content
         same = _common(before, after)
         most = min(len(before), len(after)) - same
@@ -66,7 +66,7 @@ class Slices:
             return None
         start, end = self._ranges[index]
         grown = len(after) - len(before)
-        # What stands in one line with another definition has columns that move.
+        # The columns of a definition change if another definition is in the same line.
         if "\n" not in before[self._ranges[index - 1][1] if index else 0 : start] or "\n" not in before[end:]:
             return None
         if index + 1 < len(self._ranges) and "\n" not in before[end : self._ranges[index + 1][0]]:
@@ -89,7 +89,7 @@ class Slices:
         return (other for other in (index - 1, index + 1) if 0 <= other < len(self._ranges))
 
     def _needed(self, wanted: set[int], words: set[str]) -> set[int]:
-        """These definitions, those that words may name, and all that these name."""
+        """Return these definitions, those that the words may name, and all that they name in turn."""
         pending = [*wanted, *(index for word in words for index in self._visible.get(word, ()))]
         found: set[int] = set()
         while pending:
@@ -101,7 +101,7 @@ class Slices:
 
     @cached_property
     def _ranges(self) -> list[tuple[int, int]]:
-        """Where the definitions stand, those that could not be read, too."""
+        """Ranges of the definitions, including unreadable ones."""
         return [(item.start, item.end) for item in Outline(self._file.text.tokens).file().items]
 
     @cached_property
@@ -128,7 +128,7 @@ class Slices:
 
     @cached_property
     def _named(self) -> list[set[int]]:
-        """By the index of a definition those that it names."""
+        """Definitions that a definition names, by its index."""
         found: list[set[int]] = [set() for _ in self._ranges]
         for name in self._file.names:
             target = self._declared.get(name.target) if not name.is_declaration else None
@@ -139,7 +139,7 @@ class Slices:
 
     @cached_property
     def _naming(self) -> list[set[int]]:
-        """By the index of a definition those that name it."""
+        """Definitions that name a definition, by its index."""
         found: list[set[int]] = [set() for _ in self._ranges]
         for index, named in enumerate(self._named):
             for other in named:
@@ -155,13 +155,13 @@ class Slices:
         }
 
     def has(self, finding: Diagnostic) -> bool:
-        """Whether the same was found somewhere."""
+        """Return whether the text had a finding with the same message."""
         return any(finding.message == other.message for other in self._findings)
 
     def others(self, place: tuple[int, int], last: int, users: Sequence[tuple[int, int]]) -> list[Diagnostic]:
-        """The findings outside of a definition, as they are where it now ends in the line `last`.
+        """Return the findings outside of a definition that now ends in the line `last`, moved accordingly.
 
-        `users` is where those stand that name it: whether names are resolved there, the slice says.
+        `users` are the ranges that name the definition. Findings about unresolved names in them come from the slice.
         """
         text = self._file.text
         start, end = (text.span(offset, offset) for offset in place)
@@ -194,9 +194,10 @@ class Slices:
 
 @dataclass(frozen=True)
 class Slice:
-    """A text in which all but some definitions are blank, its `content`.
+    """A text in which only some definitions are not blank (`content`).
 
-    `before` is where the definition stood that has `grown`, `users` where those stood that name it.
+    `before` is the old range of the changed definition, `grown` its growth in code points, `users` the old ranges of
+    those that name it.
     """
 
     slices: Slices
@@ -207,7 +208,7 @@ class Slice:
     users: Sequence[tuple[int, int]]
 
     def findings(self, found: Iterable[Diagnostic]) -> list[Diagnostic] | None:
-        """The findings of the whole text, given those of the slice; None where they are not of the definition alone."""
+        """Return the findings of the whole text from those of the slice, or None if other definitions are affected."""
         start, end = self.before[0], self.before[1] + self.grown
         moved = ((*user, self.grown if user[0] > start else 0) for user in self.users)
         users = [(first + by, last + by) for first, last, by in moved]
@@ -231,13 +232,13 @@ def _within(offset: int, ranges: Iterable[tuple[int, int]]) -> bool:
 
 
 def _blank(text: str) -> str:
-    """As many lines, the last one as long, with nothing in them."""
+    """Return as many lines without text, the last one as long as before."""
     *lines, last = text.split("\n")
     return "\n" * len(lines) + " " * len(last)
 
 
 def _common(first: str, second: str) -> int:
-    """How many characters two texts begin with alike."""
+    """Return the length of the common prefix of two texts."""
     low, high = 0, min(len(first), len(second))
     while low < high:
         middle = (low + high + 1) // 2

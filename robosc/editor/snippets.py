@@ -1,4 +1,4 @@
-"""Definitions in whole with places to fill in: what completion offers, and the snippets of VS Code, from one table."""
+"""Templates of whole definitions, for completion and for the snippets of VS Code."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from typing import NamedTuple
 
 
 class Snippet(NamedTuple):
-    """A snippet: its name, its text, and the word by which VS Code offers it without a server, if any."""
+    """A snippet: its name, its text, and the prefix by which VS Code offers it without a server, if any."""
 
     label: str
     body: str
     prefix: str = ""
 
 
-#: By the word that they begin with.
+#: Snippets by their first word.
 SNIPPETS = {
     "robot": [
         Snippet("robot …", "robot ${1:Name} {\n  $0\n}"),
@@ -132,7 +132,7 @@ requirement ${1:Name}: automaton {
 
 
 def for_vscode() -> str:
-    """The text of `robosc.json`."""
+    """Return the text of `robosc.json`."""
     known = (snippet for snippets in SNIPPETS.values() for snippet in snippets if snippet.prefix)
     document = {label: {"prefix": prefix, "body": body.split("\n")} for label, body, prefix in known}
     return json.dumps(document, indent=2, ensure_ascii=False) + "\n"

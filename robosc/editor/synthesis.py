@@ -1,4 +1,4 @@
-"""Verdicts of synthesis beside the typing: code lenses, and guards in hovers."""
+"""Verdicts of synthesis in the background: code lenses, and guards in hovers."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from robosc.language.outlining import Item
 
 COMMAND = (sys.executable, "-m", "robosc.editor.verdict")
-#: What an editor can do with a robot, by what lenses call it.
+#: Titles of lenses on a robot, and the editor commands behind them.
 COMMANDS = {"simulate": "robosc.debug", "run": "robosc.run", "verify": "robosc.verify"}
-#: So many seconds synthesis has.
+#: Time limit of synthesis in seconds.
 _LONGEST = 120
 _FAILED = "synthesis failed: `robosc synthesize` tells more"
 RUNNING = "synthesis is running …"
@@ -34,7 +34,7 @@ RUNNING = "synthesis is running …"
 
 @dataclass(frozen=True)
 class Question:
-    """What synthesis is asked: a robot's path, all texts that it was read from, and where lenses stand by line."""
+    """A request for synthesis: a robot's path, all texts that it was read from, and the places of lenses by line."""
 
     path: Path
     texts: Mapping[str, str]
@@ -42,7 +42,7 @@ class Question:
 
 
 def question(_: Snapshot, analysis: Analysis) -> Question | None:
-    """What there is to ask about a text; None where it holds no robot, or one with errors."""
+    """Return the request for a text, or None if it holds no robot, or a robot with errors."""
     if not isinstance(analysis.reading.base, rsc.Robot) or has_errors(analysis.findings):
         return None
     robot, text = outline(analysis.file)[0], analysis.text
@@ -54,9 +54,9 @@ def question(_: Snapshot, analysis: Analysis) -> Question | None:
 def lenses(
     asked: Question, verdict: Verdict | str | None, uri: str = "", *, commands: bool = False
 ) -> list[types.CodeLens]:
-    """What to show above the robot and its requirements; with `commands` what can be done with the robot, too.
+    """Return the lenses above the robot and its requirements.
 
-    The editor itself does that: `uri` is what it calls the robot's text.
+    With `commands`, these include lenses for commands, which the editor itself runs on the robot's text `uri`.
     """
     robot, *_ = asked.places
     done = [_lens(asked.places[robot], title, command, [uri]) for title, command in COMMANDS.items() if commands]
@@ -71,7 +71,7 @@ def _lens(place: types.Range, said: str, command: str = "", arguments: Sequence[
 
 
 def communication_at(analysis: Analysis, offset: int) -> str | None:
-    """The communication that is named at an offset, with its component before it, as verdicts call it."""
+    """Return the communication named at an offset, with its component, as in `Verdict.guards`."""
     name = analysis.file.name_at(offset)
     if name is None or not isinstance(name.target, rsc.CommunicationType):
         return None
@@ -88,17 +88,17 @@ def _all(items: Sequence[Item]) -> list[Item]:
 
 
 class Verdicts:
-    """The last verdict on each text, and the processes that look for others."""
+    """The last verdict on each text, and the running synthesis processes."""
 
     def __init__(self, command: Sequence[str], news: Callable[[], None]) -> None:
-        """`command` answers a request; `news` is called when it has."""
+        """Run `command` for each request, and call `news` after each verdict."""
         self._command = command
         self._news = news
         self._answers: dict[Path, tuple[Mapping[str, str], Verdict | str]] = {}
         self._running: dict[Path, tuple[Mapping[str, str], asyncio.Task[None]]] = {}
 
     def ask(self, asked: Question, libraries: Sequence[str], interfaces: Sequence[str]) -> Verdict | str | None:
-        """The verdict on these very texts, or why there is none; None: it is looked for from now on."""
+        """Return the verdict on exactly these texts, or why there is none; None while synthesis runs."""
         known = self.known(asked.path, asked.texts)
         if known is not None:
             return known
@@ -111,12 +111,12 @@ class Verdicts:
         return None
 
     def known(self, path: Path, texts: Mapping[str, str]) -> Verdict | str | None:
-        """The verdict on these very texts, if there is one."""
+        """Return the verdict on exactly these texts, or None if there is none."""
         found = self._answers.get(path)
         return found[1] if found is not None and found[0] == texts else None
 
     def cancel(self) -> None:
-        """Ends all processes: texts have changed."""
+        """Stop all processes, because texts have changed."""
         for _, task in self._running.values():
             task.cancel()
         self._running = {}

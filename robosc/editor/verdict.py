@@ -1,8 +1,8 @@
-"""What synthesis says of a robot, in a process of its own, so that typing never waits for it and it can be ended.
+"""Synthesis for an editor in a process of its own, so that typing never waits and the editor can stop it.
 
     python -m robosc.editor.verdict < request.json > answer.json
 
-The request holds the texts and folders (`answers.Request`), the answer what to say at which lines (`answers.Verdict`).
+The request holds the texts and folders (`answers.Request`), the answer the texts to show by line (`answers.Verdict`).
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from robosc.semantics.walks import copied
 if TYPE_CHECKING:
     from robosc.analysis.supervise import Supervision
 
-#: The most memory that decision diagrams may take beside an editor, in bytes.
+#: Memory limit of decision diagrams in bytes, for use beside an editor.
 _MEMORY = 1 << 30
 
 
 def verdict(request: Request) -> Verdict:
-    """Synthesizes the supervisor of a robot without errors."""
+    """Synthesize the supervisor of a robot without errors."""
     texts: dict[str | os.PathLike[str], str] = {Path(path): text for path, text in request.texts.items()}
     model = robosc.to_sct(robosc.load(request.path, request.libraries, request.interfaces, documents=texts))
     try:
@@ -70,7 +70,7 @@ def _verdict(path: str, model: sct.SupervisoryControlModel, supervision: Supervi
 
 
 def main() -> None:
-    """Reads a request and answers it."""
+    """Read a request and write the answer."""
     if hasattr(os, "nice"):
         os.nice(10)
     answer = verdict(Request(**json.load(sys.stdin)))

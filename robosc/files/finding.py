@@ -11,10 +11,10 @@ if TYPE_CHECKING:
 
 
 def files_below(folder: Path | str, suffix: str, on_error: Callable[[OSError], object] | None = None) -> Iterator[str]:
-    """The paths of the files in a folder and below that end with a suffix, in order.
+    """Yield the paths of the files in a folder and below that end with a suffix, in order.
 
-    Hidden folders are left out, and so is what leads out of the folder, or waits for others: links, pipes, devices.
-    `on_error` is told of folders that can't be read; without it they are passed over.
+    Hidden folders, links, pipes and devices are skipped. `on_error` is called for unreadable folders; without it they
+    are skipped.
     """
     for path, inner, names in os.walk(folder, onerror=on_error):
         inner[:] = sorted(name for name in inner if not name.startswith("."))

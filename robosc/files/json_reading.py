@@ -1,4 +1,4 @@
-"""JSON and lines of JSON that somebody else has written: what can't be used is an error with its place."""
+"""Reading of JSON and lines of JSON from other programs: each fault is an error with its place."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from typing import Any, NoReturn
 
 _DEEPEST = 100
 _BRACKETS = {"{": 1, "[": 1, "]": -1, "}": -1}
-#: A string, which may have no end, or a bracket.
+#: A string, possibly unterminated, or a bracket.
 _STRING_OR_BRACKET = re.compile(r'"(?:[^"\\]|\\.)*"?|[][{}]', re.DOTALL)
-#: What Python writes, and JSON.
+#: Words of Python and their equivalents in JSON.
 _WORDS = {"True": "true", "False": "false", "None": "null"}
-#: No number has more; Python itself refuses to read some thousand.
+#: Maximum number of digits of a number; Python itself refuses to read a few thousand.
 _DIGITS = 1000
 
 
 class JsonError(ValueError):
-    """Text that is no JSON for us; `position` is where in it, in code points from 0. `hint`: how to mend it."""
+    """Invalid or unsupported JSON; `position` is its offset in code points from 0, and `hint` how to fix it."""
 
     def __init__(self, message: str, position: int = 0, hint: str | None = None) -> None:
         super().__init__(message)
@@ -28,8 +28,11 @@ class JsonError(ValueError):
 
 
 def json_value(text: str) -> Any:
-    """The value of a JSON text. Raises JsonError, also where it nests too deeply or a number is too large."""
-    # `json` follows any number of brackets, until the process ends.
+    """Return the value of a JSON text.
+
+    Raises JsonError, also if it nests too deeply or a number is too large.
+    """
+    # `json` recurses for any number of brackets, until the process crashes.
     opened = (_BRACKETS.get(found[0], 0) for found in _STRING_OR_BRACKET.finditer(text))
     if max(accumulate(opened, initial=0)) > _DEEPEST:
         raise JsonError("nested too deeply")
@@ -42,13 +45,13 @@ def json_value(text: str) -> Any:
 
 
 def _hint(text: str, position: int) -> str | None:
-    """How to mend a common mistake at a position; None for others."""
+    """Return the hint for a common mistake at a position, or None."""
     before, after = text[:position].rstrip(), text[position:].lstrip()
     word = re.match(r"\w*", after)
     assert word is not None
     if before.endswith(",") and after[:1] in ("}", "]"):
         return f"leave out the comma before `{after[0]}`"
-    if after.startswith(",") and after[1:].lstrip()[:1] in ("}", "]"):  # Python 3.13 points at the comma
+    if after.startswith(",") and after[1:].lstrip()[:1] in ("}", "]"):  # Python 3.13 reports the comma itself.
         return f"leave out the comma before `{after[1:].lstrip()[0]}`"
     if after.startswith("'"):
         return 'write texts in double quotes, as in "halt"'
@@ -64,7 +67,7 @@ def _hint(text: str, position: int) -> str | None:
 
 
 def json_lines(text: str) -> list[str]:
-    """The lines of a log or script: they end at line feeds only, for strings may hold what else breaks lines."""
+    """Return the lines of a log or script, split at line feeds only: strings may contain other line breaks."""
     return text.split("\n")
 
 

@@ -1,4 +1,4 @@
-"""Reads the files that somebody names: regular ones, of a bounded size, so that none can hang or fill the memory."""
+"""Reads files that users name: only regular ones of bounded size, so that none can block or fill the memory."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from typing import IO, TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-#: The largest file that is read. A model of 100,000 lines has 4 MB, a saved one with the deepest expression 72 MB.
+#: Maximum size of a file. A model of 100,000 lines has 4 MB, a saved one with the deepest expression 72 MB.
 MOST_BYTES = 128 << 20
 
-#: By absent names of Windows: what does not wait for a pipe's other end, and what takes no terminal.
+#: Flags, as far as the platform has them: do not wait for the other end of a pipe, do not take over a terminal.
 _CAUTIOUS = sum(getattr(os, name, 0) for name in ("O_NONBLOCK", "O_NOCTTY", "O_CLOEXEC", "O_BINARY"))
 _KINDS = {
     stat.S_IFIFO: "a pipe",
@@ -27,14 +27,14 @@ _KINDS = {
 }
 
 _Identity = tuple[int, int]
-#: The inputs that were read within `noting`, by their identity: the path by which each was named.
+#: Inputs that were read within `noting`: from their identity to the path by which each was named.
 _noted: ContextVar[dict[_Identity, str] | None] = ContextVar("noted", default=None)
 
 
 def read(path: str | os.PathLike[str], *, is_input: bool = True) -> bytes:
-    """What is in a regular file; without `is_input` it may be written over afterwards.
+    """Return the content of a regular file; without `is_input`, the tool may overwrite it later.
 
-    Raises OSError where it can't be read, is no regular file (nothing is opened then), or has more than MOST_BYTES.
+    Raises OSError if the file cannot be read, is not regular (then it is not opened), or has more than MOST_BYTES.
     """
     name = os.fspath(path)
     with opened(name, is_input=is_input, buffering=0) as file:
@@ -43,13 +43,13 @@ def read(path: str | os.PathLike[str], *, is_input: bool = True) -> bytes:
 
 @contextmanager
 def opened(path: str | os.PathLike[str], *, is_input: bool = True, buffering: int = -1) -> Iterator[IO[bytes]]:
-    """A regular file of any size, to be read as binary; as for `read`. Raises OSError."""
+    """Open a regular file of any size for binary reading; `is_input` is as for `read`. Raises OSError."""
     name = os.fspath(path)
     try:
         _require_regular(Path(name).stat(), name)
-        # Between the two calls it may have become something else, which must not make us wait, either.
+        # Between the two calls, the file may be replaced by another kind, which must not block either.
         descriptor = os.open(name, os.O_RDONLY | _CAUTIOUS)
-    except ValueError as error:  # a null character
+    except ValueError as error:  # The path contains a null character.
         raise OSError(errno.EINVAL, str(error), name) from None
     with os.fdopen(descriptor, "rb", buffering=buffering) as file:
         found = os.fstat(descriptor)
@@ -61,16 +61,16 @@ def opened(path: str | os.PathLike[str], *, is_input: bool = True, buffering: in
 
 
 def read_stdin(name: str) -> bytes:
-    """What comes from the standard input; `name` is what errors call it.
+    """Return the content of the standard input; errors call it `name`.
 
-    Raises OSError where it can't be read or has more than MOST_BYTES.
+    Raises OSError if it cannot be read or has more than MOST_BYTES.
     """
     return _bounded(sys.stdin.buffer, name)
 
 
 @contextmanager
 def noting() -> Iterator[None]:
-    """While the `with` block runs, the inputs that `read` reads are noted: nothing is written over them."""
+    """Record the inputs that `read` reads within the `with` block, so that nothing overwrites them."""
     token = _noted.set({})
     try:
         yield
@@ -79,17 +79,20 @@ def noting() -> Iterator[None]:
 
 
 def input_named(found: os.stat_result) -> str | None:
-    """The name by which this very file, whatever it is called here, was read within `noting`; None if it was not."""
+    """Return the name by which this file was read within `noting`, or None if it was not.
+
+    The file is identified by its device and inode, so that links do not hide it.
+    """
     return (_noted.get() or {}).get(_identity(found))
 
 
 def inputs() -> list[str]:
-    """The names of all files that were read within `noting`, in the order in which they first were."""
+    """Return the names of all files that were read within `noting`, in the order of their first reading."""
     return list((_noted.get() or {}).values())
 
 
 def kind(mode: int) -> str:
-    """What stands where a regular file is wanted, such as `a pipe`, from its mode."""
+    """Return the kind of a file that is not regular, such as `a pipe`, from its mode."""
     return _KINDS.get(stat.S_IFMT(mode), "something else")
 
 
@@ -109,7 +112,7 @@ def _bounded(file: IO[bytes], name: str) -> bytes:
     rest = MOST_BYTES
     while rest >= 0:
         piece = file.read(min(rest + 1, 1 << 20))
-        if piece is None:  # /proc has regular files that wait for more
+        if piece is None:  # /proc has regular files that wait for more data.
             raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN), name)
         if not piece:
             return b"".join(pieces)

@@ -1,4 +1,4 @@
-"""Finds the files that ship with the tool: metamodels, grammar, templates, libraries."""
+"""Locates the files that ship with the tool: metamodels, grammar, templates, libraries."""
 
 from pathlib import Path
 
@@ -6,10 +6,10 @@ _PACKAGE = Path(__file__).resolve().parent.parent
 
 
 def locate(relative: str) -> Path:
-    """The path of a shipped file or folder, such as `metamodel/sct.ecore`.
+    """Return the path of a shipped file or folder, such as `metamodel/sct.ecore`.
 
-    An installed wheel carries it inside the package; an editable install finds it at the root of the repository.
-    Raises FileNotFoundError where neither has it: the installation is damaged.
+    An installed wheel contains it in the package; for an editable install it is at the root of the repository. Raises
+    FileNotFoundError if neither has it: then the installation is damaged.
     """
     for root in (_PACKAGE, _PACKAGE.parent):
         path = root / relative

@@ -1,4 +1,4 @@
-"""Loads the templates of a package, or what a user put in their place."""
+"""Loads the templates of a package, or a user's replacements."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class _Compiled(FileSystemBytecodeCache):
-    """Keeps compiled templates as Python keeps its modules: in `__pycache__` beside them, if that can be written."""
+    """Caches compiled templates like Python modules: in a `__pycache__` beside them, if that is writable."""
 
     def dump_bytecode(self, bucket: Bucket) -> None:
         if not sys.dont_write_bytecode:
@@ -28,11 +28,10 @@ class _Compiled(FileSystemBytecodeCache):
 
 @cache
 def environment(*packages: str, overrides: Path | None = None, escapes: bool = False) -> Environment:
-    """What is in the folders `templates` of packages, such as `robosc.m2t.cif`: of templates of one name the first.
+    """Return an environment for the `templates` folders of packages, such as `robosc.m2t.cif`; the first folder wins.
 
-    A template of the same name in the folder `overrides` takes the place of ours. A name that a template reads and
-    nobody prepared is an error. What comes from a model is made safe beforehand for where it stands, unless `escapes`
-    says that the templates are HTML or XML.
+    A template of the same name in the folder `overrides` replaces ours. An undefined name in a template is an error.
+    Texts of a model are made safe beforehand for their place, unless `escapes` marks the templates as HTML or XML.
     """
     folders = [locate("/".join([*package.split(".")[1:], "templates"])) for package in packages]
     return Environment(
@@ -42,5 +41,5 @@ def environment(*packages: str, overrides: Path | None = None, escapes: bool = F
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
-        autoescape=escapes,  # noqa: S701  # C, CMake and Python are no HTML.
+        autoescape=escapes,  # noqa: S701  # C, CMake and Python need no HTML escapes.
     )

@@ -1,8 +1,8 @@
-"""Write files: all of them or none, only those that changed, never outside of the folder that was named.
+"""Write files: all of them or none, only those that changed, and never outside of the named folder.
 
-A folder is locked while it is written. New texts are staged in a folder inside of it, then each is moved to its place.
-A signal that would end the process waits until all are moved, or ends the staging. After SIGKILL each file is whole,
-and the next call that writes to the folder finishes the work and removes the stage.
+The folder is locked during the writing. New texts are staged in a folder inside of it, and then each is moved to its
+place. A signal that would end the process waits until all are moved, or ends the staging. After SIGKILL each file is
+complete, and the next call that writes to the folder finishes the work and removes the stage.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if sys.platform != "win32":
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-#: How long a folder is waited for that another process writes to.
+#: Maximum time to wait for a folder to which another process writes.
 PATIENCE_SECONDS = 60.0
 
 _STAGE = re.compile(r"\.robosc-[a-z0-9_]{8}")
@@ -39,32 +39,33 @@ _ENDING_SIGNALS = tuple(
 
 
 class OutputError(OSError):
-    """Files could not be written, and none was; the message says why."""
+    """The files could not be written, and none was; the message gives the reason."""
 
 
 def write(trees: Mapping[Path, Mapping[str, str]]) -> list[Path]:
     """Write texts below folders, as UTF-8, and return the files that are new or different.
 
     Each folder comes with its files: relative POSIX path to text. Missing folders are created. A file with the same
-    text keeps its time of change; files that are not mentioned are left alone. Scripts (`#!`) become executable.
-    Raises OutputError, before any file has changed, where a text cannot be staged, a path leads out of its folder (by
-    `..`, an absolute path or a link) or has two texts, or a file would replace an input (`robosc.files.reading.noting`)
-    or anything but a regular file; and where another process goes on writing to a folder.
+    text keeps its time of change, and other files are not touched. Scripts (`#!`) become executable.
+
+    Raises OutputError, before any file has changed, if a text cannot be staged; if a path leads out of its folder (by
+    `..`, an absolute path or a link) or has two texts; if a file would replace an input (`robosc.files.reading.noting`)
+    or anything but a regular file; or if another process keeps writing to a folder.
     """
     with _Signals() as signals:
         try:
             return _write(trees, signals)
         except OutputError:
             raise
-        except (OSError, RuntimeError) as error:  # a RuntimeError is how `resolve` reports links in a circle
+        except (OSError, RuntimeError) as error:  # `resolve` reports cyclic links as RuntimeError.
             raise OutputError(_reason(error)) from error
 
 
 def write_file(path: str | os.PathLike[str], text: str) -> None:
-    """Writes a text to the file that somebody named, as `write` does.
+    """Write a text to the file that a user named, as `write` does.
 
-    A link is followed, and stays. What is a character device or a pipe that somebody reads gets the text, and stays.
-    Raises OutputError.
+    A link is followed and stays. A character device, or a pipe with a reader, receives the text and stays. Raises
+    OutputError.
     """
     try:
         refuse(path)
@@ -80,7 +81,7 @@ def write_file(path: str | os.PathLike[str], text: str) -> None:
 
 
 def refuse(path: str | os.PathLike[str]) -> None:
-    """Raises OutputError where `write_file` would refuse a path for what is there already."""
+    """Raise OutputError if `write_file` would refuse a path because of the file that exists there."""
     try:
         found = Path(path).stat()
     except FileNotFoundError:
@@ -93,9 +94,9 @@ def refuse(path: str | os.PathLike[str]) -> None:
 
 
 def open_log(path: str | os.PathLike[str]) -> int:
-    """Opens a file for lines to be added to its end, and gives its descriptor.
+    """Open a file for appending lines, and return its descriptor.
 
-    It may also be a character device, or a pipe that somebody reads. Raises OSError, also where it was read within
+    The file may also be a character device, or a pipe with a reader. Raises OSError, also if the file was read within
     `robosc.files.reading.noting`.
     """
     wanted = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_NOCTTY", 0)
@@ -150,7 +151,7 @@ def _write(trees: Mapping[Path, Mapping[str, str]], signals: _Signals) -> list[P
 
 
 def _inside(folder: Path, name: str) -> Path:
-    """The path of a name below a folder. Raises OutputError where that is not inside of it."""
+    """Return the path of a name below a folder. Raises OutputError if it is not inside of it."""
     relative = PurePosixPath(name)
     path = folder / relative
     if relative.is_absolute() or not relative.parts or ".." in relative.parts or "\\" in name:
@@ -174,7 +175,7 @@ def _refuse_existing(path: Path, found: os.stat_result) -> None:
 
 @contextmanager
 def _locked(folder: Path, made: ExitStack, signals: _Signals) -> Iterator[None]:
-    """Makes a folder where there is none, and keeps other processes that call this out of it."""
+    """Create a folder if it is missing, and lock it against other processes that use this function."""
     if sys.platform == "win32":
         _make(folder, made)
         yield
@@ -192,13 +193,13 @@ def _locked(folder: Path, made: ExitStack, signals: _Signals) -> Iterator[None]:
             if folder.exists() and os.path.samestat(os.fstat(descriptor), folder.stat()):
                 yield
                 return
-            # Whoever had the lock has removed the folder again.
+            # The previous owner of the lock has removed the folder.
         finally:
             os.close(descriptor)
 
 
 def _lock(descriptor: int) -> bool:
-    """Whether a folder is locked now; where the file system knows no locks, nothing is kept apart."""
+    """Return whether the folder is locked now; a file system without locks counts as locked."""
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
@@ -214,7 +215,7 @@ def _replace(changed: Mapping[Path, Mapping[Path, bytes]], made: ExitStack, sign
         moves: list[tuple[Path, Path]] = []
         for folder, files in changed.items():
             if files:
-                # Inside of the folder, where this process may write and a move stays within one file system.
+                # Inside of the folder, this process may write, and a move stays within one file system.
                 stage = Path(tempfile.mkdtemp(prefix=".robosc-", dir=folder))
                 stages.callback(shutil.rmtree, stage, ignore_errors=True)
                 moves += [(_staged(stage / str(number), file, files[file]), file) for number, file in enumerate(files)]
@@ -241,7 +242,7 @@ def _staged(staged: Path, path: Path, content: bytes) -> Path:
 
 
 def _remove_left_over(folder: Path) -> None:
-    """Remove the stages of calls of this user that were killed."""
+    """Remove the stages that killed calls of this user have left."""
     with os.scandir(folder) as entries:
         stages = [Path(entry.path) for entry in entries if _STAGE.fullmatch(entry.name) and not entry.is_symlink()]
     for stage in stages:
@@ -259,15 +260,15 @@ def _make(folder: Path, made: ExitStack) -> None:
 
 
 def _remove_empty(folder: Path) -> None:
-    with suppress(OSError):  # somebody else uses it already
+    with suppress(OSError):  # Another process may use it already.
         folder.rmdir()
 
 
 def _is(path: Path, content: bytes) -> bool:
-    """Whether this is the regular file with that content."""
+    """Return whether a path is a regular file with this content."""
     try:
         found = path.lstat()
-        # The kernel's files say that they are empty, and may have whoever reads them wait.
+        # Files of the kernel claim to be empty, and reading them may block.
         return stat.S_ISREG(found.st_mode) and found.st_size == len(content) and path.read_bytes() == content
     except (FileNotFoundError, NotADirectoryError):
         return False
@@ -281,9 +282,9 @@ def _reason(error: OSError | RuntimeError) -> str:
 
 @contextmanager
 def temporary_folder() -> Iterator[Path]:
-    """A folder that is gone when the `with` block has ended, be it by a signal that would end the process.
+    """Create a folder that is removed at the end of the `with` block, even after a signal that ends the process.
 
-    Such a signal raises KeyboardInterrupt in the block, and takes effect once the folder is gone.
+    Such a signal raises KeyboardInterrupt in the block, and takes effect after the folder is removed.
     """
     with _Signals() as signals:
         folder = Path(tempfile.mkdtemp(prefix="robosc-"))
@@ -295,10 +296,10 @@ def temporary_folder() -> Iterator[Path]:
 
 
 class _Signals:
-    """Lets signals that would end the process wait until the `with` block has ended.
+    """Delays signals that would end the process until the end of the `with` block.
 
-    It takes handlers, as a mask does not keep a signal from the threads of libraries. Other threads than the main one
-    hear of no signal.
+    It uses handlers, because a mask does not keep a signal from the threads of libraries. Only the main thread receives
+    signals.
     """
 
     def __init__(self) -> None:
@@ -323,7 +324,7 @@ class _Signals:
 
     @contextmanager
     def raised(self) -> Iterator[None]:
-        """KeyboardInterrupt, once, where a signal comes in the `with` block or waits already."""
+        """Raise KeyboardInterrupt, once, if a signal arrives in the `with` block or is pending already."""
         if self._heard:
             raise KeyboardInterrupt
         self._raises = True
@@ -333,7 +334,7 @@ class _Signals:
             self._raises = False
 
     def check(self) -> None:
-        """Raises OutputError where a signal waits."""
+        """Raise OutputError if a signal is pending."""
         if self._heard:
             raise OutputError("the writing was interrupted")
 

@@ -1,4 +1,4 @@
-"""Coloured lines of a text, for a page."""
+"""Colored lines of a text for a page."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from robosc.highlighting.pygments_lexer import RoboscLexer
 if TYPE_CHECKING:
     from pygments.token import _TokenType
 
-#: What a page tells apart: keywords, types, numbers and strings, comments.
+#: Classes of a page: keywords, types, numbers and strings, comments.
 _CLASSES: list[tuple[_TokenType, str]] = [
     (Comment, "c"),
     (Keyword.Type, "t"),
@@ -24,9 +24,9 @@ _CLASSES: list[tuple[_TokenType, str]] = [
 
 
 def coloured(path: str, text: str) -> list[list[tuple[str, str]]]:
-    """The lines of a text as pieces: what each is, of `k`, `t`, `n`, `c` and nothing, and its text.
+    """Return the lines of a text as pieces: the class (`k`, `t`, `n`, `c` or empty), and the text.
 
-    Only a `.rscd` file has colours.
+    Only `.rscd` files are colored.
     """
     lines: list[list[tuple[str, str]]] = [[]]
     pieces = RoboscLexer(stripnl=False, ensurenl=False).get_tokens(text) if path.endswith(".rscd") else [(None, text)]

@@ -1,4 +1,4 @@
-"""The lexer for Pygments, which colours texts in Sphinx, MkDocs, LaTeX and terminals: `pygmentize -l robosc`."""
+"""The lexer for Pygments, which colors texts in Sphinx, MkDocs, LaTeX and terminals: `pygmentize -l robosc`."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _rules() -> list[tuple[str, Any]]:
 
 
 class RoboscLexer(RegexLexer):
-    """Colours `.rscd` files."""
+    """Lexer of `.rscd` files."""
 
     name = "RoboSC"
     aliases: ClassVar = ["robosc", "rscd"]

@@ -1,4 +1,4 @@
-"""What regular expressions tell of a text: comments, strings, numbers, keywords where they are such, names."""
+"""Regular expressions for the parts of a text: comments, strings, numbers, keywords in context, names."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Kind(StrEnum):
-    """What a piece of text is, by its scope in TextMate grammars."""
+    """Kind of a piece of text, as its scope in TextMate grammars."""
 
     COMMENT = "comment.line.double-slash"
     STRING = "string.quoted"
@@ -36,12 +36,12 @@ class Kind(StrEnum):
     BLANK = "text"
 
 
-#: The kinds of what the grammar has as a word of its own.
+#: Kinds of words of the grammar.
 WORDS = (
     *(Kind.DECLARATION, Kind.MODIFIER, Kind.CONTROL, Kind.TYPE, Kind.CONSTANT, Kind.DATA, Kind.WORD_OPERATOR),
     *(Kind.FUNCTION, Kind.UNIT),
 )
-#: The words that names can't be where an expression stands.
+#: Words that cannot be names in an expression.
 RESERVED: Mapping[Kind, tuple[str, ...]] = {
     Kind.DECLARATION: (
         *(
@@ -68,7 +68,7 @@ RESERVED: Mapping[Kind, tuple[str, ...]] = {
     Kind.DATA: ("value",),
     Kind.WORD_OPERATOR: ("and", "or"),
 }
-#: The words that are names unless they begin a construct.
+#: Words that are names unless they begin a construct.
 IN_CONTEXT: Mapping[Kind, tuple[str, ...]] = {
     Kind.DECLARATION: ("automaton", "condition", "constant", "function", "is", "parameter", "property"),
     Kind.CONTROL: (*("after", "always", "each", "else", "in", "never", "reachable", "since", "then", "without"),),
@@ -78,24 +78,24 @@ AT_MOST = ("at", "most")
 UNITS = ("ms", "s", "min")
 
 _NAME = r"\^?[A-Za-z_][A-Za-z0-9_]*"
-#: Reserved words before a colon that are no names of fields.
+#: Reserved words that are keywords, not names of fields, before a colon.
 _KEYS = ("identifier", "type", "request", "response", "feedback")
-#: Words that stand behind a name, and never where a construct has its first operand.
+#: Words that follow a name, and never the start of a construct.
 _BEHIND_NAMES = ("and", "disables", "do", "goto", "in", "needs", "or", "to")
-#: What begins with a block of its own; it may go on over several lines.
+#: Start and end of a comment that may span several lines.
 BLOCK_COMMENT = (r"/\*", r"\*/")
 
 
 @dataclass(frozen=True)
 class Rule:
-    """A regular expression, and the kind of all that it matches, or of each of its groups, which are all of it."""
+    """A regular expression, and the kind of its match, or of each of its groups, which cover the match."""
 
     pattern: str
     kinds: tuple[Kind, ...]
 
 
 def rules() -> Iterator[Rule]:
-    """All rules: where several match at a place, the first one counts. Block comments go before them."""
+    """Yield all rules; if several match at a place, the first one counts. Block comments take precedence."""
     blank, number = r"(\s+)", r"[0-9]+(?:\.[0-9]+)?"
     unit, name = _any(UNITS), f"({_NAME})"
     yield Rule(r"//[^\n]*", (Kind.COMMENT,))
@@ -106,10 +106,10 @@ def rules() -> Iterator[Rule]:
     yield Rule(rf"(\)){blank}{unit}\b", (Kind.PUNCTUATION, Kind.BLANK, Kind.UNIT))
     after = (Kind.CONTROL, Kind.BLANK, Kind.NAME, Kind.BLANK, Kind.UNIT)
     yield Rule(rf"(?<![\w^])(after){blank}({_NAME}(?:\.{_NAME})?){blank}{unit}\b", after)
-    # A number before the dots of a range is no double.
+    # A number before the dots of a range is not a double.
     yield Rule(r"(?<![0-9])[0-9]+\.[0-9]+\b", (Kind.FLOAT,))
     yield Rule(r"[0-9]+\b", (Kind.INTEGER,))
-    # Where only a name can stand, words are names, too.
+    # In positions for names only, keywords are names, too.
     yield Rule(r"\.\.", (Kind.OPERATOR,))
     yield Rule(rf"(\.)(\s*){name}", (Kind.PUNCTUATION, Kind.BLANK, Kind.NAME))
     yield Rule(rf"\^{_NAME[3:]}", (Kind.NAME,))
@@ -126,7 +126,7 @@ def rules() -> Iterator[Rule]:
     yield Rule(r"(?<![\w^])(canceled)(?=\s+(?:from|to)\b)", (Kind.CONTROL,))
     reserved = [word for words in RESERVED.values() for word in words]
     yield Rule(rf"{_any([word for word in reserved if word not in _KEYS])}(?=\s*:(?!=))", (Kind.NAME,))
-    # Words that need more behind them
+    # Words that depend on the text behind them
     yield Rule(rf"{_any(ROBOSC_QUANTIFIERS)}\b(?=\s+{_NAME}(?:\s*:|\s+in\b))", (Kind.WORD_OPERATOR,))
     yield Rule(rf"{_any(ROBOSC_FUNCTIONS)}\b(?=\s*\()", (Kind.FUNCTION,))
     no_operand = rf"(?!{_any(_BEHIND_NAMES)}\b)"
@@ -141,5 +141,5 @@ def rules() -> Iterator[Rule]:
 
 
 def _any(words: list[str] | tuple[str, ...]) -> str:
-    """A group of any of the words, as whole ones at its start."""
+    """Return a group that matches one of the words, at the start of a word."""
     return rf"(?<![\w^])({'|'.join(map(re.escape, words))})"

@@ -1,4 +1,4 @@
-"""The TextMate grammar: what Visual Studio Code and many others colour texts by."""
+"""The TextMate grammar, by which Visual Studio Code and many other tools color texts."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from robosc.highlighting.rules import BLOCK_COMMENT, Kind, Rule, rules
 
 
 def grammar() -> str:
-    """The text of `robosc.tmLanguage.json`."""
+    """Return the text of `robosc.tmLanguage.json`."""
     begin, end = BLOCK_COMMENT
     block = {"name": "comment.block.robosc", "begin": begin, "end": end}
     document = {

@@ -1,8 +1,9 @@
 """From text to a linked robot model.
 
-`read` reads a file, or a text in memory, with all that it imports; a `Reading` holds the model and the findings, and of
-each `File` its `Text` (positions in code points and in UTF-16 units), its names (`Reference`) and what was skipped.
-`robosc.language.formatting` lays texts out, `robosc.language.libraries` finds libraries.
+`read` reads a file, or a text in memory, and everything that the file imports. It returns a `Reading` with the model,
+the findings and the files. Each `File` holds its `Text` (positions in code points and in UTF-16 units), its names
+(`Reference`) and the ranges that were skipped.
+`robosc.language.formatting` formats texts, `robosc.language.libraries` finds libraries.
 """
 
 from robosc.language.reading import Reading, read

@@ -1,4 +1,4 @@
-"""What a reader of a text would like to see beside its words: types of `value`, parameters of arguments, units."""
+"""Inlay hints of a text: types of `value`, parameters of arguments, units."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 
 class Note(NamedTuple):
-    """Text to be shown at an offset; of a type behind a word, else of what comes before one."""
+    """A hint text and the offset at which an editor shows it.
+
+    A type is shown behind a word, any other hint before one.
+    """
 
     offset: int
     text: str
@@ -25,7 +28,7 @@ class Note(NamedTuple):
 
 
 def notes(file: File, ros_types: RosTypes) -> list[Note]:
-    """The notes to a text, in order."""
+    """Return the hints of a text in order of their offsets."""
     found = [note for element in own_elements(file) for note in _notes(file, element)]
     return sorted([*found, *(Note(offset, f" {unit}", is_type=True) for offset, unit in units(file, ros_types))])
 
@@ -48,7 +51,7 @@ def _notes(file: File, element: Any) -> Iterator[Note]:
 def _of_arguments(file: File, arguments: Sequence[rsc.Argument], parameters: Sequence[Any]) -> Iterator[Note]:
     for argument, parameter in zip(arguments, parameters, strict=False):
         if "parameter" in file.references.get(argument, ()):
-            return  # The others have their names in the text.
+            return  # The remaining arguments name their parameters.
         yield Note(span(file, argument)[0], f"{parameter.name}:", is_type=False)
 
 

@@ -1,4 +1,4 @@
-"""From a parse tree to model elements: a rule makes an element of its class, an assignment sets its feature."""
+"""From a parse tree to model elements: a rule creates an element of its class, an assignment sets its feature."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _ESCAPE = re.compile(r"\\(u[0-9A-Fa-f]{4}|x[0-9A-Fa-f]{2}|.)")
 
 @dataclass(frozen=True)
 class Name:
-    """A name and where it stands (offsets in the text)."""
+    """A name and its offsets in the text."""
 
     text: str
     start: int
@@ -37,18 +37,18 @@ class Name:
 
 @cache
 def element_class(rule: str) -> Any | None:
-    """The class of the elements that a rule makes; None for an abstract rule and for one that only matches words."""
+    """Return the class of a rule's elements, or None for an abstract rule or a rule that only matches words."""
     found = getattr(rsc, rule, None) or getattr(ex, rule, None)
     eclass = getattr(found, "eClass", None)
     return found if eclass is not None and not eclass.abstract else None
 
 
 class Builder:
-    """Makes the model of one text, or of parts of it.
+    """Builds the model of one text, or of parts of it.
 
-    References are not linked: `references` holds, in the order of the text, their names by element and feature;
-    `declared` holds where the name of each named element stands, `bounded` the types whose bounds are expressions.
-    `findings` are words that the grammar admits and that still mean nothing, such as a number too large.
+    References are not linked yet. `references` maps element and feature to the name, in the order of the text.
+    `declared` maps each named element to its name. `bounded` lists the types whose bounds are expressions.
+    `findings` reports words that the grammar accepts but that have no meaning, such as a number too large.
     """
 
     def __init__(self, text: Text) -> None:
@@ -57,11 +57,11 @@ class Builder:
         self.bounded: list[rsc.IntegerDataType] = []
         self.findings: list[Diagnostic] = []
         self._text = text
-        #: Literals of 2^63, which is no integer, but the least one behind a minus.
+        #: Literals of 2^63: too large for an integer, except behind a minus.
         self._unsigned: dict[Any, Node] = {}
 
     def build(self, node: Node, offset: int = 0) -> Any:
-        """The element of a parse tree, whose text starts at an offset of the file's."""
+        """Return the element of a parse tree whose text starts at `offset` in the file."""
         self._offset = offset
         built = self._build(node)
         for literal in self._unsigned.values():
@@ -100,7 +100,7 @@ class Builder:
         return element
 
     def _implied(self, element: rsc.InterfaceTypeReference | rsc.ErrorReason, node: Node) -> dict[str, Name]:
-        """A reference to an element that no text, or only the predefined library, declares."""
+        """Return a reference to an element that no text, or only the predefined library, declares."""
         start, end = node.position + self._offset, node.position_end + self._offset
         if isinstance(element, rsc.ErrorReason):
             return {"enumeration": Name(FAILURE, start, end)}
@@ -121,7 +121,10 @@ class Builder:
             setattr(element, feature, self._build(node))
 
     def _expression(self, node: Node) -> Any:
-        """Operands with operators between them, as a tree: an operator waits for those that bind tighter."""
+        """Build the tree of an expression.
+
+        An operator waits on a stack until all tighter operators behind it are reduced.
+        """
         operands = [(self._build(node[0]), node[0].position, node[0].position_end)]
         waiting: list[Any] = []
 
@@ -147,7 +150,7 @@ class Builder:
         return Name(node.value.lstrip("^"), node.position + self._offset, node.position_end + self._offset)
 
     def _word(self, node: Node) -> Any:
-        """The value of a match rule; a keyword that is assigned by itself is a flag that is set."""
+        """Return the value of a match rule; a keyword assigned by itself is a flag, so its value is True."""
         match node.rule_name:
             case "Name" | "UnreservedName":
                 return node.value.lstrip("^")
@@ -167,7 +170,7 @@ class Builder:
 
     def _integer(self, node: Node, *, literal: bool) -> int:
         digits = "".join(node.value.split())
-        # Python itself refuses to read numbers of more than some thousand digits.
+        # Python itself refuses to convert numbers of more than a few thousand digits.
         most = _LARGEST + 1 if literal else _LARGEST
         if len(digits.lstrip("-0")) > 19 or not -_LARGEST - 1 <= int(digits) <= most:
             self._too_large(node)
@@ -197,7 +200,7 @@ class Builder:
 
         text = _ESCAPE.sub(replace, node.value[1:-1])
         try:
-            # Two escapes may be the halves of one code point, as in Java; a half alone is no text.
+            # As in Java, two escapes may be the two halves of one code point. A single half is invalid.
             return text.encode("utf-16", "surrogatepass").decode("utf-16")
         except UnicodeDecodeError:
             self._fault(node, "a code point between `\\uD800` and `\\uDFFF` is no character")
@@ -213,7 +216,7 @@ class Builder:
 
 
 def _binds_first(left: Any, right: Any) -> bool:
-    """Whether in `a left b right c` the left operator takes `b`."""
+    """Return whether the left operator of `a left b right c` takes `b`."""
     before, behind = BY_CLASS[left], BY_CLASS[right]
     if before.precedence == behind.precedence:
         return before.associativity is not Associativity.RIGHT

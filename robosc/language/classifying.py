@@ -1,4 +1,4 @@
-"""What each word of a text is, for those who colour it."""
+"""Kinds of the words of a text, for syntax coloring."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from robosc.language.scopes import File, Reference
     from robosc.language.tokens import Tokens
 
-#: What a name stands for, by the class of its element.
+#: Kind of a name, by the class of its element.
 _CLASSES: dict[type, str] = {
     rsc.Base: "namespace",
     rsc.Component: "class",
@@ -46,7 +46,10 @@ _BRACKETS = set("{}()[],.:;")
 
 
 class Word(NamedTuple):
-    """A word or comment: its range (offsets), one of `CLASSES`; whether it declares, or names what never changes."""
+    """A word or comment: its offsets and its kind from `CLASSES`.
+
+    `declares` marks the name in a declaration, `readonly` the name of an element that never changes.
+    """
 
     start: int
     end: int
@@ -56,7 +59,7 @@ class Word(NamedTuple):
 
 
 def classify(file: File) -> list[Word]:
-    """The words of a text whose meaning is known, in order."""
+    """Return the words of a text whose kind is known, in order."""
     names = {name.start: name for name in file.names}
     comments = (Word(start, end, "comment") for start, end in file.text.tokens.comments)
     return sorted([*comments, *_words(file.text.tokens, names)])
@@ -81,7 +84,7 @@ def _words(tokens: Tokens, names: dict[int, Reference]) -> Iterator[Word]:
 
 
 def _own(word: str) -> str | None:
-    """What a word of the language is."""
+    """Return the kind of a word of the language itself."""
     if word in _TYPES:
         return "type"
     if word in FUNCTIONS:
@@ -90,7 +93,7 @@ def _own(word: str) -> str | None:
 
 
 def what_of(target: Any) -> str | None:
-    """One of `CLASSES` for what a name stands for; None where it stands for nothing."""
+    """Return the kind from `CLASSES` of the element that a name refers to, or None if there is none."""
     if isinstance(target, rsc.InterfaceTypeReference):
         return "struct"
     return next((kind for made, kind in _CLASSES.items() if isinstance(target, made)), None)

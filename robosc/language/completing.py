@@ -1,7 +1,8 @@
-"""What can stand at a place of a text: words of the language, and names by what they would stand for.
+"""Completion proposals at an offset of a text: words of the language, and names by the kind of their reference.
 
-The grammar tells which words it wants there. To tell which names, the text is read with a name there that nothing has,
-and with what is still missing of the definition around it: what this name would be a reference to, can stand there.
+The grammar determines the words that it accepts there. To determine the names, the text is read with an unused name
+at the offset, and the missing rest of the definition around it is added. Every element to which this name could refer
+is a proposal.
 """
 
 from __future__ import annotations
@@ -32,15 +33,15 @@ if TYPE_CHECKING:
     from robosc.language.scopes import File
     from robosc.ros_types import RosTypes
 
-#: Declarations of what may hold a reason of an error.
+#: Declarations that can have the type `Failure`.
 _KEEPS = (rsc.Variable, rsc.Constant, rsc.FormalParameter, rsc.Function)
 _NAME = "robosc_completes_here"
-#: The word before a place, from its end.
+#: The word before an offset, matched on the reversed text.
 _WORD = re.compile(r"\w*\^?")
 _STRING_OR_COMMENT = re.compile(rf"{pattern('Comment')}|{pattern('String')}|/\*[\s\S]*|[\"'][^\n]*")
-#: Where the name of a topic begins: of a communication, or of one that is imported.
+#: Start of a topic name, in the declaration of a communication or in the `with` clause of an import.
 _TOPIC = re.compile(r"""(?:\bidentifier|\bimport\b.*\bwith\s*\{[^}]*)\s*:\s*(["'])([^"']*)\Z""")
-#: What to go on with where a definition is not at its end, the best first, and what is written for it.
+#: Words that continue an incomplete definition, best first, and the text inserted for each.
 _GOING_ON = {
     **{word: word for word in ("needs", "disables", "with", "from", "import", "use", "to", "then", "else", "in", "->")},
     **{symbol: symbol for symbol in (")", "]", "}", ":", ":=", "=", "..")},
@@ -57,9 +58,9 @@ _GOING_ON = {
 
 @dataclass(frozen=True)
 class Proposal:
-    """Something that can stand there: its text, and what it is: an element, or a word of the language.
+    """A completion proposal: its text, and its element if it is a name.
 
-    `starts` says of a word that a definition begins with it.
+    `starts` marks a word of the language that begins a definition.
     """
 
     text: str
@@ -75,9 +76,9 @@ def proposals(
     ros_types: RosTypes,
     libraries: Callable[[], Iterable[str]],
 ) -> tuple[int, int, list[Proposal]]:
-    """What can stand in place of the word that an offset lies in or right behind; the range of this word (offsets).
+    """Return the range (offsets) of the word at or right before an offset, and the proposals that can replace it.
 
-    `read` reads the file with another text, `libraries` gives the names of those that it could import from.
+    `read` reads the file with another text. `libraries` returns the names of the libraries that it could import from.
     """
     start = offset - len(_WORD.match(content[:offset][::-1])[0])  # type: ignore[index]
     end = offset + len(re.match(r"\w*", content[offset:])[0])  # type: ignore[index]
@@ -93,7 +94,10 @@ def proposals(
 
 
 def topic_at(content: str, offset: int) -> tuple[int, int] | None:
-    """The range within the quotes where an offset lies in the name of a topic, service or action; None elsewhere."""
+    """Return the range of the name of a topic, service or action around an offset, or None.
+
+    The range excludes the quotes.
+    """
     before = _TOPIC.search(content[content.rfind("\n", 0, offset) + 1 : offset])
     if before is None:
         return None
@@ -102,7 +106,7 @@ def topic_at(content: str, offset: int) -> tuple[int, int] | None:
 
 
 def _end(found: re.Match[str]) -> int:
-    """Behind the last place that lies within a string or comment: one that goes up to the end of its line is open."""
+    """Return the offset behind a string or comment; one that reaches the end of its line includes that end."""
     is_open = found[0].startswith("//") or not found[0].endswith(("*/", '"', "'")) or len(found[0]) == 1
     return found.end() + is_open
 
@@ -111,7 +115,7 @@ def _end(found: re.Match[str]) -> int:
 
 
 def _wanted(before: str) -> tuple[Block | None, set[str]]:
-    """The item that a text ends in, and what the grammar wants there."""
+    """Return the item in which a text ends, and the words and rules that the grammar accepts there."""
     tokens = Tokens(before)
     if too_complex(tokens) is not None:
         return None, set()
@@ -127,7 +131,7 @@ def _wanted(before: str) -> tuple[Block | None, set[str]]:
 
 
 def _block(tokens: Tokens, index: int) -> Block:
-    """The innermost item that reaches up to a token."""
+    """Return the innermost item that contains a token or ends right before it."""
     block = Outline(tokens).file()
     while True:
         inner = next((item for item in block.items if item.first < index <= item.after), None)
@@ -157,7 +161,7 @@ def _levels(block: Block) -> list[Any]:
 
 
 def _with_name(content: str, start: int, end: int) -> Iterator[str]:
-    """The text with a name at a place, and with what is missing behind it; in each way that it can go on."""
+    """Yield the text with a name at an offset and the missing rest behind it, once for each possible continuation."""
     before, after = content[:start] + _NAME, content[end:]
     tokens = Tokens(before + after)
     if too_complex(tokens) is not None:
@@ -184,12 +188,12 @@ def _own_text(content: str, block: Block, end: int | None = None) -> str:
 
 
 def _rest(content: str, block: Block, own: str) -> str:
-    """What stands behind an item of which a part is left out."""
+    """Return the text behind an item whose tail is omitted."""
     return " " + content[max(block.end, block.start + len(own)) :]
 
 
 def _going_on(text: str, rule: str, preferred: str) -> str | None:
-    """What is missing of an item by a rule; None where that can't be told."""
+    """Return the missing rest of an item of a rule, or None if it cannot be determined."""
     added = ""
     for _ in range(20):
         found = parse(text + added, rule)
@@ -209,7 +213,7 @@ def _going_on(text: str, rule: str, preferred: str) -> str | None:
 def _named(
     reading: Reading, start: int, ros_types: RosTypes, libraries: Callable[[], Iterable[str]]
 ) -> Iterator[Proposal]:
-    """What the name at a place can stand for."""
+    """Yield the proposals for the name at an offset."""
     file = reading.file
     if file.base is None:
         return
@@ -250,7 +254,7 @@ def _candidates(
 
 
 def _parameters(argument: rsc.Argument) -> dict[str, Any]:
-    """The parameters that an argument may be for."""
+    """Return the parameters that an argument can set, by name."""
     user: Any = argument.eContainer()
     made_of: Any = user.type if isinstance(user, rsc.ComplexDataTypeReference) else user.definition
     return {} if made_of is None else by_name(made_of.parameters)
@@ -307,7 +311,7 @@ def _communications(
 
 
 def _fits(reference: rsc.CommunicationReference, communication: Any) -> bool:
-    """Whether a communication has the event that is wanted of it."""
+    """Return whether a communication has the event or data that the reference needs."""
     user = reference.eContainer()
     if isinstance(user, rsc.CommunicationTypeSet):
         user = user.eContainer()
@@ -356,7 +360,7 @@ def _accessible(
 
 
 def _reasons(access: rsc.Access) -> Sequence[str]:
-    """The reasons that a text may name where it expects one: beside `error` those of its service or action."""
+    """Return the reasons of an error that are valid here: those of the service or action, else all."""
     around: Any = access
     while around is not None and not isinstance(around, rsc.ResultTransition | rsc.RequirementTransition):
         around = around.eContainer()
@@ -366,7 +370,7 @@ def _reasons(access: rsc.Access) -> Sequence[str]:
 
 
 def _running(linker: Linker, component: rsc.Component) -> Iterator[tuple[str, Any]]:
-    """The words that read whether a service or action of a component is running."""
+    """Yield the names that read whether a service or action of a component is running."""
     for name, communication in (linker.scope.communications(component) or {}).items():
         if isinstance(communication, rsc.Service | rsc.Action):
             yield f"{name}.{RUNNING_WORD}", communication
@@ -392,7 +396,7 @@ def _properties(linker: Linker, of: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _ros_names(content: str, start: int, ros_types: RosTypes) -> Iterator[Proposal]:
-    """Packages and types where only ROS knows the name: in an interface, and behind the `/` of a type."""
+    """Yield packages and types that only ROS knows: in an interface, and behind the `/` of a type."""
     tokens = Tokens(content)
     index = tokens.index_at(start)
     before, earlier = (tokens[max(index - step, 0)] for step in (1, 2))

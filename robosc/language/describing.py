@@ -1,4 +1,4 @@
-"""Says in Markdown what an element of a model is: its declaration, its type, what it means for the robot."""
+"""Markdown descriptions of model elements: declaration, type, and effect on the robot."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from robosc.language.scopes import File, Reference
     from robosc.ros_types import RosTypes
 
-#: So many lines of a declaration, and fields of a ROS type, are shown.
+#: Limits of a description: lines of a declaration, fields of a ROS type.
 _LINES, _FIELDS = 12, 40
 
 
 def describe(reading: Reading, element: Any, ros_types: RosTypes) -> str | None:
-    """What there is to say of an element that a name of a reading stands for; None: nothing."""
+    """Return the description of an element that a name in a reading refers to, or None if there is none."""
     if element is None:
         return None
     if isinstance(element, rsc.ObjectProperty) and is_made(element.eContainer()):
@@ -57,7 +57,7 @@ def describe(reading: Reading, element: Any, ros_types: RosTypes) -> str | None:
 
 
 def summary(element: Any) -> str:
-    """What an element is, in a few words: its type, if it has one, else its kind."""
+    """Return a few words for an element: its type if it has one, else its kind."""
     declared = getattr(element, "type", None)
     if isinstance(declared, rsc.DataType) and not isinstance(element, rsc.EnumDataType):
         return type_text(declared)
@@ -68,7 +68,7 @@ def summary(element: Any) -> str:
 
 
 def event_text(transition: rsc.Transition, file: File) -> str:
-    """What a transition waits for, such as `response from scan`."""
+    """Return the trigger of a transition, such as `response from scan`."""
     match transition:
         case rsc.ResultTransition():
             reference = transition.communicationType
@@ -82,12 +82,12 @@ def event_text(transition: rsc.Transition, file: File) -> str:
 
 
 def direction(event: rsc.ResultType) -> str:
-    """The word between an event's name and its communication."""
+    """Return the preposition between an event's name and its communication."""
     return "to" if event in {rsc.ResultType.request, rsc.ResultType.cancel} else "from"
 
 
 def type_text(declared: rsc.DataType | None) -> str:
-    """A data type as a text declares it."""
+    """Return a data type as a text declares it."""
     match declared:
         case rsc.Array():
             return f"array({type_text(declared.type)})"
@@ -103,7 +103,7 @@ def type_text(declared: rsc.DataType | None) -> str:
 
 
 def ros_definition(package: str, name: str, section: Section, ros_types: RosTypes) -> str | None:
-    """The fields of a section of a ROS type; None where it is not known."""
+    """Return the fields of a section of a ROS type, or None if the type is unknown."""
     for distribution in ros_types.distributions:
         try:
             fields = distribution.fields(package, name, section)
@@ -129,7 +129,7 @@ def _file_of(reading: Reading, element: Any) -> File | None:
 
 
 def _source(file: File, element: Any) -> str:
-    """The text of an element, in one line."""
+    """Return the text of an element in one line."""
     if element is None or element.source is None:
         return "…"
     start, end = span(file, element)
@@ -241,7 +241,7 @@ def _communication(file: File, communication: rsc.CommunicationType) -> Iterator
 
 
 def _restricted(reading: Reading, communication: rsc.CommunicationType) -> Iterator[str]:
-    """Which requirements speak of what a communication starts."""
+    """List the requirements that mention a communication."""
     found: dict[Any, str] = {}
     for file, name in _uses(reading, communication):
         around = name.user
@@ -257,7 +257,7 @@ def _restricted(reading: Reading, communication: rsc.CommunicationType) -> Itera
 
 
 def _stated(file: File, element: Any) -> str:
-    """What a requirement or a property demands, as a sentence."""
+    """Return the demand of a requirement or property as a sentence."""
     target = _source(file, getattr(element, "target", None)).strip("{} ")
     condition = _source(file, getattr(element, "condition", None))
     anchor = _source(file, getattr(element, "anchor", None))

@@ -1,4 +1,4 @@
-"""Says in words what a text has in a place, what the grammar wants there, and how to mend it."""
+"""Messages and hints for syntax errors: the token at fault, the expected words, and a repair."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from robosc.language.outline import Block, Level
     from robosc.language.tokens import Tokens
 
-#: What other languages write, and what RoboSC writes for it.
+#: Symbols of other languages and the RoboSC symbols that replace them.
 _FOREIGN = {
     "==": "=",
     "===": "=",
@@ -36,7 +36,7 @@ _FOREIGN = {
     "\N{RIGHT DOUBLE QUOTATION MARK}": '"',
     ";": "",
 }
-#: Words of other languages, and words of ours where they can't stand: what is written for what they seem to mean.
+#: Hints for words of other languages, and for words of RoboSC in a wrong place.
 _CONSTANT = "write `constant name: type = value`"
 _PARAMETER = "write `parameter name: type = value` in the robot, a library or a component"
 _TIME = "write `after 3.0 s goto state` in a state, or `after 500 ms without message goto state` for its silence"
@@ -74,7 +74,7 @@ _MEANT = {
     "unless": "write `if` and `!` before the condition",
     "var": "write `variable`",
 }
-#: What stands in place of such a word, or in place of it by itself; the rest of the text is what was meant.
+#: Replacement of such a word that turns the text into the intended construct.
 _WRITTEN = {
     **dict.fromkeys(("const", "let", "val", "define"), "constant"),
     "param": "parameter",
@@ -91,9 +91,9 @@ _WRITTEN = {
     "when": "if",
     "var": "variable",
 }
-#: The hints for words of ours that are names where their construct can't stand.
+#: Hints for keywords of RoboSC that were read as names because their construct is not allowed there.
 CONSTRUCTS = {word: _MEANT[word] for word in (*ROBOSC_QUANTIFIERS, "never", "always", "reachable", "each", "after")}
-#: What other languages call the basic types.
+#: Names of the basic types in other languages.
 BASIC_TYPES = {
     **dict.fromkeys(("int", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "long"), "integer"),
     **dict.fromkeys(("float", "float32", "float64", "real"), "double"),
@@ -101,9 +101,9 @@ BASIC_TYPES = {
     **dict.fromkeys(("str", "String", "text"), "string"),
     **dict.fromkeys(("void", "empty", "Empty"), "none"),
 }
-#: Where the items of a level stand.
+#: Levels and the names of the places that contain their items.
 _PLACES = ((DEFINITIONS, "the robot", "a library"), (COMPONENT, "a component"))
-#: A number with so many characters is not written out.
+#: Maximum number of characters of a number that a hint writes without exponent.
 _LONGEST_NUMBER = 40
 _RULES = {
     "Name": "a name",
@@ -115,8 +115,8 @@ _RULES = {
     "SignedInteger": "a whole number",
     "Double": "a number",
 }
-#: What stands for several words that the grammar wants at once, all of which are replaced where the first ones are met.
-#: That is the rule for it, and those words that the grammar always wants together where it wants one.
+#: Phrases that replace several expected words in a message. Each has the rule that the words begin, and its core: words
+#: that the grammar expects only together. The phrase is used if the whole core is expected.
 _GROUPS = (
     ("an expression", "Expression", {"value", "UnreservedName", "!"}),
     ("an operator", "BinaryExpression", {"and", "or", "=>"}),
@@ -125,7 +125,7 @@ _GROUPS = (
 
 
 def found(token: Token) -> str:
-    """What stands there."""
+    """Return a token as a message quotes it."""
     if token.kind is Kind.END:
         return "the end of the file"
     text = token.text if len(token.text) <= 30 else f"{token.text[:29]}\N{HORIZONTAL ELLIPSIS}"
@@ -133,13 +133,13 @@ def found(token: Token) -> str:
 
 
 def expected(wanted: Iterable[str], level: Level | None) -> str:
-    """What the grammar wants, as an enumeration; its `end` is the next item of the level."""
-    words = [word for word in wanted if word]  # Of what must not follow the parser says nothing.
+    """Return the expected words as an enumeration; `end` stands for the next item of the level."""
+    words = [word for word in wanted if word]  # A negative lookahead has no word.
     for name, rule, core in _GROUPS:
         if core <= set(words):
             words = [name if word in core else word for word in words if word in core or word not in _alike(rule)]
     if len(words) > 1:
-        # That a name may go on is true nearly everywhere and never what is missing.
+        # A name can nearly always continue, but its continuation is never the missing part.
         words = [word for word in words if word not in {".", "[", "("}]
     named = [_RULES.get(word, word if " " in word else f"`{word}`") for word in words if word != "end"]
     if "end" in words:
@@ -148,23 +148,23 @@ def expected(wanted: Iterable[str], level: Level | None) -> str:
 
 
 def closest(word: str, known: Iterable[str], *, cutoff: float) -> str | None:
-    """The name of those known that is most like a word; None where none is as like as `cutoff` (from 0 to 1)."""
+    """Return the known name most similar to a word, or None if none reaches the similarity `cutoff` (0 to 1)."""
     return next(iter(get_close_matches(word, sorted(set(known)), n=1, cutoff=cutoff)), None)
 
 
 def did_you_mean(word: str, known: Iterable[str], *, cutoff: float) -> Repair | None:
-    """The repair that writes the closest name in place of a word of a RoboSC text; None where none is close."""
+    """Return the repair that replaces a word of a RoboSC text by the closest name, or None if no name is close."""
     close = closest(word, known, cutoff=cutoff)
     return Repair(f"did you mean `{written(close)}`?", written(close)) if close else None
 
 
 def _alike(rule: str) -> set[str]:
-    """What a text by a rule can begin with, also as symbols that nothing keeps apart from longer ones."""
+    """Return the words that can begin a text of a rule; symbols also without their lookahead."""
     return {spelling for word in first(rule) for spelling in (word, word.partition("(?!")[0])}
 
 
 def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Repair | str | None:
-    """How to mend what stands at a token of an item, where that can be told."""
+    """Return a repair or hint for the faulty token of an item, or None if there is none."""
     token, before = tokens[index], tokens[index - 1]
     symbols = _symbols(token, wanted)
     if index < block.after and _is_name(tokens, index, wanted):
@@ -190,7 +190,7 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Rep
 
 
 def _is_name(tokens: Tokens, index: int, wanted: Sequence[str]) -> bool:
-    """Whether a keyword stands where a name was meant, and no name is missing before it."""
+    """Return whether a keyword was meant as a name, and no name is missing before it."""
     token, before, after = tokens[index], tokens[index - 1], tokens[index + 1]
     if token.kind is not Kind.WORD or "UnreservedName" not in wanted:
         return False
@@ -202,7 +202,10 @@ def _is_name(tokens: Tokens, index: int, wanted: Sequence[str]) -> bool:
 
 
 def _as_name(tokens: Tokens, index: int, wanted: Collection[str]) -> Repair:
-    """A hint for a keyword that was meant as a name. Where a type stands there is an edit if such a name is written."""
+    """Return the hint for a keyword meant as a name.
+
+    At a type it is an edit only if the text declares such a name.
+    """
     written_so = f"^{tokens[index].text}"
     is_type = any(name == "a type" and core <= set(wanted) for name, _, core in _GROUPS)
     is_edit = not is_type or any(token.text == written_so for token in tokens)
@@ -210,7 +213,10 @@ def _as_name(tokens: Tokens, index: int, wanted: Collection[str]) -> Repair:
 
 
 def misread(tokens: Tokens, index: int, wanted: Collection[str]) -> int:
-    """The token that was meant as a name, where the one before the failing one was read as a keyword; else that one."""
+    """Return the index of the token that was meant as a name.
+
+    That is the token before `index` if it was read as a keyword, else the one at `index`.
+    """
     before, token = tokens[index - 1], tokens[index]
     around = tokens[index - 2]
     is_event = set(wanted) == {"to", "from"} and not around.is_keyword("on")
@@ -220,19 +226,22 @@ def misread(tokens: Tokens, index: int, wanted: Collection[str]) -> int:
 
 
 def _foreign(tokens: Tokens, index: int) -> Repair:
-    """A hint for a symbol of another language; a quotation mark has another one at the other end."""
+    """Return the hint for a symbol of another language.
+
+    A quotation mark is replaced together with its counterpart.
+    """
     own = _FOREIGN[tokens[index].text]
     said = f"write `{own}`" if own else "leave it out: nothing ends with a semicolon"
     if own != '"':
         return Repair(said, own)
     others = _other_quotes(tokens, index)
-    # A string with one end would go on to the end of the line, one around a comment would take it in.
+    # An unclosed string would reach the end of the line, and a string around a comment would swallow it.
     is_whole = others and not tokens.has_comment(tokens[index].start, others[-1][1])
     return Repair(said, own, elsewhere=others) if is_whole else Repair(said)
 
 
 def _before(token: Token, said: str, text: str) -> Repair:
-    """A hint that something is to be written before a token."""
+    """Return a hint that inserts text before a token."""
     return Repair(said, elsewhere=((token.start, token.start, f"{text} "),))
 
 
@@ -243,7 +252,7 @@ def _value_hint(token: Token, *, has_value: bool) -> Repair | str:
 
 
 def _other_quotes(tokens: Tokens, index: int) -> tuple[tuple[int, int, str], ...]:
-    """The other quotation marks of the line, as edits."""
+    """Return edits for the other foreign quotation marks in the line."""
     found = []
     other = index + 1
     while other < len(tokens) - 1 and not tokens[other].is_first:
@@ -254,7 +263,7 @@ def _other_quotes(tokens: Tokens, index: int) -> tuple[tuple[int, int, str], ...
 
 
 def _both_sides(tokens: Tokens, index: int) -> Repair:
-    """A hint for a point of a number without digits on one side, and the digit."""
+    """Return the hint for a number without digits on one side of its point, and the edit that adds a zero."""
     said = "a number has digits on both sides of its point, such as `0.5` or `1.0`"
     point = next((at for at in (index, index - 1) if tokens[at].text == "."), index)
     before, token, after = tokens[point - 1], tokens[point], tokens[point + 1]
@@ -266,7 +275,7 @@ def _both_sides(tokens: Tokens, index: int) -> Repair:
 
 
 def _without_exponent(tokens: Tokens, index: int) -> Repair:
-    """A hint for a number that other languages write, and the same number as it is written here."""
+    """Return the hint for a number in the notation of other languages, and the edit that rewrites it."""
     said = "a number has digits and a point only, no exponent and no letters"
     token, sign, digits = tokens[index], tokens[index + 1], tokens[index + 2]
     is_signed = token.text[-1] in "eE" and token.end == sign.start and sign.end == digits.start
@@ -287,7 +296,7 @@ def _timed_hint(token: Token, before: Token, wanted: Sequence[str]) -> str | Non
 
 
 def _statement_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Repair | str | None:
-    """How to mend what depends on the kind of definition that it stands in."""
+    """Return the hint that depends on the kind of definition around the token."""
     token, before, starter = tokens[index], tokens[index - 1], tokens[block.first]
     if starter.is_keyword("after"):
         return _timed_hint(token, before, wanted)
@@ -305,7 +314,7 @@ def _statement_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Bl
 
 
 def _order_hint(tokens: Tokens, index: int, wanted: Sequence[str]) -> Repair | str | None:
-    """What a communication has stands in one order."""
+    """Return the hint for clauses of a communication in the wrong order."""
     token = tokens[index]
     if token.text == "," and tokens[index - 2].is_keyword("links"):
         return "`links` stands behind all else"
@@ -334,14 +343,14 @@ def _requirement_hint(token: Token, before: Token, wanted: Sequence[str]) -> Rep
 
 
 def _symbols(token: Token, wanted: Sequence[str]) -> list[str]:
-    """The symbols that another symbol may have been meant to be."""
+    """Return the symbols that may have been meant instead of another symbol."""
     if token.text == "->" and "=>" in wanted:
         return ["=>"]
     return [word for word in (":", ":=", "=", "->", "{", ",") if word in wanted or (word == "=" and "=(?!>)" in wanted)]
 
 
 def _construct(word: Token) -> Repair | str:
-    """The hint for a word that was meant otherwise, and where one word takes its place, that."""
+    """Return the hint for a misused word, with an edit if a single word replaces it."""
     if word.text == "not":
         return Repair(_MEANT["not"], elsewhere=((word.start, word.end, "!"),))
     text = _WRITTEN.get(word.text)
@@ -358,7 +367,7 @@ def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) 
     close = get_close_matches(token.text, sorted(words - {token.text}), n=1, cutoff=0.7)
     if list(wanted) in ([","], [":"]):
         return _before(token, f"write `{wanted[0]}` before it", wanted[0])
-    for word in (token, tokens[index - 1]):  # Where a name can stand, a word that was meant otherwise is read as one.
+    for word in (token, tokens[index - 1]):  # The parser reads a misused word as a name if a name is allowed there.
         if word.text in _MEANT and word.kind is Kind.WORD:
             return _construct(word)
     places = [place for level, *places in _PLACES if level.starter(token) == token.text for place in places]
@@ -372,7 +381,10 @@ def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) 
 
 
 def keyword_hint(word: str, close: str) -> Repair | str:
-    """The hint for a word that is like a keyword; where the keyword is a part of it, what is left is no mistyping."""
+    """Return the hint for a word similar to a keyword.
+
+    If the word begins or ends with the keyword, the hint is a missing blank.
+    """
     if word.startswith(close):
         return f"is a blank missing behind `{close}`?"
     if word.endswith(close):

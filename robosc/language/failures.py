@@ -1,4 +1,4 @@
-"""Bare values of the predefined enum `Failure`: a name is one where the text expects a reason."""
+"""Bare values of the predefined enum `Failure`, which are recognized only where the text expects a reason."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
 
 def names_failures(file: File) -> bool:
-    """Whether a file needs the predefined library: it, or a library it imports from, names the enum or a reason."""
+    """Return whether a file needs the predefined library.
+
+    That is the case if it, or a library that it imports, names the enum or a reason.
+    """
     if any(library is not None and library.predefined is not None for library in file.libraries.values()):
         return True
     return any(
@@ -26,10 +29,10 @@ def names_failures(file: File) -> bool:
 
 
 def expects_failure(element: ex.Located, is_bare: Callable[[ex.Expression], bool]) -> bool:
-    """Whether the text expects a value of `Failure` where an expression stands.
+    """Return whether the text expects a value of `Failure` at the position of an expression.
 
-    All other names of the text are linked. `is_bare` says whether an expression is a bare name: of two of them at `=`
-    or `!=` only the right one is expected to have the type of the other.
+    All other names of the text must be linked. `is_bare` returns whether an expression is a bare name. If both operands
+    of `=` or `!=` are bare names, only the right one is expected to have the type of the other.
     """
     around = element.eContainer()
     while isinstance(around, ex.Conditional) and element is not around.condition:
@@ -72,7 +75,7 @@ def _is_declared(declared: rsc.DataType | None) -> bool:
 
 
 def _is_reason(expression: ex.Expression | None) -> bool:
-    # Only these can have an enum for a type. The operands of an operator are many: its type is not computed.
+    # Only these expressions can have an enum type. Operators are skipped: long chains of them would be slow to type.
     if not isinstance(expression, rsc.Access | rsc.ErrorReason | rsc.Call | ex.Conditional):
         return False
     found = type_of(expression)

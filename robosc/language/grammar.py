@@ -1,4 +1,4 @@
-"""The compiled grammar. This is the one place that knows textX and its parser, Arpeggio."""
+"""The compiled grammar. Only this module uses textX and its parser, Arpeggio."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 #: A node of a parse tree: `rule_name`, `position`, `position_end`; a list of nodes, or a word with its `value`.
 Node = Any
-#: Failed alternatives from one checkpoint of the parser to the next.
+#: The parser calls the check after this many failed alternatives.
 _FAILURES = 100
 
 
 @dataclass(frozen=True)
 class Failure:
-    """Where a text stops being what the grammar wants, and what it wants there: words of the language or rules."""
+    """Position of a syntax error, and the words of the language or rules that the grammar expects there."""
 
     position: int
     expected: tuple[str, ...]
@@ -32,12 +32,15 @@ class Failure:
 
 @cache
 def language() -> Any:
-    """The textX metamodel of the grammar, compiled once in a process."""
+    """Return the textX metamodel of the grammar, compiled once per process."""
     return textx.metamodel_from_file(str(locate("grammar/robosc.tx")), autokwd=True)
 
 
 def parse(text: str, rule: str) -> Node | Failure:
-    """The parse tree of a whole text by a rule of the grammar, or where the text fails. A checkpoint is in it."""
+    """Return the parse tree of a whole text by a rule of the grammar, or the failure.
+
+    Calls the caller's checkpoint.
+    """
     parser = language()._parser_blueprint.clone()  # noqa: SLF001 - what model_from_str does before it links
     parser.parser_model = arpeggio.Sequence(
         nodes=[_peg(rule), arpeggio.EOF()],
@@ -56,7 +59,7 @@ def parse(text: str, rule: str) -> Node | Failure:
 
 
 def _check_on_failures(parser: Any) -> None:
-    """Make the parser call the check of the caller now and then: at each hundredth alternative that fails."""
+    """Make the parser call the caller's check at every hundredth failed alternative."""
     check = current_check()
     if check is None:
         return
@@ -71,24 +74,27 @@ def _check_on_failures(parser: Any) -> None:
 
 
 def first(rule: str) -> frozenset[str]:
-    """What a text by a rule of the grammar can begin with: words and symbols of the language, or rules for words."""
+    """Return the words, symbols and word rules that can begin a text of a rule of the grammar."""
     return frozenset(_facts()[id(_peg(rule))].first)
 
 
 def last(*rules: str) -> frozenset[str]:
-    """What a text by one of these rules can end with: words and symbols of the language, or rules for words."""
+    """Return the words, symbols and word rules that can end a text of one of these rules."""
     return frozenset().union(*(_facts()[id(_peg(rule))].last for rule in rules))
 
 
 def first_words(*rules: str) -> frozenset[str]:
-    """The keywords that a text by one of these rules can begin with, where it does not begin with an expression."""
+    """Return the keywords that can begin a text of one of these rules, except those that begin an expression."""
     words = frozenset().union(*map(first, rules))
     return frozenset(word for word in words - first("Expression") if word.isalpha() and word.islower())
 
 
 @cache
 def following() -> Mapping[str, frozenset[str]]:
-    """What can follow a word or symbol within the same item, by the word; the next item of a list is left out."""
+    """Return the words and symbols that can follow a word within its item, by word.
+
+    The next item of a list does not count.
+    """
     facts, found = _facts(), dict[str, set[str]]()
     for node in _nodes().values():
         in_order = isinstance(node, arpeggio.Sequence) and not isinstance(node, arpeggio.OrderedChoice)
@@ -105,13 +111,13 @@ def following() -> Mapping[str, frozenset[str]]:
 
 @cache
 def words_of(rule: str) -> frozenset[str]:
-    """All words and symbols that a text by a rule can have, and the rules for other words."""
+    """Return all words, symbols and word rules that can occur in a text of a rule."""
     return frozenset(_wanted(node) for node in _nodes(rule).values() if isinstance(node, arpeggio.Match))
 
 
 @dataclass
 class _Facts:
-    """Of a part of the grammar: whether it may be empty, and what a text by it can begin and end with."""
+    """Properties of a part of the grammar: whether it may be empty, and the words that can begin and end it."""
 
     nullable: bool = False
     first: set[str] = field(default_factory=set)
@@ -124,7 +130,7 @@ def _peg(rule: str) -> Any:
 
 @cache
 def _nodes(rule: str = "Base") -> Mapping[int, Any]:
-    """The parts that a rule of the grammar is made of, by their identity."""
+    """Return the parser nodes of a rule of the grammar by their identity."""
     found: dict[int, Any] = {}
     pending = [_peg(rule)]
     while pending:
@@ -137,7 +143,7 @@ def _nodes(rule: str = "Base") -> Mapping[int, Any]:
 
 @cache
 def _facts() -> Mapping[int, _Facts]:
-    """The facts of all parts of the grammar: the least fixed point, as rules refer to each other."""
+    """Return the properties of all parts of the grammar as a least fixed point: rules refer to each other."""
     facts = {identity: _Facts() for identity in _nodes()}
     changed = True
     while changed:
@@ -176,17 +182,17 @@ def _fact(node: Any, facts: Mapping[int, _Facts]) -> _Facts:
 
 
 def pattern(rule: str) -> str:
-    """The regular expression of a rule that matches a word, such as a string, or a comment."""
+    """Return the regular expression of a rule that matches a word, such as a string, or a comment."""
     return str(_peg(rule).to_match)
 
 
 def is_reserved(word: str) -> bool:
-    """Whether a word is a keyword, so that it needs a `^` where it could be one."""
+    """Return whether a word is a keyword and therefore needs a `^` to be a name."""
     return _peg("UnreservedName").regex.match(word) is None
 
 
 def attribute(node: Node) -> str | None:
-    """The feature that a node of a parse tree assigns; None where it is no assignment."""
+    """Return the feature that a node of a parse tree assigns, or None if it assigns none."""
     return node.rule._attr_name if node.rule_name.startswith("__asgn") else None  # noqa: SLF001
 
 

@@ -1,4 +1,4 @@
-"""Objects that ROS defines: made of a ROS type's fields as the names in a text ask for them."""
+"""Objects that ROS defines: their properties are created from ROS fields when names in a text refer to them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from robosc.ros_types import Fields, RosDistribution, RosTypes, WireType
 
-#: Small integers bring their range with them.
+#: Integer types whose range becomes the range of the property.
 _NARROW = ("int8", "uint8", "int16", "uint16")
 _TYPES = {
     "boolean": rsc.BooleanDataType,
@@ -27,7 +27,7 @@ _TYPES = {
 
 
 def declare(reference: rsc.InterfaceTypeReference, interfaces: RosTypes) -> tuple[str, Repair | str] | None:
-    """Gives a reference the object that it stands for; a message and a hint where the ROS type is not known."""
+    """Set the object of a reference; return a message and a hint if the ROS type is unknown."""
     if next(_definitions(reference, interfaces), None) is None:
         part = section_of(reference)
         message, hint, meant = interfaces.why_unknown(reference.package, reference.rosType, part)
@@ -40,7 +40,7 @@ def declare(reference: rsc.InterfaceTypeReference, interfaces: RosTypes) -> tupl
 
 
 def link_interface(communication: rsc.CommunicationType) -> None:
-    """Gives communication that links no interface that of its data, or of its enum's, if ROS defines this."""
+    """Set the interface of a communication without one to that of its data, or of its enum, if ROS defines it."""
     for _, declared in contents(communication):
         is_enum = isinstance(declared, rsc.ComplexDataTypeReference) and isinstance(declared.type, rsc.EnumDataType)
         named = declared.type.type if is_enum else declared
@@ -53,12 +53,12 @@ def link_interface(communication: rsc.CommunicationType) -> None:
 
 
 def is_made(definition: rsc.ComplexDataType) -> bool:
-    """Whether ROS defines an object, and not a text."""
+    """Return whether ROS, not a text, defines an object."""
     return isinstance(definition.eContainer(), rsc.InterfaceTypeReference)
 
 
 def ros_property(definition: rsc.ObjectDataType, name: str, interfaces: RosTypes) -> rsc.ObjectProperty | None:
-    """The property for a field of such an object; None where there is no such field, or no data type for it."""
+    """Return the property for a field of a ROS object, or None if the field or a data type for it does not exist."""
     for known in definition.properties:
         if known.name == name:
             return known
@@ -78,7 +78,7 @@ def ros_property(definition: rsc.ObjectDataType, name: str, interfaces: RosTypes
 
 
 def ros_properties(definition: rsc.ObjectDataType, interfaces: RosTypes) -> list[str]:
-    """The names of all properties that such an object can have, those of ROS 2 first."""
+    """Return the names of all properties that a ROS object can have, those of ROS 2 first."""
     known = _definitions(definition.eContainer(), interfaces)
     fields = [(name, wire, distribution) for distribution, fields in known for name, wire in fields.items()]
     return list(

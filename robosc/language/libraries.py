@@ -1,4 +1,4 @@
-"""Finds libraries by the names that their files declare."""
+"""Search for libraries by the names that their files declare."""
 
 from __future__ import annotations
 
@@ -20,25 +20,25 @@ _HEADER = re.compile(rb"(?:\xef\xbb\xbf)?" + _BLANK + rb"*+library\b" + _BLANK +
 
 
 def search_folders(given: Iterable[Path | str]) -> list[Path]:
-    """The folders of a call, those of ROBOSC_PATH, and the one that ships with the tool."""
+    """Return the folders of a call, those of ROBOSC_PATH, and the folder that ships with the tool."""
     environment = [folder for folder in os.environ.get("ROBOSC_PATH", "").split(os.pathsep) if folder]
     return [*map(Path, given), *map(Path, environment), locate("stdlib")]
 
 
 class LibraryPath:
-    """The folders in which libraries are looked for, each listed once."""
+    """Folders searched for libraries, each listed once."""
 
     def __init__(self, given: Iterable[Path | str], documents: Documents) -> None:
-        """`given` are the folders of the call; those of ROBOSC_PATH and the one that ships with the tool come after."""
+        """Search the `given` folders first, then those of ROBOSC_PATH and the folder that ships with the tool."""
         self._folders = search_folders(given)
         self._documents = documents
         self._declared: dict[Path, Mapping[str, list[Path]]] = {}
 
     def find(self, name: str, beside: Path) -> list[Path]:
-        """The files that declare a library of a name, all in the first folder that has one; empty if none has.
+        """Return the files that declare a library, all from the first folder that has one; empty if none has.
 
-        `beside` is the importing file; its own folder comes first. A folder that can't be read, and files that hold
-        something else, are passed over.
+        `beside` is the importing file; its own folder is searched first. Unreadable folders and files without a library
+        are skipped.
         """
         for folder in (beside.parent, *self._folders):
             found = self.declared(folder).get(name)
@@ -47,11 +47,11 @@ class LibraryPath:
         return []
 
     def known(self, beside: Path) -> list[str]:
-        """The names of all libraries that a file could import from."""
+        """Return the names of all libraries that a file could import from."""
         return [name for folder in (beside.parent, *self._folders) for name in self.declared(folder)]
 
     def components(self, beside: Path) -> Mapping[str, str]:
-        """The components of all libraries that a file could import from, each with its first library."""
+        """Return the components of all libraries that a file could import from, each with its first library."""
         found: dict[str, str] = {}
         for folder in (beside.parent, *self._folders):
             for library, paths in self.declared(folder).items():
@@ -67,7 +67,7 @@ class LibraryPath:
         return [tokens[at + 1].text for at, token in enumerate(tokens) if token.is_keyword("component")]
 
     def declared(self, folder: Path) -> Mapping[str, list[Path]]:
-        """The libraries that the files of a folder declare, by name; their paths start with the folder's."""
+        """Return the paths of a folder's libraries by name; each path starts with the folder's path."""
         if folder not in self._declared:
             libraries: dict[str, list[Path]] = {}
             for path in self._documents.models(folder):
@@ -85,6 +85,6 @@ class LibraryPath:
 
 
 def declared_name(content: bytes) -> str | None:
-    """The name of the library that a text in UTF-8 declares; None where it declares none."""
+    """Return the name of the library that a UTF-8 text declares, or None if it declares none."""
     found = _HEADER.match(content)
     return found[1].decode("ascii") if found else None

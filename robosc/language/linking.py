@@ -1,4 +1,4 @@
-"""Gives every name the element that it stands for, or says that there is none."""
+"""Links every name to the element that it refers to, and reports names without an element."""
 
 from __future__ import annotations
 
@@ -44,33 +44,32 @@ if TYPE_CHECKING:
 
 _Element = TypeVar("_Element")
 RULE = "unresolved-reference"
-#: So many names are listed where none of them is close to the one that is not there, or where each may be meant.
+#: Maximum number of names that a hint lists.
 _FEW = 6
-#: How to go on without a function that is not there.
+#: Hint for a call of an unknown function.
 _FUNCTION = (
     f"there is {enumeration(f'`{name}`' for name in sorted(FUNCTIONS))}; others are declared, such as "
     "`function half(d: double): double = d / 2`"
 )
 _OWN_TEXT = "write what it has where it is needed"
 _IMPORT = "import it: "
-#: Shorter names are parts of too many others.
+#: Minimum length of a name for the import hint: shorter names are parts of too many others.
 _SHORTEST = 4
 OWN_MEMBERS = "a library's component speaks of its own members only"
-#: Of a condition or function beside the components of a library.
+#: Hint for conditions and functions outside the components of a library.
 _ANY_NUMBER = "a robot may have a library's component several times or not at all: write this in the component"
 
 
 def link(
     file: File, interfaces: RosTypes, resolved: Resolved, importable: Callable[[], Mapping[str, str]]
 ) -> list[Diagnostic]:
-    """Resolves the names of a file, whose libraries are read and linked; returns a finding for each that can't be.
+    """Link the names of a file whose libraries are linked, and return a finding for each name that has no element.
 
-    `interfaces` is what is known of the ROS types that take the place of objects, `resolved` what is known of the
-    components of the libraries; it is added to. `importable` returns the components that can be imported, with their
-    libraries.
+    `interfaces` has the ROS types that can take the place of objects. `resolved` caches the resolved components of the
+    libraries, and the call extends it. `importable` returns the components that can be imported, with their libraries.
 
-    A name without element leaves its feature unset. A name that stands or falls with another one that is not
-    resolved, or that text with a syntax error may declare, draws no finding of its own.
+    The feature of an unlinked name stays unset. There is no finding for a name that depends on another unlinked name,
+    or that text with a syntax error may declare.
     """
     if file.base is None:
         return []
@@ -81,7 +80,7 @@ def link(
 
 
 def _by_cause(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Findings with one for each component whose import is missing: its other uses are related to the first."""
+    """Merge the findings of each missing import into the first one, with the other uses as related places."""
     found: dict[Any, Diagnostic] = {}
     for finding in findings:
         key = finding.hint if finding.hint is not None and finding.hint.startswith(_IMPORT) else finding
@@ -94,7 +93,10 @@ def _by_cause(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 
 class Linker:
-    """Links one file, whose libraries are linked; knows which names can be used where in it, `scope` in its base."""
+    """Links one file whose libraries are linked, and looks up the names that are usable in it.
+
+    `scope` has the names of the file's base.
+    """
 
     def __init__(
         self, file: File, interfaces: RosTypes, importable: Callable[[], Mapping[str, str]] = dict[str, str]
@@ -113,12 +115,12 @@ class Linker:
         self._quantifiers: dict[ex.Located, rsc.ArrayQuantifier | None] = {}
 
     def open_scope(self) -> None:
-        """Looks into a file that is linked already."""
+        """Set the scope of a file that is already linked."""
         assert self._file.base is not None
         self.scope = Scope(self._file, self._file.base)
 
     def imports(self) -> None:
-        """The components that are imported: all other names may look into them."""
+        """Link the imported and instantiated components, which all other names may need."""
         for element, names in self._file.references.items():
             if isinstance(element, rsc.ComponentType) and element.eContainer().parameters:
                 template = written(element.eContainer().name)
@@ -130,12 +132,15 @@ class Linker:
                 self._instantiation(element, names["definition"])
 
     def link(self, scope: Scope) -> None:
-        """What declarations name, then what uses them, in the order of the text: each looks at what stands before."""
+        """Link the names in declarations, then those in uses, in the order of the text.
+
+        A name may need the names before it.
+        """
         self.scope = scope
         for element, names in self._file.references.items():
             self._declaration(element, names)
         for component in self._file.base.definitions if self._file.base is not None else ():
-            # Also one whose name another one has: that is a finding by itself.
+            # A component with a duplicate name is linked too; the duplicate is a finding of its own.
             if isinstance(component, rsc.Component) and isinstance(component.type, rsc.LocalComponent):
                 for definition in component.type.definitions:
                     linked = "interface" in self._file.references.get(definition, ())
@@ -148,24 +153,24 @@ class Linker:
                 declared.minimum, declared.maximum = low, high
 
     def _uses(self) -> None:
-        """Resolves the names that use declarations, bare names of reasons last: others tell what is expected there."""
+        """Link the names that use declarations; bare reasons last: they depend on the other names."""
         reasons: dict[rsc.Access, Mapping[str, Name]] = {}
         for element, names in list(self._file.references.items()):
             checkpoint()
             if isinstance(element, rsc.Access) and self._may_be_reason(element):
                 reasons[element] = names
-            elif element in self._file.references:  # `.running` is no property
+            elif element in self._file.references:  # `.running` is not a property
                 self._use(element, names)
         for access, bare in reasons.items():
             self._reason(access, bare)
 
     def _may_be_reason(self, element: ex.Located) -> bool:
-        """Whether a bare name is a value of `Failure` if the text expects one there, which other names tell."""
+        """Return whether a bare name is a value of `Failure` if the text expects one there."""
         is_bare = self._file.predefined is not None and self._is_bare(element)
         return is_bare and self._file.references[element]["item"].text in FAILURES
 
     def expects_failure(self, element: ex.Expression) -> bool:
-        """Whether the text expects a reason of an error where an expression stands."""
+        """Return whether the text expects a reason of an error at the position of an expression."""
         return self._file.predefined is not None and expects_failure(element, self._is_bare)
 
     def _is_bare(self, element: ex.Located) -> bool:
@@ -174,7 +179,7 @@ class Linker:
         return "component" not in self._file.references.get(element, {})
 
     def _reason(self, access: rsc.Access, names: Mapping[str, Name]) -> None:
-        """A bare name that is called like a value of `Failure`."""
+        """Link a bare name that is equal to a value of `Failure`."""
         if not expects_failure(access, self._is_bare):
             self._access(access, names)
             return
@@ -225,7 +230,7 @@ class Linker:
     def _import(self, element: rsc.ImportedComponent, names: Mapping[str, Name]) -> None:
         library = self._file.libraries.get(names["library"].text)
         if library is None or not isinstance(library.base, rsc.Library):
-            return  # Whoever looked for the library has said why there is none.
+            return  # The search for the library has reported it.
         element.library = library.base
         components, name = library.declared[rsc.Component], names["definition"]
         if name.text in components:
@@ -345,7 +350,7 @@ class Linker:
             if not self.scope.incomplete and not self._file.may_declare(name.text, Declared.COMMUNICATION):
                 self._missing(name, "there is no communication", self.scope.all_communications())
             return None
-        # That components have the same name is a finding of its own, and to write this name would not help.
+        # Duplicate component names are a finding of their own, and a qualified name would stay ambiguous.
         if len({communication for _, communication in found}) < len({component.name for component, _ in found}):
             candidates, texts = _first_few(f"{written(component.name)}.{written(name.text)}" for component, _ in found)
             hint = Repair(f"write {candidates}", choices=texts)
@@ -363,9 +368,9 @@ class Linker:
         return component
 
     def components(self, element: ex.Located) -> Names:
-        """The components that can be mentioned where an element stands: in a library each mentions itself only.
+        """Return the components that an element can mention. In a library a component can only mention itself.
 
-        A template mentions itself, too; others mention what is made of it.
+        A template can also mention itself; other components can only mention its instances.
         """
         own = self.around(element, rsc.Component)
         if self._is_library:
@@ -374,11 +379,11 @@ class Linker:
 
     @cached_property
     def _parts(self) -> dict[str, rsc.Component]:
-        """The components of the robot that are no templates."""
+        """Components of the robot that are not templates."""
         return {name: component for name, component in self.scope.components.items() if not component.parameters}
 
     def _made_of(self, name: Name) -> Repair | None:
-        """What to write for the name of a template of the robot: that of a component that is made of it."""
+        """Return the repair that replaces the name of a template of the robot by the name of an instance."""
         template = None if self._is_library else self.scope.components.get(name.text)
         if template is None:
             return None
@@ -387,7 +392,7 @@ class Linker:
         return Repair(f"`{written(template.name)}` is a template: write {said}", choices=texts if made else ())
 
     def _import_of(self, name: Name, known: Iterable[str]) -> str | None:
-        """The import that may be missing; None where a known name is close, or no library has such a component."""
+        """Return the import that may be missing; None if a known name is close or no library has the component."""
         if self._is_library or len(name.text) < _SHORTEST or did_you_mean(name.text, known, cutoff=0.6):
             return None
         word, importable = name.text.lower(), self._importable()
@@ -460,7 +465,7 @@ class Linker:
             self._read_as_property(access, names["item"])
 
     def automata(self, element: ex.Located) -> Names:
-        """The requirement automata that an expression can read: those of its component, then those of the robot."""
+        """Return the requirement automata that an expression can read: of its component, then of the robot."""
         own = self.around(element, rsc.Component)
         local = own.type.definitions if own is not None and isinstance(own.type, rsc.LocalComponent) else ()
         outer = self._file.base.definitions if self._file.base is not None else ()
@@ -482,7 +487,10 @@ class Linker:
             self._missing(name, "there is no enum value", known, hint)
 
     def _value_of(self, access: rsc.Access, enum: Name, value: Name) -> bool:
-        """Whether `a.b` is a value with its enum before it, which no component is called like."""
+        """Link `a.b` as a value `b` of an enum `a`, and return whether `a` is an enum.
+
+        Components of this name take precedence.
+        """
         found = self.scope.find(rsc.ComplexDataType, enum.text)
         if len(found) != 1 or not isinstance(found[0][1], rsc.EnumDataType):
             return False
@@ -496,7 +504,7 @@ class Linker:
         return True
 
     def parameters(self, element: ex.Located) -> Names:
-        """The parameters that an expression can read: of its function, else of its enum or template."""
+        """Return the parameters that an expression can read: of its function, and of its enum or template."""
         function = self._nearest(element, rsc.Function)
         around = self._outermost(element)
         found: dict[str, Any] = {}
@@ -505,7 +513,7 @@ class Linker:
         return found | by_name(function.parameters) if function is not None else found
 
     def elements(self, element: ex.Located) -> Names:
-        """The elements of arrays that an expression can read, by the quantifiers in whose condition it stands."""
+        """Return the array elements that an expression can read: those of the quantifiers around it."""
         found: dict[str, rsc.ArrayElement] = {}
         around: ex.Located | None = element if rsc.ArrayElement in self._present else None
         while around is not None:
@@ -515,7 +523,7 @@ class Linker:
         return found
 
     def _quantifier(self, element: ex.Located) -> rsc.ArrayQuantifier | None:
-        """The innermost condition on the elements of an array that an element stands in."""
+        """Return the innermost quantifier over an array whose condition contains an element."""
         path: list[ex.Located] = []
         found: rsc.ArrayQuantifier | None = None
         around: ex.Located | None = element
@@ -532,7 +540,7 @@ class Linker:
         return found
 
     def templates(self, element: ex.Located) -> Names:
-        """The templates that stand for their instances where an expression stands, by the quantifiers around it."""
+        """Return the templates whose instances an expression can read: those of the quantifiers around it."""
         found: dict[str, rsc.Component] = {}
         quantifier = self._nearest(element, rsc.InstanceQuantifier)
         while quantifier is not None:
@@ -559,7 +567,10 @@ class Linker:
             access.item = self._member(members, name, component, Declared.MEMBER)
 
     def _call_misread(self, component: rsc.Component, name: Name, behind: Sequence[Name | None]) -> bool:
-        """Whether a name is that of a communication, of which `behind` reads what is not there: a finding."""
+        """Report a communication that is read without `running`, and return whether the name is one.
+
+        `behind` are the names behind it in the text.
+        """
         communication = (self.scope.communications(component) or {}).get(name.text)
         if communication is None or self._file.may_declare_within(
             self.scope.origin(component), name.text, Declared.MEMBER
@@ -587,7 +598,7 @@ class Linker:
         return True
 
     def _misspelled(self, component: rsc.Component, name: Name) -> bool:
-        """Whether a name before `running` is nearly that of a service or action: a finding."""
+        """Report a name before `running` that is close to a service or action, and return whether it is."""
         calls = self._calls(component)
         repair = did_you_mean(name.text, calls, cutoff=0.6)
         if repair is None or self._file.may_declare_within(
@@ -604,7 +615,10 @@ class Linker:
         }
 
     def _own_running(self, access: rsc.Access, name: Name, word: Name) -> bool:
-        """Whether `a.running` reads a service or action of the own component; what else `a` may be comes first."""
+        """Link `a.running` to a service or action of the own component, and return whether this succeeds.
+
+        Any other meaning of `a` takes precedence.
+        """
         own = self.around(access, rsc.Component)
         if own is None or word.text != RUNNING_WORD or access.segments or name.text in (self.scope.members(own) or {}):
             return False
@@ -618,7 +632,7 @@ class Linker:
         return True
 
     def _running(self, access: rsc.Access, component: rsc.Component, name: Name) -> bool:
-        """Whether `A.b.running` reads a service or action of a component, which has no state or variable `b`."""
+        """Link `A.b.running` to a service or action `b` of a component, and return whether this succeeds."""
         communication = (self.scope.communications(component) or {}).get(name.text)
         if not isinstance(communication, rsc.Service | rsc.Action) or len(access.segments) != 1:
             return False
@@ -632,7 +646,10 @@ class Linker:
         return True
 
     def _bare(self, access: rsc.Access, name: Name, *, qualifies: bool) -> None:
-        """A component, then a name of the own component, of the robot or library, an enum value."""
+        """Link a bare name.
+
+        It is a component, else a member of the own component, else a name of the robot or library, else an enum value.
+        """
         own = self.around(access, rsc.Component)
         members = (self.scope.members(own) if own is not None else None) or {}
         components = self.components(access)
@@ -667,7 +684,10 @@ class Linker:
             self._missing(name, "there is no component, variable, state or enum value", known, instead, listed=False)
 
     def _named_value(self, access: rsc.Access, name: Name) -> bool:
-        """Whether a name is that of a constant or condition of the robot or library, or of several, a finding."""
+        """Link a constant, parameter or condition of the robot or library, and return whether there is one.
+
+        A name that several libraries declare is reported.
+        """
         found = self.scope.find(rsc.NamedExpression, name.text)
         if len(found) > 1:
             self._ambiguous("name", name, [file for file, _ in found])
@@ -678,7 +698,7 @@ class Linker:
     def _elsewhere(
         self, name: Name, having_it: Callable[[rsc.Component], Names | None] | None = None
     ) -> Repair | str | None:
-        """The text for a bare name that some component has: as a variable or a state, or by `having_it`."""
+        """Return the qualified name for a bare name that other components have as a member, or by `having_it`."""
         members = having_it or self.scope.members
         having = [
             f"{written(component.name)}.{written(name.text)}"
@@ -693,7 +713,7 @@ class Linker:
         return Repair(f"write {hint}", choices=texts)
 
     def _enum_value(self, access: rsc.Access, name: Name) -> bool:
-        """Whether a name is that of an enum value, or of several, which is a finding."""
+        """Link an enum value, or report several with the same name, and return whether there is one."""
         values = self.scope.values(name.text)
         if len(values) == 1:
             access.item = values[0]
@@ -706,7 +726,7 @@ class Linker:
         return bool(values)
 
     def _read_as_property(self, access: rsc.Access, name: Name) -> None:
-        """`a.b`, where `a` turned out to be no component: then `b` is a property of it."""
+        """Read `a.b` as the property `b` of `a`, which is not a component."""
         start = self._point_before(name).start
         segment = rsc.PropertySegment(source=self._file.text.source(start, name.end))
         access.segments.insert(0, segment)
@@ -718,7 +738,7 @@ class Linker:
 
     def _segment(self, segment: rsc.PropertySegment, name: Name) -> None:
         access = segment.eContainer()
-        # The segments of an access come in their order: each goes on from the one before.
+        # The segments of an access come in order, and each continues from the type of the previous one.
         if access not in self._types:
             self._types[access] = [start_type(access, value_type(access))]
         types = self._types[access]
@@ -734,7 +754,7 @@ class Linker:
             expected = provided_data_type(around.communicationType.communicationType)
         else:
             expected = declared_type(around.property.type) if around.property else UNKNOWN
-        # Whether an object fits here at all is a question of types, not of names.
+        # The type rules check whether an object is allowed here.
         found = self._property(expected, name) if isinstance(expected, ObjectType) else None
         if found is not None:
             element.property = found
@@ -776,9 +796,9 @@ class Linker:
         return tokens[tokens.index_at(name.start) - 1]
 
     def around(self, element: ex.Located, kind: type[_Element]) -> _Element | None:
-        """The component or enum that contains the element, if it is of that kind.
+        """Return the component or enum that contains the element if it is of that kind, or None.
 
-        What a component that is made elsewhere is given, arguments and topics, stands beside it.
+        The arguments of an instantiated or imported component are outside of it.
         """
         definition = self._outermost(element)
         made = isinstance(definition, rsc.Component) and not isinstance(definition.type, rsc.LocalComponent)
@@ -786,10 +806,10 @@ class Linker:
         return definition if isinstance(definition, kind) and not given else None
 
     def _outermost(self, element: ex.Located) -> ex.Located | None:
-        """The definition of the robot or library that contains an element."""
+        """Return the definition of the robot or library that contains an element."""
         path: list[ex.Located] = []
         around = element
-        # What is between two names of a long expression is climbed once.
+        # Cached per element: each part of the path between two names of a long expression is climbed only once.
         while around not in self._definitions and not isinstance(around.eContainer(), rsc.Base):
             path.append(around)
             around = around.eContainer()
@@ -800,7 +820,7 @@ class Linker:
         return definition
 
     def _nearest(self, element: ex.Located, kind: type[_Element]) -> _Element | None:
-        """The innermost element of a kind that an expression stands in, within its definition."""
+        """Return the innermost element of a kind that contains an expression, within its definition."""
         if kind not in self._present:
             return None
         known = self._nearests.setdefault(kind, {})
@@ -837,7 +857,7 @@ class Linker:
 
 
 def _first_few(texts: Iterable[str]) -> tuple[str, tuple[str, ...]]:
-    """What may be written in place of a name, in words and by itself: all of it where that is not much."""
+    """Return the possible replacements of a name, as a phrase and as texts, at most `_FEW` of them."""
     texts = tuple(dict.fromkeys(texts))
     shown = [f"`{text}`" for text in texts[:_FEW]]
     others = len(texts) - len(shown)

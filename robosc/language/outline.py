@@ -1,7 +1,7 @@
-"""The skeleton of a text that has syntax errors: which definition goes from where to where.
+"""Skeleton of a text with syntax errors: the ranges of its definitions.
 
-Definitions begin with keywords that can stand nowhere else, so that a missing or surplus brace shows where the next one
-begins in the wrong place. The outline mends the braces; all other faults stay within one definition.
+Definitions begin with keywords that are allowed nowhere else. If a definition begins in a wrong place, a brace is
+missing or surplus. The outline repairs the braces; all other faults stay within one definition.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Level:
-    """What stands inside a kind of braces: items of a rule of the grammar, in words a `noun`.
+    """The items inside a kind of braces: a rule of the grammar, called a `noun` in messages.
 
-    `starters` are the keywords that an item begins with, `bodies` what its braces hold, by such a keyword; `unknown` is
-    what they hold most likely where the keyword can't be told.
+    `starters` are the keywords that begin an item. `bodies` maps such a keyword to the level inside the item's braces.
+    `unknown` is the most likely level inside the braces if the keyword is not recognized.
     """
 
     rule: str
@@ -36,13 +36,13 @@ class Level:
     unknown: Level | None = None
 
     def starter(self, token: Token) -> str | None:
-        """The starter that a token is, or that it is most like; None where it is like none."""
+        """Return the starter that is equal or similar to a token, or None if there is none."""
         if token.kind is not Kind.WORD:
             return None
         return _most_like(token.text, self.starters)
 
 
-@lru_cache(1024)  # The same few words are looked at again with each key.
+@lru_cache(1024)  # The editor looks up the same few words after each keystroke.
 def _most_like(word: str, known: frozenset[str]) -> str | None:
     return next(iter(get_close_matches(word, sorted(known), n=1, cutoff=0.7)), None)
 
@@ -53,11 +53,11 @@ TRANSITIONS = Level("Transition", "transition", first_words("Transition"))
 
 
 def _level(rule: str, noun: str, holder: str, inside: Level, also: frozenset[str] = frozenset()) -> Level:
-    """A level of which the items of the rule `holder` hold those of another level."""
+    """Return a level in which the items of the rule `holder` contain those of another level."""
     return Level(rule, noun, first_words(rule) | also, dict.fromkeys(first_words(holder), inside), unknown=inside)
 
 
-#: Where a message's direction is missing, the next word shows what it is.
+#: Recognizes a message even if its direction is missing.
 _MESSAGE = frozenset({"message"})
 AUTOMATON = _level("AutomatonDefinition", "variable, state or transition", "State", TRANSITIONS)
 COMPONENT = _level(
@@ -65,7 +65,7 @@ COMPONENT = _level(
 )
 DEFINITIONS = _level("Definition", "definition", "Component", COMPONENT)
 _DATA_TYPES = {"object": PROPERTIES, "enum": RULES}
-#: What an item declares, by the keyword that it begins with.
+#: Kind of name that an item declares, by its first keyword.
 DECLARED = {
     **dict.fromkeys(first_words("Component"), Declared.COMPONENT),
     **dict.fromkeys(first_words("Interface"), Declared.INTERFACE),
@@ -75,16 +75,16 @@ DECLARED = {
     **dict.fromkeys(first_words("NamedExpression"), Declared.NAMED),
 }
 _STARTERS = frozenset().union(*(level.starters for level in (RULES, AUTOMATON, COMPONENT, DEFINITIONS)))
-#: Keywords that begin an item together with one of those before them.
+#: Starters that can continue an item, and the starters after which they do.
 _CONTINUED = {word: tuple(before for before in _STARTERS if word in following()[before]) for word in _STARTERS}
-#: Keywords and braces that follow the one that an item begins with.
+#: Keywords and braces that can follow the first keyword of an item.
 _SECOND = {
     word
     for starter in _STARTERS
     for word in following()[starter] - first("Expression")
     if word == "{" or (word.isalpha() and word.islower())
 }
-#: Keywords and symbols after which an item goes on. (A colon ends one by the grammar alone: `send:`.)
+#: Keywords and symbols that cannot end an item. (A colon can end one by the grammar alone: `send:`.)
 _INSIDE = (
     {word.partition("(?!")[0] for word in words_of("Base")}
     - last(*(level.rule for level in (PROPERTIES, RULES, TRANSITIONS, AUTOMATON, COMPONENT, DEFINITIONS)))
@@ -94,9 +94,9 @@ _INSIDE = (
 
 @dataclass(frozen=True)
 class Block:
-    """One item of a level, or the whole text (`level` is None): its range of tokens and of the text.
+    """One item of a level, or the whole text (`level` is None): its range of tokens and its offsets.
 
-    `items` are what its braces hold, each within its range.
+    `items` are the items inside its braces.
     """
 
     level: Level | None
@@ -110,10 +110,10 @@ class Block:
 
 @dataclass(frozen=True)
 class Brace:
-    """A brace that is missing before a token, or (`surplus`) a token that is a brace too many.
+    """A brace that is missing before a token, or a token that is a surplus brace (`surplus`).
 
-    `offset` is a blank of the text where the missing one can stand, None where there is no blank; `opened` is the token
-    of the brace that it would close.
+    `offset` is a blank of the text that the missing brace can replace, or None if there is no blank. `opened` is the
+    index of the brace that a missing one would close.
     """
 
     text: str
@@ -124,7 +124,7 @@ class Brace:
 
 
 class Outline:
-    """Finds the items in a range of tokens; `braces` are the ones that it had to add or to leave out for this."""
+    """Finds the items in a range of tokens; `braces` are the braces that it added or ignored."""
 
     def __init__(self, tokens: Tokens, first: int = 0, limit: int | None = None) -> None:
         self.braces: list[Brace] = []
@@ -138,11 +138,11 @@ class Outline:
 
     @property
     def after(self) -> int:
-        """The index of the first token that was not looked at."""
+        """Index of the first token that was not read."""
         return self._at
 
     def file(self) -> Block:
-        """The whole text: a robot or a library."""
+        """Return the block of the whole text: a robot or a library."""
         while not self._ended() and not self._starts(DEFINITIONS) and not self._is("{"):
             self._at += 1
         if self._is("{"):
@@ -161,7 +161,7 @@ class Outline:
         return Block(None, 0, self._at, 0, self._end(), items)
 
     def _last_starter(self) -> int:
-        """Where the last definition behind the brace that seemed to end the file begins; -1 where there is none."""
+        """Return the index of the last definition behind the brace that seemed to end the file, or -1."""
         last = -1
         for index in range(self._at, self._limit):
             if self._tokens[index].is_keyword("robot", "library"):
@@ -171,17 +171,17 @@ class Outline:
         return last
 
     def items(self, levels: tuple[Level, ...]) -> tuple[Block, ...]:
-        """The items of the last of these levels, up to where one of the others goes on."""
+        """Return the items of the last level, up to the next item of an outer level."""
         items = []
         while not self._ended() and not self._is("}") and not self._leaves(levels):
             items.append(self._item(levels))
         return tuple(items)
 
     def _leaves(self, levels: tuple[Level, ...]) -> bool:
-        """Whether an item of a level around the last one begins here. Where it may belong to either, its column says.
+        """Return whether an item of an outer level begins here; if it fits both levels, its column decides.
 
-        That is so with braces that do not match: then a definition that stands no further in than the one around it
-        was meant to stand beside it. With braces that match, one that stands further in can't stand where it does.
+        If the braces of the text do not match, a definition that is not indented deeper than the one around it was
+        meant to stand beside it. If they match, a definition that is indented deeper does not leave the level.
         """
         if not self._outer(levels):
             return False
@@ -216,17 +216,17 @@ class Outline:
             elif self._is("{"):
                 self._skip(levels)
                 continue
-            # A property outside of braces: the brace before it is missing, and the one that would close it is there.
+            # A property without braces: the opening brace is missing, and its closing brace follows.
             unopened = unopened or (starter == "provide" and self._tokens[self._at + 1].is_keyword(":"))
             self._at += 1
         if starter is None and level.starters:
-            # Nothing is known of what it holds, so nothing can be wrong with it.
+            # The contents of an unknown item cannot be checked.
             items = ()
             del self.braces[mended:]
         return Block(level, first, self._at, self._tokens[first].start, self._end(), items, levels)
 
     def _opens(self, levels: tuple[Level, ...], body: Level) -> bool:
-        """Whether the braces of an item open here; passes the brace, or notes that it is missing."""
+        """Return whether the braces of an item open here; read the brace, or record that it is missing."""
         if self._is("{") and not self._tokens[self._at - 1].is_keyword("with"):
             self._at += 1
             while self._is("{"):
@@ -241,7 +241,7 @@ class Outline:
         return False
 
     def _body(self, levels: tuple[Level, ...]) -> tuple[Block, ...]:
-        """What stands between an opening brace, just passed, and its closing one, which is passed too."""
+        """Return the items between an opening brace, already read, and its closing brace, which is read too."""
         opened = self._at - 1
         items = self.items(levels)
         while self._is("}"):
@@ -260,7 +260,7 @@ class Outline:
         return level.bodies.get(starter) if starter else level.unknown
 
     def _skip(self, levels: tuple[Level, ...]) -> None:
-        """Moves behind a pair of braces that holds no items, such as that of an object value."""
+        """Move behind a pair of braces without items, such as those of an object value."""
         depth = 0
         while not self._ended():
             doubled = depth and self._is("{") and self._tokens[self._at - 1].is_keyword("{")
@@ -273,7 +273,7 @@ class Outline:
         return any(self._starts(around) for around in levels[:-1])
 
     def _starts(self, level: Level) -> bool:
-        """Whether an item of a level begins at the current token."""
+        """Return whether an item of a level begins at the current token."""
         tokens, at = self._tokens, self._at
         named = tokens[at + 1].is_keyword(":")
         if level is PROPERTIES:
@@ -290,28 +290,31 @@ class Outline:
         return not self._continues(level, _CONTINUED.get(tokens[at].text, ()))
 
     def _is_starter(self, level: Level, at: int) -> bool:
-        """Whether a token is a starter; one that begins a line is, even if a name is missing before it."""
+        """Return whether a token is a starter.
+
+        At the start of a line it is one even if a name is missing before it.
+        """
         token, after = self._tokens[at], self._tokens[at + 1]
         if token.text in level.starters and not is_reserved(token.text):
-            # A keyword before a name or a number only, where no name of an expression stands.
+            # Counts as a keyword only before a name or a number, and not as a name in an expression.
             named = after.kind is Kind.NUMBER or (after.kind is Kind.WORD and not is_reserved(after.text))
             return named and not token.is_name
         return token.is_keyword(*level.starters) or (token.is_name and token.is_first and token.text in level.starters)
 
     def _continues(self, level: Level, starters: tuple[str, ...]) -> bool:
-        """Whether the token before the current one is one of these keywords, if misspelt then in the same line."""
+        """Return whether the previous token is one of these keywords, or misspells one in the same line."""
         token, before = self._tokens[self._at], self._tokens[self._at - 1]
         misspelt = before.is_first and not token.is_first and level.starter(before) in starters
         return (before.is_keyword(*starters) and not self._is_named(self._at - 1)) or misspelt
 
     def _is_named(self, at: int) -> bool:
-        """Whether what looks like a keyword can only be a name: an item goes on before it in its line, or behind it."""
+        """Return whether an apparent keyword is a name because an item continues before or behind it."""
         token, before, after = self._tokens[at], self._tokens[at - 1], self._tokens[at + 1]
         goes_on = before.is_keyword(*_INSIDE) or self._tokens[at - 2].is_keyword("most")
         return after.is_keyword(",", ".", ":=") or (not token.is_first and goes_on)
 
     def _misspelt(self, level: Level) -> bool:
-        """Whether a line begins with what looks like a starter and a name: no line of an item goes on so."""
+        """Return whether a line begins like an item with a misspelled starter."""
         token, after = self._tokens[self._at], self._tokens[self._at + 1]
         if not token.is_first or token.is_name or level.starter(token) is None or is_reserved(token.text):
             return False
@@ -320,7 +323,7 @@ class Outline:
     def _missing(self, brace: str, opened: int | None = None) -> None:
         token = self._tokens[self._at]
         offset = self._end()
-        # Behind the text there is room without end.
+        # The end of the text has room for any number of braces.
         free = offset < token.start or token.kind is Kind.END
         self.braces.append(Brace(brace, self._at, offset if free else None, opened=opened))
         if free:
@@ -333,5 +336,5 @@ class Outline:
         return self._at >= self._limit
 
     def _end(self) -> int:
-        """Where the text before the current token ends, a brace that was added there included."""
+        """Return the end of the text before the current token, including a brace that was added there."""
         return max(self._tokens[self._at - 1].end if self._at else 0, self._filled.get(self._at, 0))

@@ -1,4 +1,4 @@
-"""The outline of a text for those who look through it: what it defines, and what is in what."""
+"""Outline of a text for navigation: its definitions and their nesting."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
     from robosc.language.scopes import File
 
-#: What has a place of its own in the outline, though it may have no name.
+#: Elements with an entry of their own in the outline, even without a name.
 _ITEMS = (rsc.Requirement, rsc.Property, rsc.ProvideStatement, rsc.ComponentBehaviour)
-#: Names inside of expressions and heads.
+#: Named elements inside expressions and headers, which the outline omits.
 _HIDDEN = (rsc.FormalParameter, rsc.ArrayElement)
-#: What opens and closes in lines of its own.
+#: Elements that span several lines and can be folded.
 _FOLDED = (
     rsc.Base,
     rsc.Component,
@@ -33,7 +33,7 @@ _FOLDED = (
 
 @dataclass(frozen=True)
 class Item:
-    """A definition: what to call it, its range and that of its name (offsets), and the definitions in it."""
+    """An entry of the outline: label, range of the element and of its name (offsets), and the nested entries."""
 
     element: Any
     name: str
@@ -45,7 +45,7 @@ class Item:
 
 
 def outline(file: File) -> list[Item]:
-    """The definitions of a text, as far as it could be read, each in the one that it stands in."""
+    """Return the definitions of the readable parts of a text, nested as in the text."""
     roots: list[Item] = []
     found: dict[Any, Item] = {}
     for element in own_elements(file):
@@ -69,12 +69,12 @@ def outline(file: File) -> list[Item]:
 
 
 def folds(file: File) -> list[tuple[int, int]]:
-    """The ranges of a text that can be folded (offsets): definitions of several lines, each up to its last brace."""
+    """Return the foldable ranges of a text (offsets): definitions of several lines, each up to its last brace."""
     return [span(file, element) for element in own_elements(file) if isinstance(element, _FOLDED)]
 
 
 def around(file: File, offset: int) -> list[tuple[int, int]]:
-    """The ranges of all elements that an offset lies in or right behind, from the innermost to the whole text."""
+    """Return the ranges of all elements that contain an offset or end at it, from the innermost to the whole text."""
     found = {(0, len(file.text.content))}
     name = file.name_at(offset)
     if name is not None:
@@ -83,7 +83,7 @@ def around(file: File, offset: int) -> list[tuple[int, int]]:
         start, end = span(file, element)
         if start <= offset <= end:
             found.add((start, end))
-    # What does not lie within the one before is no step outwards.
+    # A selection can only grow: ranges that do not contain the previous one are dropped.
     ranges: list[tuple[int, int]] = []
     for start, end in sorted(found, key=lambda place: (place[1] - place[0], place)):
         if not ranges or (start <= ranges[-1][0] and ranges[-1][1] <= end):
@@ -92,17 +92,17 @@ def around(file: File, offset: int) -> list[tuple[int, int]]:
 
 
 def span(file: File, element: Any) -> tuple[int, int]:
-    """The range of an element in its text (offsets)."""
+    """Return the range of an element in its text (offsets)."""
     place = element.source.span
     start = file.text.offset(place.line, place.column)
     return start, max(start, file.text.offset(place.end_line, place.end_column))
 
 
 def own_elements(file: File) -> Iterator[Any]:
-    """All elements that stand in the text itself, each before what it contains.
+    """Yield all elements that appear in the text itself, each before its contents.
 
-    What was made of a definition of ROS stands in no text: it lies below the reference that names the ROS type. Takes
-    time in proportion to the number of elements, however deep they are inside each other.
+    Elements created from a ROS definition appear in no text: they are below the reference that names the ROS type. The
+    time is linear in the number of elements, however deep they are nested.
     """
     pending = [] if file.base is None else [file.base]
     while pending:

@@ -1,4 +1,4 @@
-"""Reads a file with the libraries that it imports from."""
+"""Reads a file and the libraries that it imports."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ if TYPE_CHECKING:
     from robosc.language.scopes import File
     from robosc.semantics.instances import Resolved
 
-#: The library that every model knows.
+#: Path of the library that every model can use without an import.
 _PREDEFINED = "stdlib/predefined/predefined.rscd"
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What came of reading a file.
+    """Result of reading a file.
 
-    `base` is its robot or library, as far as its text could be read; None where not even its first line could.
-    `findings` are the faults of the text and of its names, those of imported libraries included, in order.
-    `files` holds all that was read, the file itself first, by the paths that the findings carry.
+    `base` is the robot or library of the file, without its unreadable parts, or None if its first line is unreadable.
+    `findings` are the faults of the text and its names, in order, including those of imported libraries.
+    `files` maps the paths that the findings use to all files that were read, beginning with the file itself.
     """
 
     base: rsc.Base | None
@@ -51,7 +51,7 @@ class Reading:
 
     @property
     def texts(self) -> dict[str, str]:
-        """What was read, by the paths that the findings carry."""
+        """Contents of all files that were read, by the paths that the findings use."""
         return {path: file.text.content for path, file in self.files.items()}
 
 
@@ -61,12 +61,12 @@ def read(
     ros_types: RosTypes | None = None,
     documents: Documents | None = None,
 ) -> Reading:
-    """Reads a robot or a library and all that it imports, and links its names.
+    """Read a robot or a library and all that it imports, and link the names.
 
     `library_paths` are searched after the file's own folder and before ROBOSC_PATH and the standard library.
-    `ros_types` is what is known of ROS types; None: what is known without folders of the call. `documents` are texts
-    that stand in place of files; None: there are only files. Raises OSError where the file itself can't be read; all
-    other faults are findings of the rules `syntax`, `unresolved-reference` and `import-cycle`.
+    `ros_types` are the known ROS types; None for those that are known without folders of the call. `documents` are
+    texts that replace files; None if there are only files. Raises OSError if the file itself cannot be read; all other
+    faults are findings of the rules `syntax`, `unresolved-reference` and `import-cycle`.
     """
     folder = Path(path).parent.resolve()
     reader = _Reader(folder, library_paths, ros_types or RosTypes(), documents or Documents())
@@ -75,9 +75,9 @@ def read(
 
 
 class _Reader:
-    """Reads each file once; `_reading` are those that are being read, each imported by the one before.
+    """Reads each file once; `_reading` holds the files in progress, each imported by the one before.
 
-    No chain of imports is too long: files wait for their libraries in a list.
+    Files wait for their libraries in this dictionary, so that a chain of imports can have any length.
     """
 
     def __init__(
@@ -96,7 +96,7 @@ class _Reader:
         self._resolved: Resolved = {}
 
     def read(self, path: Path, shown: str) -> File:
-        """The file at a path, linked, with all that it imports; `shown` is what findings call it."""
+        """Return the linked file at a path, with all that it imports; findings call it `shown`."""
         first = self._open(path, shown)
         while self._reading:
             identity, names = next(reversed(self._reading.items()))
@@ -115,7 +115,7 @@ class _Reader:
         return first
 
     def _open(self, path: Path, shown: str) -> File:
-        """A file whose libraries are read next, in the order of its text."""
+        """Return a file and register it for reading its libraries, in the order of its text."""
         identity = path.resolve()
         content = self._documents.read(path)
         name = self._name(path)
@@ -134,9 +134,10 @@ class _Reader:
         return file
 
     def _name(self, path: Path) -> str:
-        """What models call a file: its path from the model's folder, if it is below, else its bare name.
+        """Return the name of a file in models.
 
-        Of two files with one name the one that is read later gets as many of the folders around it as tell them apart.
+        That is its path from the model's folder if it is below, else its bare name. If two files share a name, the
+        later one gets as many of its parent folders as distinguish them.
         """
         whole = path.parent.resolve() / path.name
         if whole == locate(_PREDEFINED).resolve():
@@ -154,7 +155,7 @@ class _Reader:
         return name
 
     def _predefined(self) -> File:
-        """The library that every model knows."""
+        """Return the library that every model can use without an import."""
         path = locate(_PREDEFINED)
         identity = path.resolve()
         return self._files[identity] if identity in self._files else self._open(path, str(path))

@@ -1,7 +1,7 @@
-"""Parses a file; where it has faults, finds them all and parses the rest.
+"""Parses a file; if it has faults, finds all of them and parses the rest.
 
-A text without fault is parsed as a whole. Else its outline is parsed item by item, the smallest first; what does not
-parse is a finding and is blanked out, and the text that remains, parsed as a whole, makes the model.
+A text without faults is parsed as a whole. Otherwise its outline is parsed item by item, the smallest first. Items that
+do not parse become findings and are blanked out. The remaining text, parsed as a whole, becomes the model.
 """
 
 from __future__ import annotations
@@ -26,12 +26,15 @@ if TYPE_CHECKING:
     from robosc.metamodel import robosc as rsc
 
 _LEAVE_OUT = "leave it out"
-#: Items that begin with these declare nothing that another place could name.
+#: First keywords of items that declare no name usable elsewhere.
 _DECLARING_NOTHING = first_words("Requirement", "ProvideStatement", "Transition")
 
 
 def parse_file(text: Text) -> File:
-    """What can be read of a text, its names not linked. Findings are of the rule `syntax`."""
+    """Return the readable parts of a text as a file with unlinked names.
+
+    Findings are of the rule `syntax`.
+    """
     file = _parsed(text)
     if text.source_file is not None:
         text.source_file.parsed = file
@@ -48,17 +51,17 @@ def _parsed(text: Text) -> File:
 
 
 def recovered(text: Text) -> File:
-    """What can be read of a text that the grammar does not allow, and why it doesn't."""
+    """Return the readable parts of a text that the grammar rejects, with a finding for each fault."""
     return _Recovery(text).parse()
 
 
 class _Recovery:
-    """Parses a text that has faults. `_content` is the text, with what was found to be wrong blanked out or mended."""
+    """Parses a text that has faults. `_content` is the text, with its faults blanked out or repaired."""
 
     def __init__(self, text: Text) -> None:
         self._text = text
         self._tokens = tokens = text.tokens
-        # Comments are blanks here, and so is what lies behind the text: room for the braces that are missing there.
+        # Comments become blanks. Blanks behind the text are room for missing braces.
         self._content = [character if character == "\n" else " " for character in text.content + " " * 10]
         for token in tokens:
             self._content[token.start : token.end] = token.text
@@ -67,7 +70,7 @@ class _Recovery:
         self._is_library = tokens[0].text == "library"
 
     def parse(self) -> File:
-        """All findings, and the model of what is left."""
+        """Return the model of the remaining text, and all findings."""
         tokens = self._tokens
         first, last = tokens[0], tokens[len(tokens) - 1]
         if last.kind is Kind.OPEN_COMMENT:
@@ -105,7 +108,7 @@ class _Recovery:
                 self._report(brace.index, f"this `{brace.text}` is one too many: {why}", Repair(_LEAVE_OUT, ""))
                 self._blank(token.start, token.end)
                 continue
-            # Of the braces that are missing at the end, the innermost is reported.
+            # If several braces are missing at the end, only the innermost is reported.
             if token.kind is not Kind.END or not at_end:
                 opened = None if brace.opened is None else tokens[brace.opened]
                 line = self._text.span(opened.start, opened.end).line if opened else None
@@ -116,7 +119,7 @@ class _Recovery:
                 self._content[brace.offset] = brace.text
 
     def _remainder(self, root: Block) -> None:
-        """What stands behind the closing brace of the robot."""
+        """Report and skip text behind the closing brace of the robot."""
         tokens = self._tokens
         if root.after < len(tokens) and tokens[root.after].kind is not Kind.OPEN_COMMENT:
             token = tokens[root.after]
@@ -127,7 +130,7 @@ class _Recovery:
     # Items
 
     def _check(self, block: Block) -> None:
-        """Parses an item and what is in it."""
+        """Parse an item and the items in it."""
         for item in block.items:
             self._check(item)
         complex_ = None if block.items else too_complex(self._tokens, block.first, block.after)
@@ -157,7 +160,7 @@ class _Recovery:
             self._explain(block, index, failure)
             self._skip_block(block)
             return
-        # The item itself is whole, and something follows that may be an item with a fault, or nothing known.
+        # The item itself is complete. The text behind it may be a faulty item or an unknown part of this one.
         self._regions.uncertain.append((block.start, block.end))
         if self._tokens[index].kind is Kind.SYMBOL:
             self._explain(block, index, failure)
@@ -191,7 +194,7 @@ class _Recovery:
         message = f"found {found(token)}, {wanted}"
         repair = hint(tokens, index, failure.expected, block)
         if index >= block.after and token.is_first:
-            # What is missing belongs where the item ends, not to the next one.
+            # The missing words belong at the end of the item, not at the next one.
             end = tokens[index - 1].end
             message = f"found {found(token)} in line {self._text.span(token.start, token.end).line}, {wanted}"
             said = repair._replace(text=None, choices=()) if isinstance(repair, Repair) else repair
@@ -203,7 +206,7 @@ class _Recovery:
         return self._tokens[block.first].is_keyword(*words)
 
     def _own_text(self, block: Block) -> str:
-        """The text of an item, with blanks in place of the items between its braces."""
+        """Return the text of an item, with blanks in place of the items between its braces."""
         content = self._content[block.start : block.end]
         for item in block.items:
             content[item.start - block.start : item.end - block.start] = " " * (item.end - item.start)
@@ -212,7 +215,7 @@ class _Recovery:
     # The model
 
     def _base(self, root: Block, builder: Builder) -> rsc.Base | None:
-        """The model of what is left; without a first line that can be read, of the definitions alone."""
+        """Return the model of the remaining text, or of its definitions alone if the first line is unreadable."""
         failure = self._failure(root)
         if failure is None:
             return self._built("".join(self._content[: root.end]), 0, builder)
@@ -223,14 +226,14 @@ class _Recovery:
         start, end = root.items[0].start, root.items[-1].end
         base = self._built(f"{header}{''.join(self._content[start:end])}}}", start - len(header), builder)
         if base is not None:
-            del builder.declared[base]  # Its name stands nowhere in the text.
+            del builder.declared[base]  # The text does not contain its name.
             base.source = self._text.source(root.start, min(root.end, len(self._text.content)))
         return base
 
     def _built(self, content: str, offset: int, builder: Builder) -> rsc.Base | None:
         tree = parse(content, "Base")
         if isinstance(tree, Failure):
-            # Each item parses by itself; should they not do so together, that is said where it is seen.
+            # Each item parses by itself. Should they fail to parse together, the failure is reported at its position.
             index = self._tokens.index_at(tree.position + offset)
             self._report(index, f"found {found(self._tokens[index])}, expected {expected(tree.expected, None)}")
             return None
@@ -240,7 +243,7 @@ class _Recovery:
     # Skipping
 
     def _skip_block(self, block: Block) -> None:
-        """Blanks an item out, and notes the names that it seems to declare."""
+        """Blank an item out, and record the names that it seems to declare."""
         at = block.first
         for item in (*block.items, None):
             self._skip(at, item.first if item else block.after, declares=not self._starts(block, *_DECLARING_NOTHING))
@@ -262,11 +265,11 @@ class _Recovery:
             self._blank(tokens[first].start, tokens[after - 1].end)
 
     def _note_nameless(self, block: Block) -> None:
-        """Notes what a skipped item declares where its names can't be seen in it."""
+        """Record the declarations of a skipped item whose names are not visible in it."""
         tokens, first = self._tokens, self._tokens[block.first]
         words = [tokens[index] for index in range(block.first, block.items[0].first if block.items else block.after)]
         starter = block.level.starter(first) if block.level else None
-        # A keyword where a name belongs is the one that comes after a name that is missing.
+        # A keyword in place of a name is the keyword after a missing name.
         named = any(word.is_name and not is_reserved(word.text) for word in words)
         if block.level is PROPERTIES:
             unseen = {Declared.PROPERTY} if first.kind is not Kind.WORD else set()
@@ -275,7 +278,7 @@ class _Recovery:
         else:
             unseen = {DECLARED[starter]} if starter in DECLARED and not named else set()
         if (starter == "component" and not block.items) or any(word.is_keyword("import") for word in words):
-            # What a library would have brought.
+            # An import may declare any of these.
             unseen |= {Declared.COMMUNICATION, Declared.MEMBER, Declared.INTERFACE, Declared.DATA_TYPE}
             unseen |= {Declared.ENUM_VALUE, Declared.PROPERTY}
         place = self._text.span(block.start, block.end)
@@ -292,7 +295,7 @@ class _Recovery:
 
 
 def _by_cause(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Findings with one for each keyword that is used as a name: the first, with the edits of all."""
+    """Merge the findings of each keyword used as a name into the first one, with the edits of all."""
     found: list[Diagnostic] = []
     firsts: dict[str, int] = {}
     for finding in findings:
@@ -307,7 +310,7 @@ def _by_cause(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 
 def _without_consequences(findings: Sequence[Diagnostic]) -> list[Diagnostic]:
-    """Findings of which no brace is left out behind another error, which may be why it seems to be one too many."""
+    """Drop edits that delete a surplus brace behind another error, as this error may be its cause."""
     first = findings[0].span.line if findings else 0
     hint = f"mend the error in line {first} first"
     return [
@@ -317,5 +320,5 @@ def _without_consequences(findings: Sequence[Diagnostic]) -> list[Diagnostic]:
 
 
 def _meant(token: Token) -> str | None:
-    """The first word of a file that a token was meant to be."""
+    """Return the first word of a file that a token was meant to be."""
     return next(iter(get_close_matches(token.text, ["library", "robot"], n=1, cutoff=0.7)), None)

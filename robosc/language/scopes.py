@@ -1,4 +1,4 @@
-"""Which names can be used where: the scoping rules of the language reference, and what skipped text may declare."""
+"""Usable names by place: the scoping rules of the language reference, and the names that skipped text may declare."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from robosc.language.text import Text
     from robosc.semantics.instances import Resolved
 
-#: Elements by name; where a name is declared twice, the first one counts (the uniqueness rules report the second).
+#: Elements by name. Of duplicate names the first counts (the uniqueness rules report the second).
 Names: TypeAlias = "Mapping[str, Any]"
 
 
 def by_name(elements: Iterable[Any]) -> dict[str, Any]:
-    """The elements by their names."""
+    """Return the elements by their names."""
     names: dict[str, Any] = {}
     for element in elements:
         names.setdefault(element.name, element)
@@ -32,7 +32,7 @@ def by_name(elements: Iterable[Any]) -> dict[str, Any]:
 
 
 class Declared(Enum):
-    """What a declaration gives a name to."""
+    """Kind of a declared name."""
 
     COMPONENT = auto()
     INTERFACE = auto()
@@ -44,17 +44,17 @@ class Declared(Enum):
     NAMED = auto()  # a constant, a parameter, a condition or a function
 
 
-#: Definitions that an expression reads by their names.
+#: Definitions whose names an expression can read.
 NAMED_VALUES = (rsc.Constant, rsc.Parameter, rsc.Condition)
 
 
 @dataclass
 class SkippedRegions:
-    """The names that skipped text seems to declare, and where it stands.
+    """Ranges of skipped text and the names that it seems to declare.
 
-    `nameless` are the kinds of which a declaration was skipped whose name can't be seen, and where; `mended` says
-    whether braces had to be added or taken away. `skipped` are the ranges of the text that were skipped,
-    `uncertain` those of items that are whole, but that something unknown follows (offsets, the end exclusive).
+    `nameless` lists skipped declarations whose name is unknown, by kind and place. `mended` is true if braces were
+    added or removed. `skipped` are the skipped ranges, `uncertain` those of complete items that are followed by unknown
+    text (offsets, the end exclusive).
     """
 
     names: set[str] = field(default_factory=set)
@@ -64,10 +64,10 @@ class SkippedRegions:
     uncertain: list[tuple[int, int]] = field(default_factory=list)
 
     def may_declare(self, name: str, kinds: tuple[Declared, ...], within: Span | None = None) -> bool:
-        """Whether a name of one of these kinds that is not found may be declared in skipped text.
+        """Return whether skipped text may declare an unknown name of one of these kinds.
 
-        Only a declaration within a definition can declare a member of it, unless braces were mended: then nobody knows
-        what was meant to stand where.
+        Only a declaration within a definition can declare a member of it. If braces were mended, the intended nesting
+        is unknown, and any skipped text counts.
         """
         if name in self.names:
             return True
@@ -75,16 +75,16 @@ class SkippedRegions:
         return any(kind in kinds and (span is None or span.contains(place)) for kind, place in self.nameless)
 
     def is_uncertain(self, offset: int) -> bool:
-        """Whether an offset lies in an item that is followed by text that could not be read and may belong to it."""
+        """Return whether an offset lies in an item whose end is uncertain, because unreadable text follows it."""
         return any(start <= offset < end for start, end in self.uncertain)
 
 
 @dataclass(frozen=True)
 class Reference:
-    """A name in a text: where it stands (offsets, the end exclusive) and the element that it stands for.
+    """A name in a text: its offsets (the end exclusive) and the element that it refers to.
 
-    `target` is None where the name is not resolved. Its `source` is its whole declaration; the reference that
-    `is_declaration` is the name in there. `user` is the element whose `feature` refers.
+    `target` is None if the name is not resolved. The `source` of a target is its whole declaration; the reference with
+    `is_declaration` is the name in this declaration. `user` is the element whose `feature` refers to the target.
     """
 
     name: str
@@ -102,29 +102,29 @@ class Reference:
 
 @dataclass(eq=False)
 class File:
-    """One file that was read: its text, and what could be read of it.
+    """One file that was read: its text, and the model of its readable parts.
 
-    `base` is None where not even the first line could be read. `references` has where names stand that refer to
-    something, by element and feature, `declared_names` where the names of elements stand.
+    `base` is None if the first line is unreadable. `references` maps element and feature to the referring name,
+    `declared_names` maps elements to the names in their declarations.
     """
 
     text: Text
     base: rsc.Base | None
     references: dict[Any, dict[str, Name]] = field(default_factory=dict)
     declared_names: Mapping[Any, Name] = field(default_factory=dict)
-    #: The types whose bounds are expressions.
+    #: Types whose bounds are expressions.
     bounded: list[rsc.IntegerDataType] = field(default_factory=list)
     regions: SkippedRegions = field(default_factory=SkippedRegions)
-    #: The library that every model knows; None where the file names nothing of it.
+    #: The predefined library; None if the file does not use it.
     predefined: File | None = None
-    #: The files of the libraries that it imports from, by the libraries' names; None: none that can be used.
+    #: Files of the imported libraries by the libraries' names; None for a library that cannot be used.
     libraries: dict[str, File | None] = field(default_factory=dict)
-    #: The faults of the text itself, in order.
+    #: Faults of the text itself, in order.
     findings: list[Diagnostic] = field(default_factory=list)
 
     @cached_property
     def names(self) -> list[Reference]:
-        """All names in the text that stand for something, in order; those in skipped text are not known."""
+        """All names in the text that refer to an element, in order; skipped text is not included."""
         found = [Reference(name.text, name.start, name.end, element) for element, name in self.declared_names.items()]
         found += (
             Reference(name.text, name.start, name.end, getattr(element, feature), element, feature)
@@ -134,23 +134,23 @@ class File:
         return sorted(found, key=lambda name: name.start)
 
     def occurrences(self, element: Any) -> list[Reference]:
-        """Where the text declares and names an element, in order."""
+        """Return the references of the text to an element, including its declaration, in order."""
         return [name for name in self.names if name.target is element]
 
     def name_at(self, offset: int) -> Reference | None:
-        """The name that an offset lies in or right behind; None where there is none."""
+        """Return the name that contains an offset or ends at it, or None if there is none."""
         after = bisect_right(self.names, offset, key=lambda name: name.start)
         found = self.names[after - 1] if after else None
         return found if found is not None and offset <= found.end else None
 
     @property
     def skipped(self) -> list[tuple[int, int]]:
-        """The ranges of the text that no element was made of because of their faults: offsets, in order."""
+        """Ranges of the text that were skipped because of their faults: offsets, in order."""
         return sorted(self.regions.skipped)
 
     @cached_property
     def declared(self) -> Mapping[type[Any], Names]:
-        """What other places can name, by its kind."""
+        """Definitions and enum values that other places can name, by kind and name."""
         definitions = self.base.definitions if self.base is not None else ()
         kinds = (rsc.Component, rsc.ComplexDataType, rsc.Interface, rsc.Function)
         enums = [definition for definition in definitions if isinstance(definition, rsc.EnumDataType)]
@@ -167,7 +167,7 @@ class File:
 
     @cached_property
     def enum_values(self) -> Mapping[str, list[rsc.EnumValue]]:
-        """The enum values by name, of each enum the first with it."""
+        """Enum values by name: from each enum the first value with that name."""
         found: dict[str, list[rsc.EnumValue]] = {}
         for definition in self.base.definitions if self.base is not None else ():
             if isinstance(definition, rsc.EnumDataType):
@@ -176,9 +176,9 @@ class File:
         return found
 
     def may_declare(self, name: str, *kinds: Declared, imported: bool = True) -> bool:
-        """Whether a name that is not found may be declared by text that could not be read.
+        """Return whether unreadable text may declare an unknown name.
 
-        That is text of this file or, if `imported`, of a library that it imports from.
+        The text can be in this file or, if `imported`, in a library that it imports from.
         """
         if self.regions.may_declare(name, kinds):
             return True
@@ -186,13 +186,13 @@ class File:
         return any(None in file.libraries.values() or file.regions.may_declare(name, kinds) for file in files)
 
     def may_declare_within(self, definition: rsc.Definition, name: str, kind: Declared) -> bool:
-        """Whether a definition, of this file or of a library, may declare a name in text that could not be read."""
+        """Return whether unreadable text of a definition, in this file or a library, may declare a name."""
         regions = self._file_of[definition.eContainer()].regions
         return regions.may_declare(name, (kind,), definition.source.span if definition.source else None)
 
     @cached_property
     def _files(self) -> list[File]:
-        """The file itself and those of all that it imports, directly or through others, and the predefined one."""
+        """The file itself, all files that it imports directly or indirectly, and the predefined library."""
         found, pending = {self: None}, [self]
         while pending:
             current = pending.pop()
@@ -208,7 +208,7 @@ class File:
 
 
 class _Content(NamedTuple):
-    """What a component declares, by name."""
+    """Declarations of a component by name."""
 
     communications: Names
     members: Names
@@ -220,7 +220,7 @@ _NOTHING = _Content({}, {}, {}, {})
 
 
 class Scope:
-    """The names of one robot or library, whose imports are linked already."""
+    """Names of one robot or library whose imports are linked."""
 
     def __init__(self, file: File, base: rsc.Base, resolved: Resolved | None = None) -> None:
         self.components: Names = file.declared[rsc.Component]
@@ -229,13 +229,13 @@ class Scope:
         self._predefined = [] if file.predefined is None else [file.predefined]
         self._instances = Instances(base, resolved)
         self._contents: dict[rsc.Component, _Content | None] = {}
-        #: Whether a component is imported of which nothing is known.
+        #: Whether an imported component is unknown.
         self.incomplete = any(self.members(component) is None for component in self.components.values())
 
     def find(self, kind: type[Any], name: str) -> list[tuple[File, Any]]:
-        """The definitions of a kind with a name, with their files.
+        """Return the definitions of a kind with a name, with their files.
 
-        They are the own one, else those of imported libraries, else the predefined one.
+        The own definition takes precedence over those of imported libraries, and these over the predefined one.
         """
         own = self._file.declared[kind].get(name)
         if own is not None:
@@ -247,29 +247,29 @@ class Scope:
         return []
 
     def values(self, name: str) -> list[rsc.EnumValue]:
-        """The enum values with a name, of each enum the first: those of the own file, else of imported libraries."""
+        """Return the enum values with a name, one per enum: those of the own file, else those of imported libraries."""
         own = self._file.enum_values.get(name)
         return own or [value for library in self._imports for value in library.enum_values.get(name, ())]
 
     def usable(self, kind: type[Any]) -> list[str]:
-        """The names of all definitions of a kind that can be used, imported ones included."""
+        """Return the names of all usable definitions of a kind, imported ones included."""
         return [name for file in (self._file, *self._imports) for name in file.declared[kind]]
 
     def members(self, component: rsc.Component) -> Names | None:
-        """The variables and states of a component; None where its import is broken."""
+        """Return the variables and states of a component, or None if its import is broken."""
         content = self._content(component)
         return None if content is None else content.members
 
     def functions(self, component: rsc.Component) -> Names:
-        """The functions of a component; empty where its import is broken."""
+        """Return the functions of a component; empty if its import is broken."""
         return (self._content(component) or _NOTHING).functions
 
     def states(self, component: rsc.Component) -> Names:
-        """The states of a component; empty where its import is broken."""
+        """Return the states of a component; empty if its import is broken."""
         return (self._content(component) or _NOTHING).states
 
     def communications(self, component: rsc.Component) -> Names | None:
-        """The communications of a component; None where its import is broken."""
+        """Return the communications of a component, or None if its import is broken."""
         content = self._content(component)
         return None if content is None else content.communications
 
@@ -281,11 +281,11 @@ class Scope:
         return self._contents[component]
 
     def origin(self, component: rsc.Component) -> rsc.Component:
-        """The component whose text declares the members of a component that is not broken."""
+        """Return the component whose text declares the members of a component with an intact import."""
         return definition_of(component) or component
 
     def communicating(self, name: str) -> list[tuple[rsc.Component, rsc.CommunicationType]]:
-        """Each component that has a communication of a name, and the communication."""
+        """Return each component that has a communication of a name, with the communication."""
         return self._communicating.get(name, [])
 
     @cached_property
@@ -297,12 +297,12 @@ class Scope:
         return found
 
     def all_communications(self) -> list[str]:
-        """The names of the communications of all components."""
+        """Return the names of the communications of all components."""
         return [name for instance in self._instances for name in self.communications(instance.component) or ()]
 
 
 def _content(local: rsc.LocalComponent) -> _Content:
-    # A component with two behaviours is an error of another rule; its names are still names.
+    # Another rule reports a component with two behaviours; the names of both are usable.
     behaviours = [part for part in local.definitions if isinstance(part, rsc.ComponentBehaviour)]
     definitions = [definition for behaviour in behaviours for definition in behaviour.automaton.definitions]
     states = [definition for definition in definitions if isinstance(definition, rsc.State)]

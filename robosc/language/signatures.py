@@ -1,4 +1,4 @@
-"""The parameters of what is called at a place of a text: a function, a template, an enum."""
+"""Parameters of the function, template or enum whose arguments surround an offset."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _CALLED = (rsc.Function, rsc.Component, rsc.EnumDataType)
 
 @dataclass(frozen=True)
 class Signature:
-    """What is called, such as `gain(d: double): double`, its parameters as they stand in there, and which is meant."""
+    """A label such as `gain(d: double): double`, its parameters as they appear in it, and the active index."""
 
     label: str
     parameters: list[str]
@@ -26,7 +26,7 @@ class Signature:
 
 
 def signature(reading: Reading, offset: int) -> Signature | None:
-    """What the innermost parentheses around an offset give arguments to; None where there are none."""
+    """Return the signature for the innermost parentheses around an offset, or None if there is none."""
     found = _call(reading.file.text.content[:offset])
     if found is None:
         return None
@@ -51,7 +51,7 @@ def _active(position: int, parameters: list[str]) -> int | None:
 
 
 def _call(before: str) -> tuple[str, int, str | None] | None:
-    """Of the innermost open parenthesis the name before it, how many commas follow, and the last argument's name."""
+    """Return the name before the innermost open parenthesis, the commas behind it, and the argument's name."""
     tokens = Tokens(before)
     depth = commas = 0
     named: str | None = None

@@ -1,4 +1,4 @@
-"""Texts of files and of editors' buffers, and where in a text a position is."""
+"""Texts of files and editor buffers, and positions in a text."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
 
 _BREAK = re.compile(r"\r\n|\r|\n")
 _MARK = codecs.BOM_UTF8.decode()
-#: A line that is a comment and nothing else.
+#: A line that consists of a comment.
 _COMMENT = re.compile(r"[ \t]*(?://(?P<words>[^\n]*))")
 
 
 @dataclass(frozen=True, eq=False)
 class Text:
-    """What a file holds, its line breaks all line feeds; `file` is its path as the user wrote it.
+    """Content of a file with all line breaks as line feeds; `file` is its path as the user wrote it.
 
-    `source_file` is what model elements call it.
+    Model elements refer to the file as `source_file`.
 
-    An offset counts code points from 0. A `Span` counts lines and code points from 1. A UTF-16 position, as the
-    Language Server Protocol has it, counts lines from 0, and in a line units of UTF-16 from 0: a character beyond
-    U+FFFF takes two.
+    An offset counts code points from 0. A `Span` counts lines and code points from 1. A UTF-16 position, as in the
+    Language Server Protocol, counts lines from 0, and UTF-16 units within a line from 0: a character beyond U+FFFF
+    takes two units.
     """
 
     file: str
@@ -46,15 +46,15 @@ class Text:
 
     @cached_property
     def tokens(self) -> Tokens:
-        """The words, numbers, strings and symbols of the text."""
+        """Words, numbers, strings and symbols of the text."""
         return Tokens(self.content)
 
     def span(self, start: int, end: int) -> Span:
-        """The span between two offsets."""
+        """Return the span between two offsets."""
         return Span(*self._lines.place(start), *self._lines.place(end))
 
     def comment_above(self, offset: int) -> str | None:
-        """The words of the comments in the lines right above an offset, as one line; None where there are none."""
+        """Return the words of the comment lines right above an offset as one line, or None if there are none."""
         line, _ = self._lines.place(offset)
         words: list[str] = []
         while line > 1:
@@ -66,27 +66,31 @@ class Text:
         return " ".join(words) or None
 
     def offset(self, line: int, column: int) -> int:
-        """The offset of a line and a column, both counted from 1; what lies behind the end of a line is its end."""
+        """Return the offset of a line and a column, both counted from 1.
+
+        A column behind the end of its line means the end.
+        """
         return self._lines.offset(line, column)
 
     def to_utf16(self, offset: int) -> tuple[int, int]:
-        """The UTF-16 position of an offset."""
+        """Return the UTF-16 position of an offset."""
         line, column = self._lines.place(offset)
         start = self._lines.starts[line - 1]
         return line - 1, len(self.content[start : start + column - 1].encode("utf-16-le", "surrogatepass")) // 2
 
     def from_utf16(self, line: int, unit: int) -> int:
-        """The offset of a UTF-16 position. Between the units of one character it is that of the character.
+        """Return the offset of a UTF-16 position.
 
-        What lies behind the end of a line is its end, what lies behind the last line the end of the text.
+        Between the units of one character, it is the offset of the character. A position behind the end of a line means
+        its end, and one behind the last line the end of the text.
         """
         start, end = self._lines.line(line + 1)
         units = self.content[start:end].encode("utf-16-le", "surrogatepass")[: 2 * max(unit, 0)]
-        # A first half alone is left out, and so is the character that it belongs to.
+        # Decoding drops an unpaired first half, and thereby the character that it belongs to.
         return start + len(units.decode("utf-16-le", "ignore"))
 
     def replaced(self, start: int, end: int, text: str) -> tuple[Edit, ...]:
-        """The edits that put a text in place of the tokens between two offsets. Comments between them stay."""
+        """Return the edits that replace the tokens between two offsets by a text. Comments between them stay."""
         if start == end:
             return (Edit(self.span(start, end), text),)
         runs = self.tokens.runs(self.tokens.index_at(start), self.tokens.index_at(end - 1))
@@ -94,9 +98,10 @@ class Text:
         return tuple(Edit(self.span(*bound), "" if index else text) for index, bound in enumerate(bounds))
 
     def after(self, edits: Iterable[Edit], written: str | None = None) -> str:
-        """The text after edits that do not overlap.
+        """Return the text after edits that do not overlap.
 
-        `written` is the text as its file has it, with a byte order mark and other line breaks, which are kept.
+        `written` is the text as in its file, with a byte order mark and other line breaks, both of which the result
+        keeps.
         """
         content = self.content if written is None else written
         mark = len(content) - len(content.removeprefix(_MARK))
@@ -111,11 +116,11 @@ class Text:
         return "".join([*pieces, content[behind:]])
 
     def source(self, start: int, end: int) -> Place:
-        """The place between two offsets."""
+        """Return the place between two offsets."""
         return Place(self.source_file, self.span(start, end))
 
     def error(self, rule: str, start: int, end: int, message: str, repair: Repair | str | None = None) -> Diagnostic:
-        """A finding between two offsets; what a `Repair` writes in its place is written between them."""
+        """Return a finding between two offsets; the text of a `Repair` replaces the text between them."""
         span = self.span(start, end)
         made = Diagnostic(self.file, span, Severity.ERROR, rule, message)
         if not isinstance(repair, Repair):
@@ -127,22 +132,25 @@ class Text:
 
 
 class Documents:
-    """The texts that a reading looks at: those in memory, such as the buffers of an editor, over the files on disk."""
+    """Texts that a reading uses: texts in memory, such as editor buffers, take precedence over files on disk."""
 
     def __init__(self, texts: Mapping[str, str] | None = None) -> None:
-        """`texts` are those in memory, by their paths. A path needs no file, and its folder need not be there."""
+        """Take the texts in memory by their paths. The files and their folders need not exist."""
         self._texts = {Path(path).resolve(): text for path, text in (texts or {}).items()}
 
     def read(self, path: Path, *, is_input: bool = True) -> bytes:
-        """The text at a path in UTF-8. Without `is_input` a file may be written over afterwards.
+        """Return the text at a path in UTF-8. Without `is_input`, the tool may overwrite the file later.
 
-        Raises OSError where there is none that can be read.
+        Raises OSError if there is no readable text.
         """
         text = self._texts.get(path.resolve()) if self._texts else None
         return files.read(path, is_input=is_input) if text is None else text.encode("utf-8", "surrogatepass")
 
     def models(self, folder: Path) -> list[Path]:
-        """The paths of all `.rscd` texts right in a folder, in order. A folder that can't be read has none on disk."""
+        """Return the paths of all `.rscd` texts directly in a folder, in order.
+
+        An unreadable folder has no files on disk.
+        """
         try:
             with os.scandir(folder) as entries:
                 names = {entry.name for entry in entries if entry.name.endswith(".rscd") and entry.is_file()}
@@ -155,9 +163,9 @@ class Documents:
 
 
 def decode(file: str, content: bytes, name: str | None = None) -> tuple[Text, list[Diagnostic]]:
-    """The text in the bytes of a file, and what is wrong with them: a finding of the rule `syntax`, or none.
+    """Decode the bytes of a file; return the text and at most one finding of the rule `syntax`.
 
-    `name` is what models call the file; None: as the user does.
+    `name` is the name of the file in models; None for the path that the user wrote.
     """
     content = content.removeprefix(codecs.BOM_UTF8)
     findings = []
@@ -168,7 +176,7 @@ def decode(file: str, content: bytes, name: str | None = None) -> tuple[Text, li
         message = f"the byte 0x{content[fault.start]:02x} is no UTF-8"
         hint = "save the file in the encoding UTF-8"
         findings.append(before.error("syntax", len(before.content), len(before.content), message, hint))
-        # The rest is checked with blanks in such places, so that one fault draws one finding.
+        # Invalid bytes become blanks, so that one fault causes only one finding.
         text = content.decode("utf-8", errors="replace").replace("\N{REPLACEMENT CHARACTER}", " ")
     text = text.replace("\r\n", "\n").replace("\r", "\n")
     return Text(file, text, SourceFile(name or file, file)), findings

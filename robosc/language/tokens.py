@@ -1,6 +1,6 @@
-"""The tokens of a text: for bounds on its complexity, and for findings and recovery where it can't be parsed.
+"""Tokens of a text, used to bound its complexity, and to report and recover from syntax errors.
 
-The parser matches regular expressions at offsets: only the rule at hand tells a keyword from a name.
+The parser matches regular expressions at offsets. Only the active rule distinguishes a keyword from a name.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ _TOKEN = re.compile(
     re.VERBOSE,
 )
 
-#: After these only a name can stand, so that what looks like a keyword is one.
+#: Words that only a name can follow, even if it looks like a keyword.
 _BEFORE_NAMES = tuple(word for word, others in following().items() if others == {"Name"})
-#: After these and a preposition an event's communication is named.
+#: Words after which a preposition and the communication of an event follow.
 _EVENTS = tuple(words_of("ResultType"))
 
 
 class Kind(Enum):
-    """What a token is."""
+    """Kind of a token."""
 
     WORD = auto()
     NUMBER = auto()
@@ -47,14 +47,15 @@ class Kind(Enum):
     END = auto()
 
 
-#: Looking one up in the enumeration costs more than finding a token.
+#: Looking a kind up in the enumeration would cost more than matching a token.
 _KINDS = Kind.__members__
 
 
 class Token(NamedTuple):
     """A word, number, string or symbol, with its offsets.
 
-    `is_name`: it is no keyword, whatever it looks like; `is_first`: it is the first in its line; `column`: from 0.
+    `is_name` marks a name that may look like a keyword. `is_first` marks the first token of a line. `column` counts
+    from 0.
     """
 
     kind: Kind
@@ -66,12 +67,12 @@ class Token(NamedTuple):
     column: int = 0
 
     def is_keyword(self, *words: str) -> bool:
-        """Whether it is one of these words or symbols, and not a name of the same letters."""
+        """Return whether it is one of these words or symbols, and not an equal name."""
         return self.text in words and self.kind in {Kind.WORD, Kind.SYMBOL} and not self.is_name
 
 
 class Tokens:
-    """The tokens of a text, blanks and comments left out. The last one is the end of the text.
+    """Tokens of a text without blanks and comments. The last one is the end of the text.
 
     `comments` holds the offsets of the comments.
     """
@@ -81,7 +82,7 @@ class Tokens:
         self._tokens = list(_tokens(text, self.comments))
 
     def __getitem__(self, index: int) -> Token:
-        """The token at an index, or the end of the text where the index is past it."""
+        """Return the token at an index, or the end of the text if the index is past it."""
         return self._tokens[min(index, len(self._tokens) - 1)]
 
     def __len__(self) -> int:
@@ -95,7 +96,7 @@ class Tokens:
         return [token.start for token in self._tokens]
 
     def runs(self, first: int, last: int) -> list[tuple[int, int]]:
-        """The offsets of the tokens from one index to another, both included, in pieces without a comment between."""
+        """Return the offsets of the tokens from one index to another, inclusive, split at comments."""
         start, end = self[first].start, self[last].end
         found: list[tuple[int, int]] = []
         for comment in self.comments[bisect_left(self.comments, (start, 0)) : bisect_left(self.comments, (end, 0))]:
@@ -106,11 +107,11 @@ class Tokens:
         return [*found, (start, end)]
 
     def has_comment(self, start: int, end: int) -> bool:
-        """Whether a comment begins between two offsets."""
+        """Return whether a comment begins between two offsets."""
         return bisect_left(self.comments, (start, 0)) < bisect_left(self.comments, (end, 0))
 
     def index_at(self, offset: int) -> int:
-        """The index of the token that an offset lies in, or of the first one after it."""
+        """Return the index of the token that contains an offset, or of the first one after it."""
         index = max(bisect_right(self._starts, offset) - 1, 0)
         return index if offset < self[index].end else min(index + 1, len(self))
 
@@ -132,16 +133,16 @@ def _tokens(text: str, comments: list[tuple[int, int]]) -> Iterator[Token]:
         is_named = previous.is_keyword(*_BEFORE_NAMES) and not is_use
         is_name = kind is Kind.WORD and (word[0] == "^" or is_named)
         token = Token(kind, word, start, end, is_name, line >= 0, start - start_of_line)
-        # A keyword that can only be the name of something declared elsewhere has no name behind it.
+        # A keyword that can only be the name of an element declared elsewhere is not followed by a name.
         is_use, names_follow = names_follow and line < 0, _names_follow(previous, token)
         previous = token
         yield token
-    # The end stands right after the last token, where a reader looks for what is missing.
+    # The end is placed right after the last token, where readers look for missing text.
     yield Token(Kind.END, "", previous.end, previous.end)
 
 
 def _names_follow(before: Token, token: Token) -> bool:
-    """Whether only a name can follow a token in its line, though its word alone does not say so."""
+    """Return whether only a name can follow a token in its line because of the token before it."""
     if token.is_keyword("from", "to"):
         return before.is_keyword(*_EVENTS)
     if token.kind is Kind.NUMBER:
@@ -150,22 +151,22 @@ def _names_follow(before: Token, token: Token) -> bool:
 
 
 def is_name(word: str) -> bool:
-    """Whether a word can be a name, if need be with a `^` before it."""
+    """Return whether a word can be a name, if necessary with a `^` before it."""
     return re.fullmatch(pattern("Name"), word) is not None
 
 
-#: The most levels of brackets, signs, choices (`if … then … else if …`) and quantifiers inside each other, and the most
-#: operators of one expression: the passes that read the model call themselves for each level, which Python bounds.
+#: Limits: nesting levels of brackets, signs, choices (`if … then … else if …`) and quantifiers, and operators of one
+#: expression. The passes over the model recurse for each level, and Python bounds the recursion depth.
 DEEPEST = 50
 LONGEST = 5000
 _STARTERS = frozenset(filter(is_reserved, first_words("Definition", "ComponentDefinition", "AutomatonDefinition")))
 _OPERATORS = frozenset(word.partition("(")[0] for word in first("BinaryExpression"))
-#: No expression goes on behind these.
+#: Words and symbols after which no expression continues.
 _BETWEEN_EXPRESSIONS = frozenset(following()) - words_of("Expression") - _OPERATORS
 
 
 def too_complex(tokens: Tokens, first: int = 0, after: int | None = None) -> tuple[int, str] | None:
-    """The index of the first token that is nested too deep or is an operator too many, and what is wrong there."""
+    """Return the index of the first token that exceeds a limit, and the message, or None."""
     depth, operators = _Depth(), 0
     for index in range(first, len(tokens) if after is None else after):
         token = tokens[index]
@@ -181,15 +182,15 @@ def too_complex(tokens: Tokens, first: int = 0, after: int | None = None) -> tup
 
 
 class _Depth:
-    """The levels around a token: brackets, the signs before it, choices and quantifiers to whose rest it belongs."""
+    """Levels around a token: brackets, signs before it, and the choices and quantifiers that contain it."""
 
     def __init__(self) -> None:
-        #: Of each open bracket the levels around it, and the choices and quantifiers among them.
+        #: Per open bracket: the levels around it, and the choices and quantifiers among them.
         self._around: list[tuple[int, int]] = []
         self._outside = self._signs = self._bodies = 0
 
     def at(self, tokens: Tokens, index: int) -> int:
-        """The levels around the next token."""
+        """Return the levels around the next token."""
         token = tokens[index]
         if token.is_keyword("(", "[", "{"):
             self._around.append((self._outside, self._bodies))
@@ -207,7 +208,7 @@ class _Depth:
         if token.is_keyword(")", "]", "}") and self._around:
             self._outside, self._bodies = self._around.pop()
         elif token.text in _STARTERS and token.is_keyword(token.text):
-            self._around.clear()  # A brace that is missing before makes nothing after it deep.
+            self._around.clear()  # A missing closing brace must not make all later tokens deep.
             self._outside = self._bodies = 0
         elif token.text == "," or (token.text in _BETWEEN_EXPRESSIONS and token.is_keyword(token.text)):
             self._bodies = 0
@@ -216,6 +217,6 @@ class _Depth:
 
 
 def _is_quantifier(tokens: Tokens, index: int) -> bool:
-    """Whether a condition on elements or instances begins here."""
+    """Return whether a condition on elements or instances begins here."""
     is_word = tokens[index].text in ROBOSC_QUANTIFIERS and tokens[index + 1].kind is Kind.WORD
     return is_word and tokens[index + 2].text in {"in", ":"}

@@ -1,4 +1,4 @@
-"""The units of the data that a text reads and provides, as ROS defines its types."""
+"""Units of the data that a text reads and provides, as ROS defines its types."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class _Measured(NamedTuple):
-    """What stands at the end of a path of fields: its type, the section of that, and its unit."""
+    """Value at the end of a path of fields: its type, the section of that type, and its unit."""
 
     wire: WireType
     section: Section
@@ -28,7 +28,7 @@ class _Measured(NamedTuple):
 
 
 def units(file: File, ros_types: RosTypes) -> Iterator[tuple[int, str]]:
-    """The units of what is read of events and provided to them, each with the offset behind it."""
+    """Yield the units of data read from events and provided to them, each with the offset behind the expression."""
     objects = _objects(file)
     for element in own_elements(file):
         if isinstance(element, rsc.Access) and element.value:
@@ -53,14 +53,14 @@ def _provided(file: File, value: Any, found: _Measured | None, ros_types: RosTyp
 
 
 def _told(file: File, element: Any, found: _Measured | None) -> Iterator[tuple[int, str]]:
-    """The unit of a number."""
+    """Yield the unit of a number."""
     is_number = found is not None and isinstance(found.wire, Basic) and found.wire.name in PRIMITIVES
     if found is not None and is_number and found.unit is not None and element is not None:
         yield span(file, element)[1], found.unit
 
 
 def _objects(file: File) -> Mapping[Any, _Measured]:
-    """The ROS types of the objects that a text declares, as its communications link them."""
+    """Return the ROS types of the objects that a text declares, from the interfaces of its communications."""
     found: dict[Any, _Measured] = {}
     for communication in own_elements(file):
         if isinstance(communication, rsc.CommunicationType):
@@ -75,14 +75,14 @@ def _objects(file: File) -> Mapping[Any, _Measured]:
 
 
 def _data(communication: rsc.CommunicationType | None, row: PortEvent | None) -> _Measured | None:
-    """The data of an event of a communication, whose ROS type is known."""
+    """Return the data of an event of a communication, if its ROS type is known."""
     if communication is None or communication.interface is None or row is None or row.section is None:
         return None
     return _Measured(Nested(communication.interface.package, communication.interface.type), row.section)
 
 
 def _read(access: rsc.Access, objects: Mapping[Any, _Measured]) -> _Measured | None:
-    """What `value` stands for."""
+    """Return the data that `value` refers to."""
     around: Any = access
     while around is not None:
         if isinstance(around, rsc.ResultTransition):

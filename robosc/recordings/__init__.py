@@ -1,4 +1,4 @@
-"""Texts that were recorded in ROS: bags of ROS 1 and ROS 2, and MCAP files."""
+"""Texts in recordings of ROS: bags of ROS 1 and ROS 2, and MCAP files."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from robosc.recordings.bounds import BoundError, bounded, decompressed, require_
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-#: What ROS 1 and ROS 2 call a text.
+#: Names of the text message in ROS 1 and ROS 2.
 _TEXT = ("std_msgs/String", "std_msgs/msg/String")
 
 
 class RecordingError(Exception):
-    """A recording that can't be read: the message says why."""
+    """A recording that cannot be read; the message gives the reason."""
 
 
 class RecordedText(NamedTuple):
@@ -29,19 +29,19 @@ class RecordedText(NamedTuple):
 
 
 def is_recording(path: str) -> bool:
-    """Whether a path names a recording: a folder that `ros2 bag` wrote, a `.bag` or an `.mcap` file."""
+    """Return whether a path names a recording: a folder that `ros2 bag` wrote, a `.bag` or an `.mcap` file."""
     return Path(path).is_dir() or Path(path).suffix in (".bag", ".mcap", ".db3")
 
 
 def recorded_texts(path: str) -> Iterator[RecordedText]:
-    """The texts of a recording, in the order in which they came. Raises RecordingError, and OSError.
+    """Yield the texts of a recording, in the order of their arrival. Raises RecordingError, and OSError.
 
-    Of an MCAP file that ends in the middle, as where the power was cut, what is there is read.
+    A truncated MCAP file, for example after a power failure, is read up to its end.
     """
     found = Path(path)
     if found.is_dir() and not (found / "metadata.yaml").is_file():
         raise RecordingError(f"{path} is a folder without a metadata.yaml: it is no recording")
-    # rosbags opens by itself what it reads.
+    # rosbags opens folders by itself.
     with nullcontext() if found.is_dir() else opened(path) as file, bounded(found):
         try:
             require_plain(found)
@@ -53,7 +53,7 @@ def recorded_texts(path: str) -> Iterator[RecordedText]:
 def _read(path: str, texts: Iterator[RecordedText]) -> Iterator[RecordedText]:
     try:
         yield from texts
-    except Exception as error:  # there is no end to what readers raise of damaged bytes
+    except Exception as error:  # Readers raise many kinds of exceptions for damaged bytes.
         raise RecordingError(f"{path} can't be read: {str(error) or type(error).__name__}") from None
 
 

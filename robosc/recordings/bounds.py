@@ -1,4 +1,4 @@
-"""Bounds for recordings of others: regular files, a budget for what decompression gives, no computed tables."""
+"""Limits for recordings from elsewhere: regular files, a budget for decompression, no computed tables."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-#: A recording may have this many times its size after decompression, and `MOST_BYTES` more.
+#: Budget of decompression: this many times the size of the recording, plus `MOST_BYTES`.
 RATIO = 64
 _MOST_METADATA = 4 << 20
-#: The bytes that decompression may still give, in a list of one; None: any number.
+#: Remaining budget of decompression in bytes, in a list of one; None for no limit.
 _budget: ContextVar[list[int] | None] = ContextVar("budget", default=None)
 
 
 class BoundError(Exception):
-    """A recording that is too large or is no mere recording: the message says why."""
+    """A recording that is too large, or that is more than a recording; the message gives the reason."""
 
 
 def require_plain(folder: Path) -> None:
-    """Check that a recording, or each file of its folder, is a regular file, and that tables are stored, not computed.
+    """Check that all files of a recording are regular, and that its tables are stored, not computed.
 
-    Raises OSError where one is no regular file or can't be read, and BoundError.
+    Raises OSError if a file is not regular or cannot be read, and BoundError.
     """
     for path in sorted(folder.iterdir()) if folder.is_dir() else [folder]:
         if path.is_dir():
@@ -45,9 +45,9 @@ def require_plain(folder: Path) -> None:
 
 
 def _require_stored(path: Path) -> None:
-    """Check that all that a database has are tables of stored values: a view may compute without end.
+    """Check that a database has only tables of stored values: a view may compute without end.
 
-    Raises BoundError. What is no database, the reader reports.
+    Raises BoundError. The reader reports files that are not databases.
     """
     with closing(sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro", uri=True)) as database:
         database.text_factory = lambda text: text.decode("utf-8", "replace")
@@ -58,13 +58,13 @@ def _require_stored(path: Path) -> None:
                 is_virtual = str(text).upper().lstrip().startswith("CREATE VIRTUAL")
                 if kind not in {"table", "index"} or is_virtual or any(hidden for (hidden,) in columns):
                     raise BoundError(f"`{name}` of {path.name} is computed: a recording has stored tables only")
-        except (sqlite3.Error, ValueError):  # also of a message that is no UTF-8
+        except (sqlite3.Error, ValueError):  # ValueError: a message that is not UTF-8.
             return
 
 
 @contextmanager
 def bounded(path: Path) -> Iterator[None]:
-    """Within the `with` block, decompression of the recording raises BoundError beyond its budget."""
+    """Limit the decompression of a recording within the `with` block: beyond its budget it raises BoundError."""
     files = [path] if path.is_file() else [file for file in path.iterdir() if file.is_file()]
     _install()
     token = _budget.set([MOST_BYTES + RATIO * sum(file.stat().st_size for file in files)])
@@ -75,7 +75,7 @@ def bounded(path: Path) -> Iterator[None]:
 
 
 def decompressed(data: bytes, compression: str) -> bytes:
-    """The bytes that compressed ones stand for. `compression` is `zstd`, `lz4`, `bz2` or empty. Raises BoundError."""
+    """Return decompressed bytes. `compression` is `zstd`, `lz4`, `bz2` or empty. Raises BoundError."""
     if not compression:
         return data
     budget = _budget.get()
@@ -100,7 +100,7 @@ def _take(size: int, most: int) -> None:
 
 
 class _Counted:
-    """A decompressed file, of which no more is read than the budget allows."""
+    """A decompressed file that can be read only within the budget."""
 
     def __init__(self, file: IO[bytes]) -> None:
         self._file = file
@@ -120,14 +120,14 @@ class _Counted:
 
 def _opened(file: IO[bytes], compression: str) -> IO[bytes]:
     lz4_frame = import_module("lz4.frame")  # has no types
-    zstd = vars(import_module("rosbags.rosbag2.storage_mcap"))["zstd"]  # of the Python library from 3.14 on
+    zstd = vars(import_module("rosbags.rosbag2.storage_mcap"))["zstd"]  # in the Python library from 3.14 on
     readers: dict[str, Any] = {"zstd": zstd.open, "lz4": lz4_frame.open, "bz2": bz2.open}
     found: IO[bytes] = readers[compression](file, "rb")
     return found
 
 
 def _install() -> None:
-    """Let rosbags decompress by the functions of this module."""
+    """Make rosbags decompress with the functions of this module."""
     bags: Any = import_module("rosbags.rosbag1.reader")  # takes long to load
     storage_mcap: Any = import_module("rosbags.rosbag2.storage_mcap")
     folders: Any = import_module("rosbags.rosbag2.reader")

@@ -1,10 +1,11 @@
-"""What a person reads who must sign for a supervised robot: requirements, what became of them, and what is assumed.
+"""Verification report for the person who signs off a robot: requirements, their results, and assumptions.
 
     found = report(models, configuration, verdicts)
     page = as_html(found)
 
-`contents` collects it as plain data, in the order and with the words of the JSON; `printing` finds requirements in what
-was generated, `playing` plays the traces of the generated tests on the interpreter, `digests` names what it is about.
+`contents` collects it as plain data, with the order and the keys of the JSON. `printing` finds requirements in the
+generated code. `playing` plays the traces of the generated tests on the interpreter. `digests` identifies the inputs
+and outputs.
 """
 
 from robosc.report.contents import report

@@ -1,4 +1,4 @@
-"""Collects the report, as plain data that is the same on every run."""
+"""Collects the report as plain data that is the same on every run."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ if TYPE_CHECKING:
     from robosc.metamodel import rosgraph
     from robosc.report.playing import Shown
 
-#: What the report begins with.
+#: First paragraph of the report.
 NOTICE = (
     "This is not a safety certificate, and the controller is not a safety-rated one: it is ordinary software on "
     "ordinary hardware. Functions that people's safety depends on belong into safety-rated parts of the robot."
 )
-#: What is generated for the report; where ROS has no part in the model, those that don't need it.
+#: Targets that are generated for the report; without ROS in the model, those that do not need it.
 _TARGETS = ("supervisor", "cif", "ros1", "ros2")
 
 
-def report(  # noqa: PLR0913 - all that a report is of
+def report(  # noqa: PLR0913 - the inputs of a report
     models: Models,
     configuration: Configuration,
     verdicts: Sequence[Verdict],
@@ -46,15 +46,15 @@ def report(  # noqa: PLR0913 - all that a report is of
     version: str,
     interface_paths: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """What is to be read about a model with its supervisor, by these verdicts of `verify`.
+    """Return the report on a model with its supervisor and the verdicts of `verify`.
 
-    `texts` are the files that it was read from, by path, `version` is that of the tool, ROS types are looked up in
-    `interface_paths`, too. Everything is generated once more, with tests, in memory; what a precondition refuses is
-    left out, and said. Raises what `verify` raises.
+    `texts` are the files of the model by path, `version` is the version of the tool. ROS types are also looked up in
+    `interface_paths`. All targets are generated again in memory, with tests. A target whose precondition fails is
+    omitted, and the report states it. Raises the same exceptions as `verify`.
     """
     outputs, refused, missed = _generated(models, configuration, interface_paths)
     traces = {path: text for path, text in outputs.items() if path.endswith(".jsonl")}
-    # Packages of both ROS have the same traces.
+    # Packages for both ROS versions have the same traces.
     different = {text: path for path, text in reversed(traces.items())}
     shown = play(models, {path: text for path, text in traces.items() if different[text] == path})
     model = models.sct
@@ -91,7 +91,7 @@ def report(  # noqa: PLR0913 - all that a report is of
 def _generated(
     models: Models, configuration: Configuration, interface_paths: Sequence[str]
 ) -> tuple[dict[str, str], list[dict[str, str]], list[str]]:
-    """The text of each file by its path; what is not generated, and why; what the tests could show and do not."""
+    """Return generated texts by path, the targets that were refused with the reason, and the gaps of the tests."""
     missed: dict[str, None] = {}
     files: dict[str, str] = {}
     refused = []
@@ -118,7 +118,10 @@ def _requirements(
     shown: Shown,
     sources: printing.Sources,
 ) -> list[dict[str, Any]]:
-    """One entry for each requirement and property of the text: several of the model may come from one."""
+    """Return one entry for each requirement and property of the text.
+
+    An entry can combine several requirements of the model.
+    """
     guards = {guard.event: guard for guard in model.supervisor.guards} if model.supervisor else {}
     grouped: dict[str, list[sct.StatedRequirement]] = {}
     for requirement in stated:
@@ -161,7 +164,7 @@ def _kind(stated: sct.StatedRequirement) -> str:
 
 
 def _guarded(requirement: sct.Requirement, guards: Mapping[sct.Event, sct.EventGuard], shown: Shown) -> dict[str, Any]:
-    """What the requirement does to its event, what synthesis added to that, and what the tests saw."""
+    """Return the condition on a requirement's event, the guard that synthesis added, and the results of the tests."""
     guard = guards.get(requirement.event)
     added = None if guard is None or guard.synthesis is None else RobotPrinter()(copied(guard.synthesis))
     seen = {}
@@ -211,7 +214,7 @@ def _assumptions(models: Models, configuration: Configuration) -> dict[str, Any]
 def _overridden(
     model: sct.SupervisoryControlModel, graph: rosgraph.RosGraph | None, messages: Sequence[str]
 ) -> list[str]:
-    """The requirements that what goes out on shutdown is sent regardless of."""
+    """Return the requirements that do not apply to the messages sent on shutdown."""
     if graph is None:
         return []
     named = {*messages}

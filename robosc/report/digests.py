@@ -1,4 +1,4 @@
-"""Digests of the tool, of what a model was read from, and of what was generated."""
+"""Digests of the tool, of the files of a model, and of the generated files."""
 
 from __future__ import annotations
 
@@ -11,30 +11,30 @@ from robosc.files.resources import locate
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-#: What belongs to the tool; what Python and jinja2 compile beside it does not.
+#: Suffixes of the tool's sources; files that Python and jinja2 compile beside them do not count.
 _SOURCES = (".py", ".c", ".j2", ".hpp", ".tx", ".ecore", ".json", ".xml", ".in", ".cmake")
 
 
 def digest(content: str | bytes) -> str:
-    """The SHA-256 of a text in UTF-8, or of bytes, in hexadecimal."""
+    """Return the SHA-256 of a text in UTF-8, or of bytes, in hexadecimal."""
     return sha256(content.encode() if isinstance(content, str) else content).hexdigest()
 
 
 def of_files(texts: Mapping[str, str | bytes]) -> list[dict[str, str]]:
-    """The digest of each file, in the order of the paths."""
+    """Return the digest of each file, in the order of the paths."""
     return [{"path": path, "sha256": digest(texts[path])} for path in sorted(texts)]
 
 
 def together(digests: Iterable[tuple[str, str]]) -> str:
-    """One digest of many files: that of a list as `sha256sum` writes it."""
+    """Return one digest of many files: that of a list as `sha256sum` writes it."""
     return digest("".join(f"{sha}  {path}\n" for path, sha in sorted(digests)))
 
 
 @cache
 def of_tool() -> str:
-    """The digest of the installed tool: of all its sources, grammars, metamodels and templates.
+    """Return the digest of the installed tool: of all its sources, grammars, metamodels and templates.
 
-    It is the same for a checkout and for the wheel that is built of it.
+    It is the same for a checkout and for the wheel that is built from it.
     """
     package = locate("report").parent
     found = {path.relative_to(package).as_posix(): path for path in package.rglob("*")}

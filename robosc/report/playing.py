@@ -1,4 +1,4 @@
-"""Plays the traces of generated tests on the interpreter, and notes what they show."""
+"""Plays the traces of generated tests on the interpreter, and records their coverage."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ if TYPE_CHECKING:
     from robosc.engine import Engine
     from robosc.m2t.models import Models
 
-#: What the controller decides by itself.
+#: Roles of events that the controller decides by itself.
 _DECIDED = (engine.Role.cancel, engine.Role.trigger, engine.Role.silent)
 
 
 @dataclass
 class Shown:
-    """What traces have shown, in the states that they came to, first and last among them."""
+    """Coverage of traces, over all states that they reach, including the first and the last."""
 
-    #: How often the guard of each event was true, and false.
+    #: Number of states in which the guard of each event was true, and false.
     enabled: Counter[str] = field(default_factory=Counter)
     disabled: Counter[str] = field(default_factory=Counter)
-    #: Where each requirement first allowed an event that the plants could do, and where it first forbade that.
+    #: First place at which each requirement allowed an event that the plants could do, and at which it forbade it.
     allowed: dict[sct.Requirement, tuple[str, int]] = field(default_factory=dict)
     forbidden: dict[sct.Requirement, tuple[str, int]] = field(default_factory=dict)
     taken: set[sct.Edge] = field(default_factory=set)
@@ -38,7 +38,7 @@ class Shown:
     events: int = 0
 
     def coverage(self, model: sct.SupervisoryControlModel, executed: engine.EngineModel) -> dict[str, Any]:
-        """How much of the robot that is."""
+        """Return the coverage of the robot."""
         behaviours = [plant for plant in model.plants if plant.kind == sct.PlantKind.behaviour]
         written = [edge for plant in behaviours for edge in edges_of(plant) if edge.source is not None]
         asked = [event for event in executed.events if event.role in _DECIDED]
@@ -56,7 +56,7 @@ class Shown:
 
 
 def play(models: Models, traces: Mapping[str, str]) -> Shown:
-    """Plays event traces (path to text), each from the initial state on."""
+    """Play event traces (path to text), each from the initial state."""
     shown = Shown()
     for path, text in traces.items():
         _play(models, path, text, shown)

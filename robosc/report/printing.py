@@ -1,7 +1,7 @@
-"""Where generated code speaks of a requirement: generators write what it says beside its event.
+"""Places of a requirement in generated code: generators write its text beside its event.
 
-That is a comment with the file of the model, in C and where a node in C++ sends. A node also has it where it sends all
-the same, and as what it tells where the condition does not hold.
+It appears as a comment with the file of the model, in C and at each place where a C++ node sends. A node also cites it
+where it sends regardless, and in the reason that it reports if the condition does not hold.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
 
     from robosc.metamodel import sct
 
-#: How far comments are indented, and what makes a line one of a comment.
+#: Indentations of comments, and margins of their lines.
 _INDENTS = (2, 4, 6)
 _MARGINS = ("/* ", "* ", "// ")
 
 
 class Sources:
-    """What was generated, by path, in which requirements are looked up."""
+    """Generated files by path, for looking up requirements."""
 
     def __init__(self, outputs: Mapping[str, str]) -> None:
         self._files = {path: _File(text) for path, text in outputs.items() if path.endswith((".c", ".h", ".cpp"))}
 
     def places(self, requirement: sct.StatedRequirement) -> dict[str, list[int]]:
-        """The files that cite the requirement, and the lines in which what cites it begins."""
+        """Return the files that cite a requirement, and the lines in which the citations begin."""
         if not requirement.text:
             return {}
         said = remark(requirement)
@@ -45,20 +45,20 @@ class Sources:
 
 
 class _File:
-    """The lines of a file, without margins, and their numbers by their text."""
+    """The lines of a file without margins, and their numbers by their text."""
 
     def __init__(self, text: str) -> None:
         lines = text.split("\n")
         self._bare = [_bare(line) for line in lines]
         self._numbers: dict[str, list[int]] = {}
-        #: In which line a comment of C begins; every other line begins by itself.
+        #: First line of the comment of each line; a line outside of C comments begins by itself.
         self._begins: list[int] = []
         for number, line in enumerate(lines):
             self._numbers.setdefault(self._bare[number], []).append(number)
             self._begins.append(self._begins[-1] if line.lstrip().startswith("* ") else number)
 
     def places(self, printed: str) -> list[int]:
-        """Where all lines of what is printed stand one behind the other: the numbers, from 1."""
+        """Return the numbers, from 1, of the places at which all lines of a printed text follow each other."""
         lines = [_bare(line) for line in printed.split("\n")]
         return [
             self._begins[number] + 1
@@ -68,7 +68,7 @@ class _File:
 
 
 def _bare(line: str) -> str:
-    """A line without its indentation, and without what makes it one of a comment."""
+    """Return a line without its indentation and its comment margin."""
     line = line.strip()
     margin = next((margin for margin in _MARGINS if line.startswith(margin)), "")
     return line.removeprefix(margin).removesuffix(" */")

@@ -15,20 +15,20 @@ from robosc.files.templates import environment
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-#: What reStructuredText would read as markup: backquotes stay, which show what they hold.
+#: Characters that reStructuredText would read as markup; backquotes stay, because they mark literals.
 _MARKUP = re.compile(r"[\\*|]|(?<=\w)_(?!\w)")
 
 
 def as_json(found: Mapping[str, Any]) -> str:
-    """JSON for programs; its schema is `report.schema.json`."""
+    """Return the report as JSON for programs; its schema is `report.schema.json`."""
     return json.dumps(found, indent=2, ensure_ascii=False) + "\n"
 
 
 def as_html(found: Mapping[str, Any]) -> str:
-    """One page that needs nothing else: no script, no font, no picture from elsewhere.
+    """Return the report as a self-contained page: no script, font or picture from elsewhere.
 
-    What comes from a model is escaped, and its content security policy lets nothing run or load: the hash of its one
-    style sheet is all that it allows.
+    Texts of the model are escaped. The content security policy blocks everything except the page's style sheet, which
+    it allows by its hash.
     """
     templates = environment("robosc.report", escapes=True)
     templates.filters["visible"] = visible
@@ -39,13 +39,13 @@ def as_html(found: Mapping[str, Any]) -> str:
 
 
 def _outcomes(found: Mapping[str, Any]) -> dict[str, int]:
-    """How many verdicts there are of each outcome."""
+    """Return the number of verdicts of each outcome."""
     told = [verdict["outcome"] for verdict in found["verdicts"]]
     return {outcome: told.count(outcome) for outcome in ("proved", "sampled", "skipped", "refuted")}
 
 
 def as_needs(found: Mapping[str, Any]) -> str:
-    """The requirements, and a test case for each verdict about one, as sphinx-needs reads them (`needimport`)."""
+    """Return the requirements, and a test case for each verdict, in the format of sphinx-needs (`needimport`)."""
     needs: dict[str, dict[str, Any]] = {}
     names = {
         requirement["name"]: _identifier("REQ", found["robot"], requirement["name"])
@@ -80,16 +80,16 @@ def as_needs(found: Mapping[str, Any]) -> str:
 
 
 def _plain(text: str) -> str:
-    """A text that says the same as reStructuredText: no star begins emphasis, no underscore ends a reference."""
+    """Escape a text for reStructuredText, where stars begin emphasis and underscores end references."""
     return _MARKUP.sub(r"\\\g<0>", visible(text))
 
 
 def _identifier(prefix: str, robot: str, name: str) -> str:
-    """An identifier of capital letters, digits and underscores, as sphinx-needs asks for by default."""
+    """Return an identifier of capital letters, digits and underscores, the default format of sphinx-needs."""
     plain = re.sub(r"[^A-Z0-9]+", "_", f"{prefix}_{robot}_{name}".upper()).strip("_")
     return f"{plain}_{sha256(name.encode()).hexdigest()[:6].upper()}" if prefix == "REQ" else plain
 
 
 def _status(outcomes: list[str]) -> str:
-    """The worst of the outcomes."""
+    """Return the worst of the outcomes."""
     return next((outcome for outcome in ("refuted", "skipped", "sampled", "proved") if outcome in outcomes), "open")

@@ -1,7 +1,7 @@
-"""Definitions of ROS messages, services and actions, as each of the two ROS has them.
+"""Definitions of ROS messages, services and actions, for ROS 1 and ROS 2.
 
-A definition is looked for in the folders of the call, in those of ROBOSC_INTERFACE_PATH, in the ROS installation of the
-computer, and among the standard types. Both ROS are asked: they disagree about some types.
+A definition is searched in the folders of the call, in those of ROBOSC_INTERFACE_PATH, in the ROS installation of the
+computer, and among the standard types. Both ROS versions are searched, because they differ in some types.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ MAKE_KNOWN = (
     "give the folder of its package with --interface-path, or list it in ROBOSC_INTERFACE_PATH; until then nothing is"
     " checked against it"
 )
-#: How to read the data of a service or action where only a message can be named.
+#: Hint for the data of a service or action in a place that can only name messages.
 OWN_OBJECT = "for the data of a service or action, declare an object with the fields that you use and an enum over it"
-#: The field that holds a basic value of a section with several fields.
+#: Default field for a basic value, if its section has several fields.
 _DATA = "data"
 _SHIPPED = locate("ros_types/definitions")
 
 
 class RosDistribution:
-    """All types as one of the two ROS has them."""
+    """All types of one ROS version."""
 
     def __init__(self, ros: str, folders: Iterable[Share]) -> None:
-        """`ros` is `ROS 1` or `ROS 2`; of several `folders` with a type the first one counts."""
+        """Search the folders of `ros` (`ROS 1` or `ROS 2`) in their order; the first one with a type counts."""
         self.name = ros
         self._folders = list(folders)
         self._known: dict[tuple[str, str, Section], Fields | None] = {}
@@ -53,12 +53,12 @@ class RosDistribution:
         return [*self._folders, ShippedTypes(self.name)]
 
     def fields(self, package: str, name: str, section: Section) -> Fields | None:
-        """The fields of a section of a type; None where the type is unknown.
+        """Return the fields of a section of a type, or None if the type is unknown.
 
-        Raises DefinitionError where the text of the definition can't be read.
+        Raises DefinitionError if the text of the definition cannot be parsed.
         """
         if not (package.isidentifier() and name.isidentifier()):
-            return None  # Names are parts of paths.
+            return None  # Names become parts of paths.
         key = package, name, section
         if key not in self._known:
             found = (source.fields(package, name, section) for source in self._sources)
@@ -68,7 +68,7 @@ class RosDistribution:
     def reached(
         self, package: str, name: str, section: Section, path: Iterable[str]
     ) -> tuple[WireType, Section] | None:
-        """What stands at the end of a path of fields and positions, an object with its section; None: unknown."""
+        """Return the type at the end of a path of fields and positions, with its section, or None if unknown."""
         found: WireType | None = Nested(package, name)
         for step in path:
             if step.isdigit():
@@ -84,35 +84,35 @@ class RosDistribution:
         return None if found is None else (found, section)
 
     def defines(self, package: str, name: str, section: Section) -> bool:
-        """Whether there is a section of a type, also one that can't be read."""
+        """Return whether a section of a type exists, even if its definition is invalid."""
         try:
             return self.fields(package, name, section) is not None
         except DefinitionError:
             return True
 
     def names(self, package: str, kind: str) -> list[str]:
-        """The names of the types of a kind (`message`, `service`, `action`) that are known of a package, sorted."""
+        """Return the known types of a kind (`message`, `service`, `action`) in a package, sorted by name."""
         key = package, kind
         if key not in self._named:
             self._named[key] = sorted({name for source in self._sources for name in source.names(package, kind)})
         return self._named[key]
 
     def packages(self) -> set[str]:
-        """The names of all packages of which a type is known."""
+        """Return the names of all packages with a known type."""
         return {package for source in self._sources for package in source.packages()}
 
 
 class RosTypes:
-    """All types of both ROS."""
+    """All types of both ROS versions."""
 
     def __init__(self, paths: Iterable[str | PathLike[str]] = ()) -> None:
-        """`paths` are folders with packages below them, searched before all others."""
+        """Search folders of packages below `paths` before all others."""
         given = [Path(path) for path in paths] + _environment("ROBOSC_INTERFACE_PATH")
         installed = {
             "ROS 2": [Share(prefix / "share") for prefix in _environment("AMENT_PREFIX_PATH")],
             "ROS 1": [
                 *(Workspace(folder, "ROS 1") for folder in _environment("ROS_PACKAGE_PATH")),
-                Share(Path("/usr/share")),  # where Debian installs it
+                Share(Path("/usr/share")),  # the location on Debian
             ],
         }
         #: ROS 2, then ROS 1.
@@ -122,11 +122,14 @@ class RosTypes:
         ]
 
     def distribution(self, ros: int) -> RosDistribution:
-        """All types as ROS 1 or ROS 2 has them."""
+        """Return the types of ROS 1 or ROS 2."""
         return next(known for known in self.distributions if known.name == f"ROS {ros}")
 
     def field_of_basic(self, package: str, name: str, section: Section) -> str:
-        """The field in which a basic value travels: the only one of the section in one of the two ROS, else `data`."""
+        """Return the field that carries a basic value.
+
+        That is the only field of the section in one of the ROS versions, else `data`.
+        """
         for distribution in self.distributions:
             try:
                 fields = distribution.fields(package, name, section)
@@ -137,7 +140,10 @@ class RosTypes:
         return _DATA
 
     def _make_known(self) -> str:
-        """How to make a type known: where a folder is too large to be searched, by a smaller one."""
+        """Return the hint to make a type known.
+
+        If a folder is too large to be searched, the hint is to name a smaller one.
+        """
         large = next((found.folder for found in self._given["ROS 2"] if found.is_too_large), None)
         if large is None:
             return MAKE_KNOWN
@@ -147,7 +153,7 @@ class RosTypes:
         )
 
     def other_kinds(self, package: str, name: str, kind: str) -> list[str]:
-        """The other kinds of which there is a type of that name: `service`, `action`."""
+        """Return the other kinds (`service`, `action`) that have a type of this name."""
         return [
             other
             for other in FOLDERS
@@ -158,9 +164,9 @@ class RosTypes:
         return sorted({found for known in self.distributions for found in known.names(package, kind)})
 
     def why_unknown(self, package: str, name: str, section: Section) -> tuple[str, str, tuple[str, str] | None]:
-        """Why no distribution has this section of a type: a message, a hint, and the type that was probably meant.
+        """Return the reason that no distribution has a section of a type, a hint, and the type that was probably meant.
 
-        That is its package and its name; None: there is no close match.
+        The meant type is its package and its name, or None if there is no close match.
         """
         kind = section.kind
         for distribution in self.distributions:

@@ -18,23 +18,26 @@ if TYPE_CHECKING:
 
 _SECTIONS = {"message": 1, "service": 2, "action": 3}
 _NAME = re.compile(r"<name>\s*([A-Za-z][\w-]*)\s*</name>")
-#: What the manifest of a package for one of the two ROS mentions; one that mentions both, or none, is for both.
+#: Words in the manifest of a package for one ROS version; a package with words of both or none is for both.
 _BUILT_FOR = {"ROS 1": re.compile(r"catkin|message_generation"), "ROS 2": re.compile(r"ament_|rosidl_")}
-#: The folders below one of the call that are searched for packages. A full workspace has some hundred.
+#: Maximum number of folders below a folder of the call that are searched. A full workspace has some hundred.
 MOST_FOLDERS = 10_000
-#: Build tools pass over a folder that holds one of these.
+#: Marker files of folders that build tools skip.
 _IGNORED = {"AMENT_IGNORE", "CATKIN_IGNORE", "COLCON_IGNORE"}
 
 
 class Share:
-    """A folder that holds nothing but installed packages, each in a folder with its name."""
+    """A folder of installed packages, each in a folder with its name."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._read: dict[Path, list[Fields]] = {}
 
     def fields(self, package: str, name: str, section: Section) -> Fields | None:
-        """The fields of a section of a type; None where the folder has no such type. Raises DefinitionError."""
+        """Return the fields of a section of a type, or None if the folder has no such type.
+
+        Raises DefinitionError.
+        """
         folder = FOLDERS[section.kind]
         for root in self.roots(package):
             path = root / folder / f"{name}.{folder}"
@@ -46,12 +49,12 @@ class Share:
         return None
 
     def names(self, package: str, kind: str) -> list[str]:
-        """The names of all types of a kind that a package defines."""
+        """Return the names of all types of a kind that a package defines."""
         folder = FOLDERS[kind]
         return sorted(path.stem for root in self.roots(package) for path in (root / folder).glob(f"*.{folder}"))
 
     def packages(self) -> list[str]:
-        """The names of all packages that define types."""
+        """Return the names of all packages that define types."""
         return self._packages
 
     @cached_property
@@ -63,14 +66,14 @@ class Share:
         ]
 
     def roots(self, package: str) -> list[Path]:
-        """The folders of a package."""
+        """Return the folders of a package."""
         return [self._folder / package] if (self._folder / package).is_dir() else []
 
 
 class Workspace(Share):
-    """A folder with packages somewhere below it, or the folder of a single one, as they are for one of the two ROS.
+    """A folder with the packages of one ROS version anywhere below it, or the folder of a single package.
 
-    A package's name is that in its `package.xml`, else that of its folder.
+    The name of a package is that in its `package.xml`, else that of its folder.
     """
 
     def __init__(self, folder: Path, ros: str) -> None:
@@ -79,11 +82,11 @@ class Workspace(Share):
         self._searched = 0
 
     def roots(self, package: str) -> list[Path]:
-        """The folders of a package, in the order of their paths."""
+        """Return the folders of a package, in the order of their paths."""
         return self._roots.get(package, [])
 
     def packages(self) -> list[str]:
-        """The names of all packages."""
+        """Return the names of all packages."""
         return list(self._roots)
 
     @cached_property
@@ -100,27 +103,27 @@ class Workspace(Share):
 
     @property
     def is_too_large(self) -> bool:
-        """Whether there are more than `MOST_FOLDERS` below it, of which only the first were searched."""
+        """Whether it has more than `MOST_FOLDERS` folders, so that the search was incomplete."""
         _ = self._roots
         return self._searched > MOST_FOLDERS
 
     def _found(self) -> Iterator[tuple[str, Path]]:
         seen = set()
-        for folder, below, names in os.walk(self._folder, followlinks=True):  # as ROS's own tools do
+        for folder, below, names in os.walk(self._folder, followlinks=True):  # as the tools of ROS do
             checkpoint()
             self._searched += 1
             if self._searched > MOST_FOLDERS:
                 return
             root = Path(folder)
             place = os.path.realpath(folder)
-            if place in seen:  # a link to what is around it
+            if place in seen:  # A link leads to an enclosing folder.
                 below.clear()
                 continue
             seen.add(place)
             if _IGNORED.intersection(names):
                 below.clear()
             elif "package.xml" in names:
-                below.clear()  # packages do not nest
+                below.clear()  # Packages do not nest.
                 manifest = ""
                 with suppress(OSError):
                     manifest = _text(root / "package.xml")

@@ -1,6 +1,6 @@
-"""What `rosbags` knows of ROS types: it parses definitions, and ships the message types of both ROS.
+"""ROS types of `rosbags`, which parses definitions and ships the message types of both ROS versions.
 
-Imported only where it is needed: it takes a quarter of a second to load.
+Import this module only on demand: loading it takes a quarter of a second.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 _SEPARATOR = re.compile(r"^---[ \t]*$", re.MULTILINE)
-#: ROS 2's generators fill types that have no field with one; nobody means it.
+#: Field that the generators of ROS 2 add to types without fields; it is ignored.
 _PLACEHOLDER = "structure_needs_at_least_one_member"
 #: The last ROS 1, and the ROS 2 with long-term support.
 _STORES = {"ROS 1": Stores.ROS1_NOETIC, "ROS 2": Stores.ROS2_JAZZY}
@@ -46,12 +46,12 @@ _DEFAULTS: dict[str, dict[str, Value]] = {
 
 
 def sections(text: str, package: str, count: int) -> list[Fields]:
-    """The fields of each section of a `.msg` (one section), `.srv` (two) or `.action` (three).
+    """Return the fields of each section of a `.msg` (one section), `.srv` (two) or `.action` (three).
 
-    `package` is where types without package are looked for. Raises DefinitionError.
+    Types without a package are looked up in `package`. Raises DefinitionError.
     """
     text = text.replace("\r\n", "\n").replace("\r", "\n")
-    # A message may have a comment that looks like a separator.
+    # A message may contain a comment that looks like a separator.
     texts = [text] if count == 1 else _SEPARATOR.split(text)
     if len(texts) != count:
         raise DefinitionError(f"it has {len(texts)} sections, expected {count} with `---` between them")
@@ -88,7 +88,7 @@ def _wire_type(description: tuple[Nodetype, Any], default: Any = None) -> WireTy
             return Basic(details[0], _value(details[0], default))
         case Nodetype.NAME:
             package, *_, name = details.split("/")
-            # The parser takes it for a type of the package at hand.
+            # The parser treats `wstring` as a type of this package.
             return Basic(name) if name == "wstring" else Nested(package, name)
         case Nodetype.ARRAY:
             length = details[1]
@@ -102,7 +102,7 @@ def _wire_type(description: tuple[Nodetype, Any], default: Any = None) -> WireTy
 
 
 def _value(kind: str, default: Any) -> Value | None:
-    """A default as a value of its type; None where it declares none, or none that ROS takes."""
+    """Return a default as a value of its type, or None if there is no default or ROS rejects it."""
     try:
         match PRIMITIVES[kind].name, default:
             case "string", str():
@@ -119,7 +119,7 @@ def _value(kind: str, default: Any) -> Value | None:
 
 
 class ShippedTypes:
-    """The message types that `rosbags` ships for one of the two ROS (`ROS 1`, `ROS 2`); no services and actions."""
+    """Message types that `rosbags` ships for one ROS version (`ROS 1`, `ROS 2`), without services and actions."""
 
     def __init__(self, ros: str) -> None:
         self._types: dict[str, Fields] = dict(_TIMES) if ros == "ROS 1" else {}
@@ -127,7 +127,7 @@ class ShippedTypes:
         self._described = get_typestore(_STORES[ros]).fielddefs
 
     def fields(self, package: str, name: str, section: Section) -> Fields | None:
-        """The fields of a message type; None where it is unknown."""
+        """Return the fields of a message type, or None if it is unknown."""
         key = f"{package}/msg/{name}"
         if section is not Section.MESSAGE or key not in self._described:
             return None
@@ -137,10 +137,10 @@ class ShippedTypes:
         return self._types[key]
 
     def names(self, package: str, kind: str) -> list[str]:
-        """The names of all types of a kind (`message`, `service`, `action`) in a package."""
+        """Return the names of all types of a kind (`message`, `service`, `action`) in a package."""
         keys = self._described if kind == "message" else ()
         return [key.rpartition("/")[2] for key in keys if key.startswith(f"{package}/")]
 
     def packages(self) -> set[str]:
-        """The names of all packages with types."""
+        """Return the names of all packages with types."""
         return {key.partition("/")[0] for key in self._described}

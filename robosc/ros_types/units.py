@@ -1,6 +1,6 @@
-"""The units that ROS gives to fields: REP 103, and what the definitions of its own packages say in their comments.
+"""Units of ROS fields: from REP 103, and from comments in the definitions of ROS's own packages.
 
-The unit of a field that is a message itself is that of all numbers in it, such as `linear` of a twist.
+The unit of a field with a message type applies to all numbers in it, such as `linear` of a twist.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 _RADIANS, _METRES, _SECONDS = "rad", "m", "s"
 _SPEED, _TURN = "m/s", "rad/s"
 
-#: By the package and name of a type.
+#: Units of fields, by the package and name of a type.
 UNITS: Mapping[tuple[str, str], Mapping[str, str]] = {
     ("geometry_msgs", "Accel"): {"linear": "m/s²", "angular": "rad/s²"},
     ("geometry_msgs", "Inertia"): {"m": "kg"},

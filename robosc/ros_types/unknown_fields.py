@@ -1,4 +1,4 @@
-"""Names in JSON that are no fields of the ROS type that the JSON stands for."""
+"""Search for names in JSON data that are not fields of its ROS type."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 def unknown_field(
     distributions: Iterable[RosDistribution], package: str, name: str, section: Section, data: Any
 ) -> tuple[str, str | None] | None:
-    """Return the fault of the first key in JSON data that no distribution has as a field, and a similar field.
+    """Return the fault of the first key in JSON data that is a field in no distribution, and a similar field.
 
-    None where all keys are fields, or the type is unknown. `data` may lack fields; arrays are lists, or objects from
-    index to element.
+    Returns None if all keys are fields, or if the type is unknown. `data` may lack fields; arrays are lists, or objects
+    from index to element.
     """
     known = list(distributions)
     pending: list[tuple[WireType, Section, Any]] = [(Nested(package, name), section, data)]
@@ -41,7 +41,7 @@ def unknown_field(
 
 
 def _fields(known: list[RosDistribution], wire: Nested, section: Section) -> dict[str, WireType] | None:
-    """The fields of a type in any distribution; None where none knows it."""
+    """Return the fields of a type in all distributions together, or None if no distribution has it."""
     merged: dict[str, WireType] | None = None
     for distribution in known:
         try:

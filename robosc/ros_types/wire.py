@@ -1,4 +1,4 @@
-"""What the definition of a ROS type says: its sections, their fields, and the types of these."""
+"""Contents of ROS definitions: sections, fields, and the types of fields."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import NamedTuple, TypeAlias
 
 
 class DefinitionError(ValueError):
-    """The text of a definition can't be read; says what is wrong with which file."""
+    """An invalid definition; the message names the fault and the file."""
 
 
 class Section(Enum):
-    """A section of a definition, what one ROS message carries: the kind of its type, and its place."""
+    """A section of a definition, which is the content of one ROS message: the kind of its type, and its index."""
 
     MESSAGE = "message", 0
     REQUEST = "service", 0
@@ -29,18 +29,18 @@ class Section(Enum):
 
     @property
     def index(self) -> int:
-        """Its place among the sections of the definition, from 0."""
+        """Index among the sections of the definition, from 0."""
         return self.value[1]
 
 
 class Primitive(NamedTuple):
-    """A type without fields: the type of RoboSC that has its values, and the least and the greatest whole number."""
+    """A type without fields: the type of RoboSC with the same values, and the range of an integer."""
 
     name: str
     range: tuple[int, int] | None = None
 
 
-#: All of them but `wstring`, which no data of a model can have; a `byte` is that of ROS 1.
+#: All primitive types except `wstring`, which a model cannot use; `byte` is that of ROS 1.
 PRIMITIVES = {
     "bool": Primitive("boolean"),
     **{f"int{bits}": Primitive("integer", (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)) for bits in (8, 16, 32, 64)},
@@ -51,23 +51,23 @@ PRIMITIVES = {
     "float64": Primitive("double"),
     "string": Primitive("string"),
 }
-#: The values of each whole number.
+#: Range of each integer type.
 INTEGER_RANGES = {name: primitive.range for name, primitive in PRIMITIVES.items() if primitive.range is not None}
 
-#: The folder in a package that holds the definitions of a kind; the same word ends the names of its files.
+#: Folder of the definitions of a kind in a package, and suffix of its files.
 FOLDERS = {"message": "msg", "service": "srv", "action": "action"}
 
 
 #: Basic data of ROS.
 Value: TypeAlias = bool | int | float | str
 
-#: The value of a field without a declared default, by the type of RoboSC that has its values.
+#: Values of fields without a declared default, by the type of RoboSC.
 _ZEROS: Mapping[str, Value] = {"boolean": False, "integer": 0, "double": 0.0, "string": ""}
 
 
 @dataclass(frozen=True)
 class Basic:
-    """A type without fields: `bool`, `float64`, `string`. `default`: the one that the definition declares."""
+    """A type without fields, such as `bool`, `float64` or `string`. `default` is that of the definition."""
 
     name: str
     default: Value | None = field(default=None, compare=False)
@@ -85,7 +85,7 @@ class Basic:
 
 @dataclass(frozen=True)
 class Sequence:
-    """Several values of one type; `length` is None where it varies. `default`: that of the definition."""
+    """Several values of one type; `length` is None if it varies. `default` is that of the definition."""
 
     element: WireType
     length: int | None = None
@@ -97,7 +97,7 @@ class Sequence:
         return len(self.default) if self.default is not None else self.length or 0
 
     def at(self, index: int) -> WireType:
-        """The type of an element, with its default."""
+        """Return the type of an element, with its default."""
         if self.default is None or index >= len(self.default) or not isinstance(self.element, Basic):
             return self.element
         return replace(self.element, default=self.default[index])

@@ -1,4 +1,4 @@
-"""A first model of a robot, small and whole: its text, configuration, page and test."""
+"""A small, complete first model of a robot: its text, configuration, page and test."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["Choices", "files"]
 
 
 def files(choices: Choices) -> Mapping[str, str]:
-    """The files of a folder for a robot, by their names; the layout of the model is left to `robosc format`."""
+    """Return the files of a folder for a robot, by their names; `robosc format` does the layout of the model."""
     return {
         f"{choices.stem}.rscd": model(choices),
         "controller-config.json": configuration(choices),

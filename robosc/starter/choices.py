@@ -1,4 +1,4 @@
-"""What a user says about a robot that is to be begun."""
+"""Choices of a user for a new robot."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _COMMUNICATION = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*")
 
 @dataclass(frozen=True)
 class Choices:
-    """A robot's name, its ROS (1 or 2), and the names of what it hears and does.
+    """A robot's name, its ROS (1 or 2), and the names of its inputs and outputs.
 
-    `sensors` are messages that say whether `command` may go out; while it may not, `stop` does. `service` is called
-    once, before anything else. With `twist` both commands are velocities.
+    `sensors` are messages that report whether `command` may be sent; while it may not, `stop` is sent. `service` is
+    called once, before anything else. With `twist`, both commands are velocities.
     """
 
     name: str
@@ -29,12 +29,12 @@ class Choices:
 
     @property
     def robot(self) -> str:
-        """The robot's name as the model writes it: `my_robot` gives `MyRobot`."""
+        """The robot's name as the model writes it: `MyRobot` for `my_robot`."""
         return camel(self.name)
 
     @property
     def stem(self) -> str:
-        """The robot's name in snake case: of its folder and files."""
+        """The robot's name in snake case, for its folder and files."""
         return snake_case(self.robot)
 
     @property
@@ -44,11 +44,11 @@ class Choices:
 
     @property
     def commands(self) -> list[str]:
-        """The messages that go out."""
+        """The messages that the controller sends."""
         return [self.command, *([self.stop] if self.stop else [])]
 
     def fault(self) -> str | None:
-        """What is wrong with a name, and how to mend it; None where all will do."""
+        """Return the fault of a name with a hint, or None if all names are valid."""
         if not _ROBOT.fullmatch(self.name):
             return f"`{self.name}` can't name a robot: letters, digits and single `_` can, such as `Porter`"
         names = [*self.sensors, *self.commands, *([self.service] if self.service else [])]
@@ -66,5 +66,5 @@ class Choices:
 
 
 def camel(name: str) -> str:
-    """The name without underscores, each of its words with a capital letter: `stop_button` gives `StopButton`."""
+    """Return the name without underscores and with capitalized words: `StopButton` for `stop_button`."""
     return "".join(word[:1].upper() + word[1:] for word in name.split("_"))

@@ -1,4 +1,4 @@
-"""The configuration of a robot that is begun."""
+"""The configuration of a new robot."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def configuration(choices: Choices) -> str:
-    """The text of `controller-config.json`: what stops the robot when its node ends, and what its package says."""
+    """Return the text of `controller-config.json`: the messages to send on shutdown, and the package's description."""
     settings = {
         "controlLoop": {"periodMs": 100},
         "onShutdown": [choices.stop] if choices.stop else [],

@@ -1,4 +1,4 @@
-"""The model of a robot that is begun."""
+"""The model of a new robot."""
 
 from __future__ import annotations
 
@@ -46,17 +46,17 @@ _SPEED = """
 
 
 def sensor_component(name: str) -> str:
-    """The component of a sensor's message."""
+    """Return the name of the component of a sensor's message."""
     return f"{camel(name)}Sensor"
 
 
 def service_component(name: str) -> str:
-    """The component of a service."""
+    """Return the name of the component of a service."""
     return f"{camel(name)}Service"
 
 
 def model(choices: Choices) -> str:
-    """The text of the robot, not yet laid out."""
+    """Return the text of the robot, not yet formatted."""
     parts = [
         f"// What {choices.robot} may do, and when: `{choices.command}` goes out while all that it needs holds.",
         f"robot {choices.robot} {{",
@@ -101,7 +101,7 @@ def _provided(choices: Choices) -> str:
 
 
 def condition(choices: Choices) -> str:
-    """When the command goes out, in words."""
+    """Return the condition for the command in words."""
     said = [f"`/{name}` has last said true" for name in choices.sensors]
     if choices.service:
         said.append(f"`/{choices.service}` has succeeded")

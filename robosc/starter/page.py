@@ -1,4 +1,4 @@
-"""The page that says what is in a folder for a robot that is begun."""
+"""The page that describes the folder of a new robot."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ _WARNED = """
 
 
 def page(choices: Choices) -> str:
-    """The text of `README.md`."""
+    """Return the text of `README.md`."""
     return _TEXT.format(
         robot=choices.robot,
         stem=choices.stem,

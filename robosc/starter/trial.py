@@ -1,4 +1,4 @@
-"""The test of a robot that is begun: the tool's own judgement, and a story that the simulator plays."""
+"""The test of a new robot: the checks of the tool, and a story that the simulator plays."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ if __name__ == "__main__":
 
 
 def trial(choices: Choices) -> str:
-    """The text of the test."""
+    """Return the text of the test."""
     story = "\n".join(f"    ({_quoted(line)}, {happens})," for line, happens in _story(choices))
     return _TEXT.format(
         robot=choices.robot,

@@ -1,7 +1,7 @@
-"""`robosc view`: a model, a log, a counterexample or a robot that runs in the browser, decision by decision.
+"""`robosc view`: shows a model, a log, a counterexample or a running robot in the browser, decision by decision.
 
-`Moments` are what has happened: of a `Record` that is played, or `Live` as a node tells. `describe` says what does not
-change, `server` serves both with the page, `export` writes them as files that open without a server. The page
+`Moments` is the history of a run: a `Record` that is played, or a `Live` node. `describe` returns the constant parts
+of a robot. `server` serves both with the page, and `export` writes them as files that open without a server. The page
 itself is TypeScript, in `web/`.
 """
 

@@ -1,4 +1,4 @@
-"""What a page shows of a robot that never changes: its automata, communication, commands, requirements and texts."""
+"""Constant parts of a robot on the page: automata, communication, commands, requirements and texts."""
 
 from __future__ import annotations
 
@@ -25,21 +25,21 @@ if TYPE_CHECKING:
     from robosc.language.tokens import Token
     from robosc.m2t.models import Models
 
-#: What a robot's text calls automata: its components, and what requirements watch.
+#: Kinds of automata in a robot's text: behaviors of components, and requirement automata.
 AUTOMATA = (sct.PlantKind.behaviour, sct.PlantKind.requirement)
-#: What goes out to the robot: what a supervisor allows or forbids and a user calls a command.
+#: Kinds of events that go out to the robot: the supervisor allows or forbids them, and users call them commands.
 _OUTGOING = (sct.EventKind.trigger, sct.EventKind.cancel, sct.EventKind.plain)
-#: What is typed for data of a type.
+#: Kinds of input fields by type.
 _KINDS = {ex.BooleanType: "checkbox", ex.IntegerType: "whole", ex.DoubleType: "number", ex.StringType: "text"}
-#: A label of a transition that is longer is cut; the whole stands in its title.
+#: Maximum length of a transition's label. Longer labels are cut; the title has the whole text.
 _LONGEST = 60
 
 
 def describe(models: Models, texts: Mapping[str, str]) -> dict[str, Any]:
-    """The description as JSON data; `texts` are those of the files that the model comes from, by their paths.
+    """Return the description as JSON data; `texts` are the texts of the model's files by their paths.
 
-    Automata are numbered in the order of the model, and so are the states and transitions of each. A place is a
-    `file`, as a position in `files`, with the lines and columns of a span, from 1.
+    Automata are numbered in the order of the model, and so are the states and transitions of each. A place is a `file`
+    (an index in `files`) with the lines and columns of a span, from 1.
     """
     model = models.sct
     describer = _Describer(texts, models.rosgraph)
@@ -72,17 +72,17 @@ def describe(models: Models, texts: Mapping[str, str]) -> dict[str, Any]:
 
 
 def automata_of(model: sct.SupervisoryControlModel) -> list[sct.Plant]:
-    """The plants that are drawn."""
+    """Return the plants that the page draws."""
     return [plant for plant in model.plants if plant.kind in AUTOMATA]
 
 
 def commands_of(model: sct.SupervisoryControlModel) -> list[sct.Event]:
-    """The controllable events that go out to the robot."""
+    """Return the controllable events that go out to the robot."""
     return [event for event in Roles(model).events if event.controllable and event.kind in _OUTGOING]
 
 
 def transitions_of(plant: sct.Plant) -> list[list[sct.Edge]]:
-    """The transitions of an automaton, each as the edges that were made of it: one text is several edges."""
+    """Return the transitions of an automaton, each with all edges that were created for it."""
     found: dict[object, list[sct.Edge]] = {}
     for edge in edges_of(plant):
         if not _is_written(edge):
@@ -93,7 +93,10 @@ def transitions_of(plant: sct.Plant) -> list[list[sct.Edge]]:
 
 
 def _is_written(edge: sct.Edge) -> bool:
-    """Whether the text has a transition: what a state merely lets pass is an edge, too."""
+    """Return whether the text has a transition for an edge.
+
+    An event that a state ignores has an edge, too.
+    """
     left = origin(edge)
     silent = edge.target in (None, left) and not edge.updates
     return not silent or (edge.source is not None and str(edge.source) != str(edge.eContainer().source))
@@ -107,7 +110,7 @@ class _Describer:
         self.files: dict[str, int] = {path: number for number, path in enumerate(texts)}
 
     def place(self, element: Any) -> dict[str, int] | None:
-        """Where an element stands; None where its text is not there."""
+        """Return the place of an element, or None if its text is not available."""
         if element.source is None:
             return None
         file, span = place(element)
@@ -122,7 +125,10 @@ class _Describer:
         }
 
     def automaton(self, plant: sct.Plant) -> dict[str, Any]:
-        """An automaton with its states and transitions; `source` is null where a transition leaves every state."""
+        """Return an automaton with its states and transitions.
+
+        A transition from every state has `source` null.
+        """
         position = {location: number for number, location in enumerate(plant.locations)}
         variables: list[sct.DiscreteVariable | rosgraph.NodeVariable] = [*plant.variables, *self._kept(plant)]
         return {
@@ -157,11 +163,11 @@ class _Describer:
         }
 
     def _kept(self, plant: sct.Plant) -> list[rosgraph.NodeVariable]:
-        """What the node keeps of a component beside the supervisor."""
+        """Return the variables of a component that only the node stores, not the supervisor."""
         return self._reported.get(plant.origin, []) if plant.kind == sct.PlantKind.behaviour else []
 
     def _label(self, edge: sct.Edge) -> dict[str, str]:
-        """The text of a transition without comments, as short as a picture needs it, and whole."""
+        """Return the text of a transition without comments, whole and shortened for the picture."""
         tokens = self._tokens(edge)
         whole = _spelled(tokens) if tokens else words(edge.event).replace("`", "")
         shorter = tokens[:-2] if len(tokens) > 1 and tokens[-2].is_keyword("goto") else tokens
@@ -170,7 +176,7 @@ class _Describer:
         return {"label": short if len(short) <= _LONGEST else f"{short[: _LONGEST - 1]}…", "whole": whole}
 
     def _tokens(self, edge: sct.Edge) -> list[Token]:
-        """The tokens of a transition; none where its text is not there."""
+        """Return the tokens of a transition, or none if its text is not available."""
         if edge.source is None:
             return []
         file, span = place(edge)
@@ -182,7 +188,7 @@ class _Describer:
         return [text.tokens[index] for index in range(first, after)]
 
     def event(self, event: sct.Event) -> dict[str, Any]:
-        """An event in words, where it stands, and the data that it may come with."""
+        """Return an event with its words, its place and its possible data."""
         return {
             "words": words(event).replace("`", ""),
             "controllable": bool(event.controllable),
@@ -195,7 +201,7 @@ class _Describer:
 
     @staticmethod
     def _beside(event: sct.Event, graph: rosgraph.RosGraph) -> list[dict[str, Any]]:
-        """Data that the node keeps and no input tells: the fields on the way to it, and what is typed for it."""
+        """Return the data of an event that only the node stores: the path of fields, and the kind of input field."""
         found = data_beside(graph, event)
         is_lone = not event.inputs and len(found) == 1
         return [
@@ -206,7 +212,7 @@ class _Describer:
 
 
 def _spelled(tokens: Sequence[Token]) -> str:
-    """Tokens as their text has them, with one blank where it has blanks or comments."""
+    """Return tokens as in their text, with one blank in place of blanks and comments."""
     pieces = [tokens[0].text]
     for before, token in pairwise(tokens):
         pieces += [" " if token.start > before.end else "", token.text]
@@ -214,12 +220,12 @@ def _spelled(tokens: Sequence[Token]) -> str:
 
 
 def _label(given: sct.Input) -> str:
-    """What an input is of the data of its event, as the text of the model has it."""
+    """Return the path of an input in the data of its event, as the text of the model writes it."""
     return given.text or ".".join(["value", *given.name.split("_")[2:]])
 
 
 def _values(kind: ex.Type) -> dict[str, Any]:
-    """The values of a type: all of them, or the least and the greatest."""
+    """Return the values of a type: all of them, or the minimum and the maximum."""
     match kind:
         case ex.BooleanType():
             return {"values": [False, True]}
@@ -231,7 +237,7 @@ def _values(kind: ex.Type) -> dict[str, Any]:
 
 
 def _communication(models: Models) -> list[dict[str, Any]]:
-    """What the controller is connected to: topics, services and actions, with the communications that use them."""
+    """Return the topics, services and actions of the controller, with the communications that use them."""
     assert models.rosgraph is not None
     return [
         {

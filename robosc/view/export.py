@@ -1,4 +1,4 @@
-"""The page as files that open without a server."""
+"""Exports the page as files that open without a server."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from robosc.view.page import POLICY, page_files
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-#: What a script can't contain as it is.
+#: Characters that must be escaped in a script.
 _ESCAPED = {ord("<"): "\\u003c", ord("\u2028"): "\\u2028", ord("\u2029"): "\\u2029"}
 
 
 def export(description: Mapping[str, Any], moments: Sequence[Mapping[str, Any]]) -> dict[str, str]:
-    """The files of the page with a robot's description and the moments of a run: texts by their names.
+    """Return the files of the page with a robot's description and the moments of a run: texts by their names.
 
-    Raises PageError where the page has not been built.
+    Raises PageError if the page has not been built.
     """
     files = {name: content.decode() for name, content in page_files().items()}
     data = json.dumps({"description": description, "moments": moments}, ensure_ascii=False).translate(_ESCAPED)
     files["run.js"] = f"globalThis.robosc = {data};\n"
-    # A page from a file may start no worker: the layout is computed in the page itself.
+    # A page from a file must not start a worker, so the page itself computes the layout.
     scripts = (
         '<script src="run.js"></script>\n    <script src="layout.js"></script>\n    <script src="page.js"></script>'
     )

@@ -1,4 +1,4 @@
-"""A robot that is looked at while it runs, by what its node tells."""
+"""Live view of a running robot, from the reports of its node."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ if TYPE_CHECKING:
     from robosc.metamodel import rosgraph
     from robosc.simulation import Simulation
 
-#: So many moments are kept of a robot that runs.
+#: Maximum number of moments that a live view stores.
 KEPT = 20_000
 
 
 class Live(Moments):
-    """The moments of a node that runs; `nodes` are the names of those that may tell of them."""
+    """Moments of a running node; `nodes` are the names of the nodes that may report them."""
 
     def __init__(self, simulation: Simulation, graph: rosgraph.RosGraph, nodes: str, kept: int = KEPT) -> None:
         super().__init__(simulation, graph, kept)
@@ -28,17 +28,17 @@ class Live(Moments):
         self._definition = json.dumps(definition(graph), sort_keys=True)
         self._began: float | None = None
         self._publishers = 0
-        #: What is wrong with what is told, by what tells it.
+        #: Faults of the received texts, by the topic.
         self._faults: dict[str, str] = {}
         self._say()
 
     def heard(self, publishers: int) -> None:
-        """Receives the number of nodes that publish their state; called every now and then."""
+        """Receive the number of nodes that publish their state; called periodically."""
         self._publishers = publishers
         self._say()
 
     def defined(self, text: str) -> None:
-        """Receives the JSON text of a definition: a node has started, or this has begun to listen."""
+        """Receive the JSON text of a definition, when a node or this listener has started."""
         self._faults.clear()
         try:
             if json.dumps(json_value(text), sort_keys=True) != self._definition:
@@ -49,7 +49,7 @@ class Live(Moments):
         self._say()
 
     def told(self, text: str) -> None:
-        """Receives the JSON text of one report on `~/state`."""
+        """Receive the JSON text of one report on `~/state`."""
         try:
             report = json_value(text)
             followed = self._tracker.report(report)

@@ -1,4 +1,4 @@
-"""The moments of a run, as a page is told of them: each says what has changed against the one before."""
+"""Moments of a run as JSON for the page: each has the changes since the one before."""
 
 from __future__ import annotations
 
@@ -24,28 +24,31 @@ if TYPE_CHECKING:
     from robosc.simulation.tracking import Told
 
 
-#: So many answers of `explain` are kept.
+#: Maximum number of cached answers of `explain`.
 _MOST_EXPLAINED = 1000
 
 
 class ActionError(Exception):
-    """An action that can't be done: the message says why."""
+    """An action that is impossible; the message explains why."""
 
 
 class Moments:
-    """The moments of a run: the first is the start, or the oldest that is kept.
+    """Moments of a run: the first is the start, or the oldest that is still stored.
 
-    Each is JSON data: `time` in seconds, `event`, `words`, `data`, `by` and `reason` where it was kept from happening,
-    `transitions` taken as pairs of automaton and transition, and what has changed against the moment before: `state`,
-    `commands` (null: allowed, else `by` and `reason`), `enabled` (of all events), `timers` (in milliseconds). One that
-    is `whole` says all of these.
+    Each is JSON data with `time` in seconds, `event`, `words` and `data`. A blocked event has `by` and `reason`.
+    `transitions` lists the transitions taken, as pairs of automaton and transition. The changes since the moment before
+    are `state`, `commands` (null if allowed, else `by` and `reason`), `enabled` (of all events), and `timers` (in
+    milliseconds). A moment that is `whole` has the complete values of these.
     """
 
-    #: Whether `do` can do anything.
+    #: Whether `do` supports any action.
     acts = False
 
     def __init__(self, simulation: Simulation, graph: rosgraph.RosGraph | None = None, most: int | None = None) -> None:
-        """`graph` says what the node keeps. Of more than `most` moments the older half goes; None: all are kept."""
+        """Start with no moments; beyond `most` of them the older half is dropped (None: no limit).
+
+        `graph` defines the variables that only the node stores.
+        """
         self.simulation = simulation
         self.engine = simulation.engine
         self.events = {event_name(event): event for event in Roles(self.engine.model).events}
@@ -64,30 +67,30 @@ class Moments:
                 self._readers.setdefault(element, []).append(event)
         self._explained: dict[tuple[str, State], dict[str, Any]] = {}
         self._changed = asyncio.Condition()
-        #: Where moments were taken back: how many were left, each time.
+        #: Numbers of moments left after each time that moments were removed from the end.
         self.cuts: list[int] = []
-        #: What the page says of where the moments come from.
+        #: Message of the page about the source of the moments.
         self.status = ""
-        #: The number of the first of `moments`.
+        #: Number of the first of `moments`.
         self.first = 0
         self.moments: list[dict[str, Any]] = []
         self._states: list[State] = []
         self._running: list[Mapping[str, int]] = []
         self._node = Kept(self.engine, graph)
-        #: What the node keeps, at each moment.
+        #: Variables that only the node stores, at each moment.
         self._kept: list[Values] = []
         self._verdicts: dict[str, dict[str, str] | None] = {}
 
     @property
     def length(self) -> int:
-        """How many moments there have been, with those that are not kept any more."""
+        """Number of moments so far, including those that were dropped."""
         return self.first + len(self.moments)
 
     def do(self, action: Any) -> None:
-        """Does what a page asks for. Raises ActionError."""
+        """Perform an action of the page. Raises ActionError."""
         raise ActionError(f"nothing can be done here: {json.dumps(action)}")
 
-    # What happens
+    # Adding and removing moments
 
     def _add(
         self,
@@ -97,7 +100,7 @@ class Moments:
         edges: Iterable[sct.Edge],
         kept: Values,
     ) -> None:
-        """A moment in which the engine is in its present state and timers have so many milliseconds left."""
+        """Add a moment with the present state of the engine; `running` has the milliseconds left of timers."""
         moment: dict[str, Any] = {"time": time, **told}
         if "event" in told:
             moment["transitions"] = [list(self._numbers[edge]) for edge in edges if edge in self._numbers]
@@ -118,11 +121,11 @@ class Moments:
 
     @property
     def _kept_last(self) -> Values:
-        """What the node keeps at the last moment."""
+        """Variables that only the node stores, at the last moment."""
         return self._kept[-1] if self._kept else self._node.initial
 
     def _add_told(self, time: float, running: Mapping[str, int], told: Told) -> None:
-        """A moment of which a node has told."""
+        """Add a moment that a node has reported."""
         said = (
             {"words": "what the node says"}
             if told.event is None
@@ -131,7 +134,7 @@ class Moments:
         self._add(time, running, said, told.edges, self._node.told(self._kept_last, told.variables))
 
     def _changes(self, before: State, now: State) -> dict[str, Any]:
-        """What differs between two states, of which the engine is in the second."""
+        """Return the changes between two states; the engine must be in the second."""
         concerned: dict[str, None] = {}
         state = {}
         for cell, (name, element) in enumerate(now.layout.elements):
@@ -150,7 +153,7 @@ class Moments:
         return {"state": state, "commands": commands, "enabled": enabled}
 
     def _whole(self, running: Mapping[str, int], kept: Values) -> dict[str, Any]:
-        """All that a moment can say of the engine's present state."""
+        """Return the complete values of a moment in the engine's present state."""
         self._look()
         return {
             "whole": True,
@@ -170,14 +173,14 @@ class Moments:
         return {"by": str(by), "reason": self.simulation.reason(event, by) if event in self._commands else ""}
 
     def _cut(self, length: int) -> None:
-        """Takes moments back, until so many are left; the engine is in the state of the last of them."""
+        """Remove moments until `length` are left; the engine must be in the state of the last of them."""
         kept = length - self.first
         del self.moments[kept:], self._states[kept:], self._running[kept:], self._kept[kept:]
         self.cuts.append(length)
         self._look()
 
     def _forget(self, number: int) -> None:
-        """Drops the oldest moments: what is the first then says all."""
+        """Drop the oldest moments, and give the new first one its complete values."""
         now = self.engine.state
         self.engine.state = self._states[number]
         first = self.moments[number] | self._whole(self._running[number], self._kept[number])
@@ -188,13 +191,13 @@ class Moments:
         self.first += number
 
     def said(self, event: str) -> str:
-        """An event in the words of the model."""
+        """Return an event in the words of the model."""
         return words(self.events[event]).replace("`", "")
 
-    # Who looks
+    # Listeners and explanations
 
     async def changed(self, cuts: int, length: int, status: str) -> None:
-        """Waits until there are not so many moments any more, moments were taken back, or the status is another one."""
+        """Wait until moments are added or removed, or the status changes, compared to the arguments."""
 
         def is_other() -> bool:
             return len(self.cuts) != cuts or self.length != length or self.status != status
@@ -203,12 +206,15 @@ class Moments:
             await self._changed.wait_for(is_other)
 
     async def tell(self) -> None:
-        """Lets all know who wait for changes."""
+        """Notify all that wait for changes."""
         async with self._changed:
             self._changed.notify_all()
 
     def explained(self, number: int, event: str) -> dict[str, Any]:
-        """What `explain` says of an event at a moment, in words. Raises ActionError where there is no such."""
+        """Return the explanation of an event at a moment, in words.
+
+        Raises ActionError if there is no such event.
+        """
         if event not in self.events or not self.first <= number < self.length:
             raise ActionError("there is no such event, or moment")
         state = self._states[number - self.first]
@@ -230,6 +236,6 @@ class Moments:
 
 
 def _changed(before: Mapping[str, int], now: Mapping[str, int]) -> dict[str, int | bool]:
-    """What is new or other now; what is no longer there is false."""
+    """Return the new and changed timers; those that have stopped map to False."""
     gone: dict[str, int | bool] = dict.fromkeys((name for name in before if name not in now), False)
     return gone | {name: value for name, value in now.items() if before.get(name) != value}

@@ -1,10 +1,10 @@
-"""The files of the page, as `npm run build` in `web/` leaves them in this package."""
+"""Files of the page, as `npm run build` in `web/` writes them into this package."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-#: Each file of the page, and its type.
+#: Files of the page and their types.
 FILES = {
     "index.html": "text/html; charset=utf-8",
     "page.css": "text/css; charset=utf-8",
@@ -14,7 +14,7 @@ FILES = {
     "LICENSES.txt": "text/plain; charset=utf-8",
 }
 _FOLDER = Path(__file__).with_name("built")
-#: Nothing comes from elsewhere, nothing goes elsewhere, no text of a model can become a script.
+#: The page loads and sends only to its own server, and no text of a model can become a script.
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; worker-src 'self'; connect-src 'self'; img-src 'self';"
     " base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
@@ -26,7 +26,10 @@ class PageError(Exception):
 
 
 def page_files() -> dict[str, bytes]:
-    """The content of each of FILES. Raises PageError where the page has not been built, as in a fresh clone."""
+    """Return the content of each of FILES.
+
+    Raises PageError if the page has not been built, as in a fresh clone.
+    """
     try:
         return {name: (_FOLDER / name).read_bytes() for name in FILES}
     except FileNotFoundError:

@@ -1,4 +1,4 @@
-"""A run that is played: by hand, at random, by a script or a log; or that goes on from one that was recorded."""
+"""A run that is played: by hand, at random, from a script or a log, or as the continuation of a recorded run."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
     from robosc.simulation.replay import Moment
     from robosc.simulation.tracking import Told
 
-#: What an action does to a run, with what it needs.
+#: Names of the actions on a run.
 ACTIONS = ("perform", "wait", "undo", "redo", "random", "restart", "continue")
-#: So many random events one action may ask for.
+#: Maximum number of random events per action.
 _MOST_AT_ONCE = 1000
-#: In seconds.
+#: Maximum waiting time per action, in seconds.
 _LONGEST_WAIT = 3600
 
 
 class Record(Moments):
-    """The moments of a run that actions lengthen. `steps` is what is played, at once; None: nothing."""
+    """Moments of a run that actions extend. `steps` are played at once; None for no steps."""
 
     acts = True
 
@@ -42,12 +42,15 @@ class Record(Moments):
         seed: int = 0,
         recorded: Iterable[tuple[float, Told]] | None = None,
     ) -> None:
-        """`graph` says what the node keeps; what a node has told, with times in seconds, is there before all else."""
+        """Add the recorded reports of a node, with times in seconds, and then play the steps.
+
+        `graph` defines the variables that only the node stores.
+        """
         super().__init__(simulation, graph)
         self._seed = seed
         for time, reported in recorded or ():
             self._add_told(time, {}, reported)
-        #: So many of the moments were recorded, and can't be played again.
+        #: Number of recorded moments, which cannot be played again.
         self._recorded = max(0, len(self.moments) - 1)
         self._graph = graph
         self._replay = Replay(simulation, steps, seed, self._chosen)
@@ -57,7 +60,10 @@ class Record(Moments):
             self._keep(moment)
 
     def do(self, action: Any) -> None:
-        """Does an action: an object with `action`, one of ACTIONS, and what it needs. Raises ActionError, DataError."""
+        """Perform an action, an object with `action` (one of ACTIONS) and its parameters.
+
+        Raises ActionError, DataError.
+        """
         match action:
             case {"action": "perform", "event": str(event), **rest} if event in self.events:
                 self._perform(event, rest.get("inputs"), rest.get("data"), rest.get("kept", []))
@@ -90,9 +96,9 @@ class Record(Moments):
             self._forward(1)
 
     def _perform(self, event: str, inputs: object, data: object, kept: object) -> None:
-        """Lets an event happen, with values of its inputs by their names, or data in the shape of the event log.
+        """Let an event happen, with values of its inputs by name, or with data in the shape of the event log.
 
-        `kept` are pairs of the fields on the way to other data and that data.
+        `kept` lists pairs: the path of fields to data that only the node stores, and that data.
         """
         if isinstance(inputs, dict):
             known = {carried.name for carried in self.events[event].inputs}
@@ -114,7 +120,7 @@ class Record(Moments):
             raise ActionError(f"{self.said(event)}: {self.simulation.reason(event, moment.by)}")
 
     def _chosen(self, random: Random) -> tuple[str, dict[str, Any]] | None:
-        """Any event that can happen, with any data, also of what the node keeps."""
+        """Return a random possible event with random data, including data that only the node stores."""
         chosen = self.simulation.random_event(random)
         if chosen is None or self._graph is None:
             return chosen
@@ -135,7 +141,7 @@ class Record(Moments):
         while self._replay.past and len(self._replay.past) > moment - self._recorded:
             self._replay.back()
         if moment < self._recorded:
-            # What was recorded is not played: from here on it is.
+            # Recorded moments cannot be undone step by step: the run is played from this state on.
             self.engine.state = self._states[moment]
             self._replay = Replay(self.simulation, None, self._seed, self._chosen)
             self._recorded = moment
@@ -171,7 +177,7 @@ def _any(kind: ex.Type, random: Random) -> bool | int | float | str:
 
 
 def _others(kept: object) -> dict[tuple[str, ...], Any]:
-    """Data by the fields on the way to it. Raises ActionError where it is none."""
+    """Return data by its path of fields. Raises ActionError if `kept` is malformed."""
     found: dict[tuple[str, ...], Any] = {}
     for pair in kept if isinstance(kept, list) else [None]:
         match pair:

@@ -1,4 +1,4 @@
-"""Hands what a middleware's threads hear on to the thread that serves the page."""
+"""Passes messages from the threads of a middleware to the thread that serves the page."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Relay:
-    """A listener for a record; it is made in the thread of the event loop, and called from any."""
+    """Listener for a live view; created in the thread of the event loop, and called from any thread."""
 
     def __init__(self, live: Live) -> None:
         self._live = live
@@ -20,15 +20,15 @@ class Relay:
         self._tasks: set[asyncio.Task[None]] = set()
 
     def defined(self, text: str) -> None:
-        """A text on `~/definition`."""
+        """Pass on a text from `~/definition`."""
         self._call(lambda: self._live.defined(text))
 
     def told(self, text: str) -> None:
-        """A text on `~/state`."""
+        """Pass on a text from `~/state`."""
         self._call(lambda: self._live.told(text))
 
     def heard(self, publishers: int) -> None:
-        """How many nodes tell their states."""
+        """Pass on the number of nodes that publish their states."""
         self._call(lambda: self._live.heard(publishers))
 
     def _call(self, take: Callable[[], None]) -> None:

@@ -1,4 +1,4 @@
-"""Serves the page, the robot's description and what happens; takes actions for a simulation."""
+"""Serves the page, the robot's description and its moments, and accepts actions for a simulation."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from robosc.view.moments import Moments
 
 _COOKIE = "robosc-view"
-#: An action says little.
+#: Maximum size of an action in bytes.
 _LONGEST_ACTION = 1 << 20
-#: So many moments go out at once.
+#: Maximum number of moments per message.
 _PORTION = 500
 _HEADERS = {
     "Content-Security-Policy": POLICY,
@@ -42,11 +42,11 @@ _HEADERS = {
 def application(
     shown: Sequence[tuple[Mapping[str, Any], Moments]], hosts: Collection[str], token: str | None = None
 ) -> ASGIApp:
-    """An ASGI application that serves the page with each robot's description and run.
+    """Return an ASGI application that serves the page with each robot's description and run.
 
-    `?robot=1` selects the second robot; without it the first. Without a `token`, requests whose Host header is not in
-    `hosts` get status 421. With one, any host may ask, but only who opened `/?token=…`; others get 403. Raises
-    PageError where the page is not built.
+    `?robot=1` selects the second robot; the default is the first. Without a `token`, requests whose Host header is not
+    in `hosts` get status 421. With a token, any host is accepted, but only browsers that have opened `/?token=…`;
+    others get 403. Raises PageError if the page has not been built.
     """
     answers = _Answers(shown)
     routes = [
@@ -61,7 +61,7 @@ def application(
 
 
 class _Answers:
-    """To each kind of request."""
+    """Answers to each kind of request."""
 
     def __init__(self, shown: Sequence[tuple[Mapping[str, Any], Moments]]) -> None:
         self._files = page_files()
@@ -72,35 +72,35 @@ class _Answers:
         self._records = [record for _, record in shown]
 
     def _robot(self, request: Request) -> int:
-        """The number of the robot that is asked for. Raises ActionError where there is none."""
+        """Return the number of the requested robot. Raises ActionError if there is none."""
         asked = request.query_params.get("robot", "0")
         if asked not in map(str, range(len(self._records))):
             raise ActionError("there is no such robot")
         return int(asked)
 
     async def file(self, request: Request) -> Response:
-        """A file of the page."""
+        """Return a file of the page."""
         name = request.path_params.get("name", "index.html")
         if name not in FILES:
             return PlainTextResponse("there is no such file", 404)
         return Response(self._files[name], media_type=FILES[name])
 
     async def description(self, request: Request) -> Response:
-        """What never changes."""
+        """Return the description of the robot."""
         try:
             return Response(self._descriptions[self._robot(request)], media_type="application/json")
         except ActionError as error:
             return _refused(error, 404)
 
     async def moments(self, request: Request) -> Response:
-        """All that has happened, and what happens from now on."""
+        """Stream all moments so far, and then each new one."""
         try:
             return StreamingResponse(told(self._records[self._robot(request)]), media_type="text/event-stream")
         except ActionError as error:
             return _refused(error, 404)
 
     async def explain(self, request: Request) -> Response:
-        """Why an event can't happen at a moment."""
+        """Explain why an event cannot happen at a moment."""
         try:
             moment, event = int(request.query_params["moment"]), request.query_params["event"]
             record = self._records[self._robot(request)]
@@ -109,7 +109,7 @@ class _Answers:
             return _refused(error, 400)
 
     async def do(self, request: Request) -> Response:
-        """An action; it is JSON, which no form of another site can send."""
+        """Perform an action, which must be JSON, because no form of another site can send that."""
         if request.headers.get("content-type") != "application/json":
             return PlainTextResponse("an action is application/json", 415)
         body = b""
@@ -131,9 +131,10 @@ class _Answers:
 
 
 async def told(record: Moments) -> AsyncIterator[str]:
-    """Moments as server-sent events: `{from, moments, status}`; those from there on replace what was told before.
+    """Yield moments as server-sent events `{from, moments, status}`.
 
-    Where `from` is beyond what was told before, that is no longer kept.
+    They replace earlier moments from the number `from` on. If `from` skips numbers, the moments in between are no
+    longer stored.
     """
     cuts, told, status = len(record.cuts), 0, ""
     while True:
@@ -146,7 +147,10 @@ async def told(record: Moments) -> AsyncIterator[str]:
 
 
 class _Guarded:
-    """Answers only who asks for the right host, and knows the token: no other site's page can ask in a user's name."""
+    """Rejects requests to other hosts or without the token.
+
+    Otherwise pages of other sites could use the server in a user's name.
+    """
 
     def __init__(self, inner: ASGIApp, hosts: Collection[str], token: str | None) -> None:
         self._inner = inner
@@ -179,10 +183,10 @@ class _Guarded:
             return PlainTextResponse("another site's page may not ask", 403)
         if self._token is None:
             return None
-        # Cookies know no ports: each view on a computer has its own name.
+        # Cookies do not distinguish ports, so each view on a computer has its own cookie name.
         cookie = f"{_COOKIE}-{sha256(self._token.encode()).hexdigest()[:12]}"
         if request.url.path == "/" and _same(request.query_params.get("token", ""), self._token):
-            # Lax: a strict one does not come with the redirect after a click on another site. An action needs more.
+            # Lax, because a strict cookie is not sent after a click on another site. Actions have further checks.
             response = RedirectResponse("/", 303)
             response.set_cookie(cookie, self._token, httponly=True, samesite="lax")
             return response

@@ -12,16 +12,19 @@ if TYPE_CHECKING:
 
     from starlette.types import ASGIApp
 
-#: The names by which a browser of this computer asks for it.
+#: Host names by which a browser on this computer reaches the server.
 LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 
 
 def reachable(address: str) -> str:
-    """An address by which others reach what listens on an address: one of this computer where it is any address."""
+    """Return the address by which others reach a listener.
+
+    A listener on all addresses is reached by an address of this computer.
+    """
     family = {"0.0.0.0": socket.AF_INET, "::": socket.AF_INET6}.get(address)  # noqa: S104 - compared only
     if family is None:
         return address
-    # The route to an address for documentation names the network card; nothing is sent.
+    # The route to a documentation address identifies the network interface; no packet is sent.
     elsewhere = "192.0.2.1" if family == socket.AF_INET else "2001:db8::1"
     with socket.socket(family, socket.SOCK_DGRAM) as probe:
         try:
@@ -32,7 +35,7 @@ def reachable(address: str) -> str:
 
 
 def listen(address: str, port: int) -> socket.socket:
-    """A socket that listens; port 0: a free one. Raises OSError."""
+    """Return a listening socket; port 0 selects a free port. Raises OSError."""
     family = socket.AF_INET6 if ":" in address else socket.AF_INET
     made = socket.socket(family, socket.SOCK_STREAM)
     try:
@@ -46,7 +49,7 @@ def listen(address: str, port: int) -> socket.socket:
 
 
 def serve(served: ASGIApp, listening: socket.socket, ready: Callable[[], None]) -> None:
-    """Serves an application until SIGINT or SIGTERM; `ready` is called once it answers."""
+    """Serve an application until SIGINT or SIGTERM; `ready` is called once it accepts connections."""
 
     class _Server(uvicorn.Server):
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:

@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 def format_text(text: Text) -> tuple[str | None, list[Diagnostic]]:
-    """The text of a robot or a library in the canonical layout, and the findings of the rule `syntax`.
+    """Return a robot or library in the canonical layout, and the findings of the rule `syntax`.
 
-    Where there are findings there is no new text. Names are not looked up. The words stay as they are, comments too but
-    for blanks at the ends and beginnings of their lines; what has the canonical layout keeps it.
+    If there are findings, the text is None. Names are not looked up. The words stay the same, and so do the comments,
+    except for blanks at the start and end of their lines. A text in the canonical layout does not change.
     """
     tree = None if too_complex(text.tokens) else parse(text.content, "Base")
     if tree is None or isinstance(tree, Failure):
@@ -36,9 +36,9 @@ def format_text(text: Text) -> tuple[str | None, list[Diagnostic]]:
 
 
 def format_edits(text: Text, start: int = 0, end: int | None = None) -> list[tuple[int, int, str]]:
-    """What to replace (offsets, the end exclusive, and the text to write) for the layout of what is in a range.
+    """Return the edits (start, exclusive end, new text) that format a range of a text.
 
-    Empty where the text has syntax errors, or that layout already.
+    Empty if the text has syntax errors or the range has the canonical layout already.
     """
     formatted, _ = format_text(text)
     if formatted is None:
@@ -53,7 +53,7 @@ def format_edits(text: Text, start: int = 0, end: int | None = None) -> list[tup
 
 
 def _gaps(content: str) -> list[tuple[int, int]]:
-    """What is before, between and behind the words of a text."""
+    """Return the ranges before, between and behind the words of a text."""
     words = list(Tokens(content))
     starts, ends = [word.start for word in words], [word.end for word in words]
     return list(zip([0, *ends], [*starts, len(content)], strict=True))

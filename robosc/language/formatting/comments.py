@@ -1,4 +1,4 @@
-"""The comments of a text, by the word that they stand before."""
+"""Comments of a text, by the word that follows them."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ _COMMENT = re.compile(pattern("Comment"))
 
 @dataclass(frozen=True)
 class Space:
-    """What stands before a word: comments, and how many line breaks before each of them and before the word."""
+    """Comments before a word, and the number of line breaks before each of them and before the word."""
 
     comments: list[Comment] = field(default_factory=list)
     breaks: list[int] = field(default_factory=lambda: [0])
 
     def parted(self) -> tuple[Space, Space]:
-        """The comments up to the first one beside a line break, and all others with their line breaks."""
+        """Split at the first comment beside a line break, which belongs to the second part."""
         count = len(self.comments)
         at = next((index for index in range(count) if self.breaks[index] or self.breaks[index + 1]), count)
         return Space(self.comments[:at], [0] * (at + 1)), Space(self.comments[at:], self.breaks[at:])
 
     def joined(self, other: Space) -> Space:
-        """The comments of both."""
+        """Return the comments of both, in order."""
         if not self.comments:
             return other
         between = max(self.breaks[-1], other.breaks[0])
@@ -39,15 +39,15 @@ class Space:
 
     @property
     def trailing(self) -> int:
-        """How many of the comments stand at the end of the line of the word before."""
+        """Number of comments at the end of the previous word's line."""
         return next((index for index, breaks in enumerate(self.breaks) if breaks), 0)
 
 
 def spaces(text: str, words: Iterable[Node]) -> dict[int, Space]:
-    """The space before each word of a parse tree, by the word's offset, and that before the end of the text.
+    """Return the space before each word of a parse tree and before the end of the text, by offset.
 
-    A comment at the end of a line or in a line of its own that stands before a comma or an opening brace counts as
-    standing behind it, where the comma and the brace are moved to the line before.
+    The layout moves a comma or an opening brace to the end of the previous line. Comments before it that end a line or
+    fill their own line therefore count as standing behind it.
     """
     found: dict[int, Space] = {}
     end, moved = 0, Space()
@@ -63,7 +63,7 @@ def spaces(text: str, words: Iterable[Node]) -> dict[int, Space]:
 
 
 def _space(text: str, start: int, end: int) -> Space:
-    """The space between two offsets; there are line breaks around a text."""
+    """Return the space between two offsets. The start and the end of the text count as line breaks."""
     comments: list[Comment] = []
     breaks: list[int] = []
     for found in _COMMENT.finditer(text, start, end):

@@ -1,6 +1,6 @@
-"""Documents: words with gaps between them that may become line breaks, and how they are laid out in lines.
+"""Documents: words with gaps between them that may become line breaks, and their layout in lines.
 
-What fits into a line stays in it; of what does not, the outer groups break before the inner ones (Wadler, "A prettier
+A group that fits stays in its line. If it does not fit, outer groups break before inner ones (Wadler, "A prettier
 printer", 2003; Lindig, "Strictly pretty", 2000).
 """
 
@@ -10,16 +10,16 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 
-#: Columns of a line of words, and of one step of indentation.
+#: Columns of a line of words, and of one indentation step.
 WIDTH = 100
 INDENTATION = 2
 
-#: What stands in a line right beside what follows, or right behind what is before, whatever gap is between.
+#: Words without a space behind them, and words without a space before them, whatever the gap is.
 _OPENING, _CLOSING = ("(", "["), (")", "]", ",")
 
 
 class Gap(Enum):
-    """What is between two words."""
+    """The gap between two words."""
 
     NONE = "nothing"
     SPACE = "a space"
@@ -35,7 +35,7 @@ _MAYBE = {Gap.SOFT, Gap.BREAK}
 
 @dataclass(frozen=True)
 class Comment:
-    """A comment, and the column in which it began in the source."""
+    """A comment and its start column in the source."""
 
     text: str
     column: int
@@ -43,20 +43,20 @@ class Comment:
 
 @dataclass(frozen=True)
 class Indent:
-    """A document whose line breaks lead to lines that are one step further in."""
+    """A document whose line breaks indent by one more step."""
 
     content: Document
 
 
 @dataclass(frozen=True)
 class Group:
-    """A document whose gaps all break, or none does."""
+    """A document in which all gaps break, or none."""
 
     content: Document
 
     @cached_property
     def breaks(self) -> bool:
-        """Whether there is a line break in it that nothing can avoid."""
+        """Whether the document contains an unconditional line break."""
         return _breaks(self.content)
 
 
@@ -79,7 +79,7 @@ def _breaks(document: Document) -> bool:
 
 
 def render(document: Document) -> str:
-    """The lines of a document, each ended by a line feed."""
+    """Return the lines of a document, each ended by a line feed."""
     lines = _Lines()
     todo: list[tuple[int, bool, Document]] = [(0, False, document)]
     while todo:
@@ -106,7 +106,7 @@ def render(document: Document) -> str:
 
 
 def _fits(room: int, document: Document, following: list[tuple[int, bool, Document]]) -> bool:
-    """Whether a document fits into the room of a line, with what follows up to the next place for a line break."""
+    """Return whether a document, with the text up to the next possible line break, fits into `room` columns."""
     todo: list[tuple[bool, Document]] = [(True, document)]
     rest = ((flat, part) for _, flat, part in reversed(following))
     while room >= 0:
@@ -126,7 +126,10 @@ def _fits(room: int, document: Document, following: list[tuple[int, bool, Docume
 
 
 def _width(part: str | Gap | Comment) -> int:
-    """The columns that a part takes. However long a comment up to the end of its line is, no line break would help."""
+    """Return the columns of a part.
+
+    A comment to the end of its line counts as 0, because no line break could shorten it.
+    """
     match part:
         case Gap():
             return int(part in {Gap.SPACE, Gap.BREAK})
@@ -136,7 +139,10 @@ def _width(part: str | Gap | Comment) -> int:
 
 
 class _Lines:
-    """The lines so far. A gap waits for the word behind it; of several, line breaks outdo spaces, the last counts."""
+    """Lines written so far.
+
+    Gaps are pending until the next word. Line breaks override spaces, and the last line break counts.
+    """
 
     def __init__(self) -> None:
         self._parts: list[str] = []
@@ -147,7 +153,7 @@ class _Lines:
 
     @property
     def column(self) -> int:
-        """Where the next word will begin, counted from 0."""
+        """Start column of the next word, counted from 0."""
         return self._column + self._space if self._indentation is None else self._indentation
 
     def end(self, indentation: int, *, blank: bool = False) -> None:
@@ -172,7 +178,7 @@ class _Lines:
         self._indentation, self._blank, self._space = None, False, False
 
     def add_comment(self, comment: Comment) -> None:
-        """Adds a comment. Its further lines move in or out together with its first one."""
+        """Add a comment and shift its further lines by the same distance as its first line."""
         self.space()
         first, *others = comment.text.split("\n")
         self.add(first.rstrip())
@@ -186,5 +192,5 @@ class _Lines:
         self.space()
 
     def text(self) -> str:
-        """All lines."""
+        """Return all lines."""
         return "".join(self._parts) + "\n"

@@ -1,4 +1,4 @@
-"""The layout of a parse tree: where a line breaks, and where it may."""
+"""Layout of a parse tree: its required and its optional line breaks."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ if TYPE_CHECKING:
 
     from robosc.language.grammar import Node
 
-#: What has items in lines of their own between its braces; what has them in one line where they fit.
+#: Rules whose items take one line each, and rules whose items share a line if they fit.
 _BLOCKS = {"Robot", "Library", "Component", "ComponentBehaviour", "State", "ObjectDataType", "EnumDataType"}
 _BLOCKS |= {"AutomatonRequirement", "RequirementState"}
 _LISTS = {"ObjectValue", "CommunicationTypeSet", "EventSet"}
-#: What belongs to the block around it.
+#: Rules whose parts belong to the block around them.
 _INLINED = {"", "ComponentType", "LocalComponent", "InstantiatedComponent", "ImportedComponent", "Automaton"}
 #: Rules without a space between their words.
 _TIGHT = {"Access", "CommunicationReference", "PropertySegment", "IndexSegment", "IntegerDataType", "Array"}
 _TIGHT |= {"InterfaceTypeReference", "Negation", "UnaryMinus"}
 _CALLS = {"FunctionCall", "Call", "ComplexDataTypeReference", "ArrayLiteral"}
-#: By rule the words that a line may break before, and those that it may break behind.
+#: Words before which, and words behind which, a line may break, by rule.
 _COMMUNICATION: tuple[set[str], set[str]] = (set(), {"with", ","})
 CLAUSES: dict[str, tuple[set[str], set[str]]] = {
     "Interface": ({"use", "from"}, set()),
@@ -53,28 +53,28 @@ CLAUSES: dict[str, tuple[set[str], set[str]]] = {
     "Condition": (set(), {"="}),
     "Function": (set(), {"="}),
 }
-#: Rules whose clauses each find room for themselves: what they begin with may be a list that breaks.
+#: Rules whose clauses break independently, because a clause may begin with a list that breaks.
 _LOOSE = {"NeedsRequirement", "ProvideStatement"}
 
 
 def layout(text: str, tree: Node) -> Document:
-    """The document of a text and its parse tree by the rule `Base`."""
+    """Return the document of a text and its parse tree by the rule `Base`."""
     return _Layout(spaces(text, _words(tree))).file(tree, len(text))
 
 
 class _Layout:
-    """Documents of nodes. A node comes without the space before it, which belongs to what is around it."""
+    """Creates documents of nodes. The space before a node belongs to its parent."""
 
     def __init__(self, spaces: dict[int, Space]) -> None:
         self._spaces = spaces
 
     def file(self, tree: Node, end: int) -> Document:
-        """The document of a whole file."""
+        """Return the document of a whole file."""
         return self._line(tree.position, first=True), self._document(tree), self._line(end)
 
     def _document(self, node: Node) -> Document:
         if _is_leaf(node):
-            # The one word with blanks inside is a number with a sign.
+            # Only a signed number can contain blanks.
             return "".join(node.value.split()) if node.rule_name == "SignedInteger" else str(node.value)
         rule, parts = node.rule_name, list(_parts(node))
         if rule in _BLOCKS:
@@ -96,20 +96,20 @@ class _Layout:
     def _row(
         self, parts: Sequence[Node], gap: Gap = Gap.SPACE, before: Collection[str] = (), after: Collection[str] = ()
     ) -> Document:
-        """Parts in a line, which may break before and after certain words; where it does, it goes on further in."""
+        """Lay out parts in a line that may break before and behind certain words; broken lines are indented."""
         row = [self._document(parts[0])]
         for left, right in pairwise(parts):
             breaks = _is_word(left, after) or _is_word(right, before)
             tight = _is_word(right, {",", ":", "(", ".."}) or _is_word(left, {".."})
             between = Gap.NONE if tight else Gap.BREAK if breaks else gap
             row.append(Indent(self._gap(right, between)))
-            # What has brackets closes them where it began.
+            # A closing bracket aligns with the line of its opening bracket.
             document = self._document(right)
             row.append(document if gap is Gap.NONE or right.rule_name in _LISTS else Indent(document))
         return tuple(row)
 
     def _clauses(self, parts: Sequence[Node], rule: str) -> Document:
-        """A row of rows."""
+        """Lay out a row of rows."""
         starts, ends = CLAUSES[rule]
         clauses = [[parts[0]]]
         for left, right in pairwise(parts):
@@ -124,7 +124,10 @@ class _Layout:
         return tuple(map(Group, found)) if rule in _LOOSE else Group(tuple(found))
 
     def _chain(self, first: Node, others: Sequence[tuple[Node, Node, Node]]) -> Document:
-        """Operands, each but the first with its binary expression and operator: the loosest operators break first."""
+        """Lay out operands so that the loosest operators break first.
+
+        Each operand but the first comes with its binary expression and its operator.
+        """
         loosest = min((_precedence(binary) for binary, _, _ in others), default=0)
         links: list[tuple[Node | None, Node, list[tuple[Node, Node, Node]]]] = [(None, first, [])]
         for binary, operator, operand in others:
@@ -149,7 +152,7 @@ class _Layout:
         return Group((self._document(opening), inside, self._closing(closing, Gap.SOFT)))
 
     def _list(self, parts: Sequence[Node]) -> Document:
-        """Items between braces, in one line or in one each."""
+        """Lay out items between braces, all in one line or each in its own."""
         opening, *items, closing = parts
         if not items:
             return self._empty(opening, closing)
@@ -159,7 +162,7 @@ class _Layout:
         return Group((self._document(opening), Indent(tuple(row)), self._closing(closing, Gap.BREAK)))
 
     def _block(self, parts: Sequence[Node]) -> Document:
-        """What stands before braces, and items between them, each in a line of its own."""
+        """Lay out a header and the items between its braces, each in its own line."""
         at = next((index for index, part in enumerate(parts) if _is_word(part, {"{"})), len(parts))
         header: Document = Group(self._row(parts[:at], after={","}))
         if any(_is_word(part, {"import"}) for part in parts):
@@ -181,12 +184,15 @@ class _Layout:
     # Gaps and the comments in them
 
     def _gap(self, node: Node, gap: Gap) -> Document:
-        """The gap before a node inside of an item, with its comments. Those that had line breaks around keep them."""
+        """Return the gap before a node within an item, with its comments.
+
+        Line breaks around the comments stay.
+        """
         space = self._spaces[node.position]
         return self._comments(space, gap, _gaps(space))
 
     def _line(self, offset: int, *, first: bool = False) -> Document:
-        """The line break before an item, with the comments that stand there. Empty lines stay, one of several."""
+        """Return the line break before an item, with its comments. At most one empty line stays."""
         space = self._spaces[offset]
         gaps = _gaps(space, Gap.BLANK)
         start = gaps[space.trailing] = Gap.BLANK if gaps[space.trailing] is Gap.BLANK and not first else Gap.LINE
@@ -202,7 +208,7 @@ class _Layout:
         return *found, gaps[-1]
 
     def _closing(self, node: Node, gap: Gap, *, first: bool = False) -> Document:
-        """A closing bracket and the gap before it. The comments there belong inside."""
+        """Return a closing bracket and the gap before it. Comments in the gap belong inside the brackets."""
         space = self._spaces[node.position]
         gaps = _gaps(space, Gap.BLANK if gap is Gap.LINE else Gap.LINE)
         if first and gaps[space.trailing] is Gap.BLANK:
@@ -213,12 +219,12 @@ class _Layout:
 
 
 def _gaps(space: Space, empty_line: Gap = Gap.LINE) -> list[Gap]:
-    """The gaps that comments keep."""
+    """Return the gaps before each comment and before the word, from the line breaks of the source."""
     return [empty_line if count > 1 else Gap.LINE if count else Gap.SPACE for count in space.breaks]
 
 
 def _words(node: Node) -> Iterator[Node]:
-    """The words below a node, in the order of the text."""
+    """Yield the words below a node in the order of the text."""
     if _is_leaf(node):
         yield node
     else:
@@ -227,7 +233,7 @@ def _words(node: Node) -> Iterator[Node]:
 
 
 def _parts(node: Node) -> Iterator[Node]:
-    """What a node consists of, without the levels that the layout takes no notice of."""
+    """Yield the children of a node; rules without a layout of their own are replaced by their children."""
     for part in node:
         if not _is_leaf(part) and (part.rule_name in _INLINED or attribute(part) is not None):
             yield from _parts(part)
@@ -240,7 +246,7 @@ def _is_leaf(node: Node) -> bool:
 
 
 def _is_word(node: Node, words: Collection[str]) -> bool:
-    """Whether a node is one of these words or symbols of the language, not a name of the same letters."""
+    """Return whether a node is one of these words or symbols of the language, and not an equal name."""
     return _is_leaf(node) and node.rule_name in {"", "sep"} and node.value in words
 
 
