@@ -51,7 +51,7 @@ ALLOWED = {
     "editor": {"", "language", "checks", "analysis"},
     "runtime": {"engine"},
     "node_tests": {"engine", "runtime", "m2t", "analysis", "synthesis"},
-    "scenario_tests": {"engine", "runtime", "analysis", "node_tests"},
+    "scenario_tests": {"engine", "runtime", "analysis", "node_tests", "simulation"},
     "simulation": {"engine", "runtime", "analysis", "language"},
     "debugger": {"m2t", "analysis", "engine", "simulation"},
     "view": {"m2t", "analysis", "engine", "simulation", "diagrams", "language"},

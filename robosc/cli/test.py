@@ -37,7 +37,7 @@ from robosc.m2t.models import Models, TraceTest
 from robosc.m2t.targets import TARGETS
 from robosc.node_tests.trace_test import player_files
 from robosc.ros_types import RosTypes
-from robosc.scenario_tests import RULE, LiveError, LiveNode, Player, read_scenarios, unknown_events, unknown_fields
+from robosc.scenario_tests import RULE, LiveError, LiveNode, Player, read_scenarios, unfit_data, unknown_events
 from robosc.scenario_tests.conditions import extended
 from robosc.scenario_tests.operations import Operations
 
@@ -107,7 +107,7 @@ def command(
         report.stop_on_errors()
         assert models.rosgraph is not None
         types = RosTypes(paths.interfaces)
-        report.add(unknown_fields(models.rosgraph, types, played))
+        report.add(unfit_data(models.rosgraph, types, played))
         report.stop_on_errors()
         distribution = types.distribution(2)
         player = Player(models.rosgraph, settings, distribution, expressions)

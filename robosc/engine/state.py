@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
@@ -46,7 +47,7 @@ class Domain:
         if self._names is None and isinstance(value, int) and isinstance(value, bool) == self._boolean:
             return self.clamp(value)
         expected = "a boolean" if self._boolean else "an integer" if possible is None else ", ".join(possible)
-        raise ValueError(f"{value!r} is none of the values: {expected}")
+        raise ValueError(f"{json.dumps(value, default=repr)} is none of the values: {expected}")
 
     def clamp(self, value: int) -> int:
         """The nearest value of the domain."""

@@ -21,11 +21,14 @@ if TYPE_CHECKING:
 class RunningGoal:
     """A goal that the robot works on. It goes on where it is to be canceled, until its end is played.
 
-    `is_asked`: a request to cancel it waits for an answer.
+    `is_asked`: a request to cancel it waits for an answer. `sent`: its time in seconds. `accepted`: the time at which
+    the robot showed first that it had accepted the goal, None before that.
     """
 
     handlers: GoalHandlers
     is_asked: bool = False
+    sent: float = 0.0
+    accepted: float | None = None
 
     def cancel(self) -> None:
         """Take the request; the goal has not ended."""
@@ -115,7 +118,7 @@ class Robot:
     def send_goal(self, client: rosgraph.ActionClient, goal: Message, handlers: GoalHandlers) -> RunningGoal:
         """A goal, which is accepted."""
         del goal
-        self.goals[client] = RunningGoal(handlers)
+        self.goals[client] = RunningGoal(handlers, sent=self.now())
         handlers.accepted()
         return self.goals[client]
 

@@ -1,7 +1,7 @@
 """Scenarios: what comes from a robot, step by step, and what is expected of its controller then."""
 
 from robosc.scenario_tests.live import LiveError, LiveNode
-from robosc.scenario_tests.playing import Player, unknown_events, unknown_fields
+from robosc.scenario_tests.playing import Player, unfit_data, unknown_events
 from robosc.scenario_tests.reading import RULE, Scenario, read_scenarios
 
-__all__ = ["RULE", "LiveError", "LiveNode", "Player", "Scenario", "read_scenarios", "unknown_events", "unknown_fields"]
+__all__ = ["RULE", "LiveError", "LiveNode", "Player", "Scenario", "read_scenarios", "unfit_data", "unknown_events"]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.explain import NamingError, event_named
 from robosc.analysis.wording import called, listed, name, words
-from robosc.engine import Blocked
+from robosc.engine import Blocked, Engine
 from robosc.metamodel import rosgraph, sct
 from robosc.node_tests.drive import Drive, DrivenController
 from robosc.node_tests.messages import Record, leaf_values
@@ -18,15 +18,15 @@ from robosc.node_tests.trace_player import Incoming as Reader
 from robosc.node_tests.trace_player import Line as TraceLine
 from robosc.node_tests.trace_player import TraceError, merged, same
 from robosc.node_tests.trace_test import described
-from robosc.ros_types.unknown_fields import unknown_field
 from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.json_text import json_text
 from robosc.runtime.core.port import CancelAnswer, Failure, Outcome
 from robosc.scenario_tests.reading import Allowed, Holds, Incoming, Refusal, Sent, Wait
 from robosc.semantics.evaluation import evaluate
 from robosc.semantics.failures import brings_data, possible_reasons
-from robosc.semantics.messages import holds_objects, sections
+from robosc.semantics.messages import holds_objects
 from robosc.semantics.roles import event_name, plant_of
+from robosc.simulation.data import DataError, EventData
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from robosc.configuration import Configuration
     from robosc.diagnostics import Diagnostic
     from robosc.metamodel import expression as ex
+    from robosc.node_tests.robot import RunningGoal
     from robosc.ros_types import RosDistribution, RosTypes
     from robosc.runtime.core.json_text import Json
     from robosc.runtime.core.port import Client
@@ -93,15 +94,16 @@ def unknown_events(model: sct.SupervisoryControlModel, scenarios: Iterable[Scena
             yield from _impossible(line, event)
 
 
-def unknown_fields(graph: rosgraph.RosGraph, types: RosTypes, scenarios: Iterable[Scenario]) -> Iterator[Diagnostic]:
-    """A finding for each line whose data has a field that its ROS type does not have. Each line names an event."""
-    known = sections(graph)
+def unfit_data(graph: rosgraph.RosGraph, types: RosTypes, scenarios: Iterable[Scenario]) -> Iterator[Diagnostic]:
+    """A finding for each line whose data its event can't come with. Each line names an event that has its reason."""
+    checked = EventData(Engine(graph.model), graph, types)
     for line in (line for scenario in scenarios for line in scenario.steps):
-        section = known.get(event_name(event_named(graph.model, line.event))) if isinstance(line, Incoming) else None
-        if isinstance(line, Incoming) and section is not None:
-            unknown = unknown_field(types.distributions, *section, line.data)
-            if unknown is not None:
-                yield line.fault(unknown[0], f"did you mean `{unknown[1]}`?" if unknown[1] else None)
+        if isinstance(line, Incoming) and line.data is not None:
+            data = {"value": line.data} if line.reason is None else {"value": line.data, "reason": line.reason}
+            try:
+                checked.check(event_name(event_named(graph.model, line.event)), data, is_message=line.is_message)
+            except DataError as error:
+                yield line.fault(str(error), error.hint)
 
 
 def _impossible(line: Incoming, event: sct.Event) -> Iterator[Diagnostic]:
@@ -275,7 +277,13 @@ class Player(Drive):
         self._robot.calls.pop(service)[1].answered(data)
 
     def _feed_back(self, action: rosgraph.ActionClient, data: Any) -> None:
+        self._note_accepted(action)
         self._robot.goals[action].handlers.feedback(data)
+
+    def _note_accepted(self, action: rosgraph.ActionClient) -> None:
+        """Note that the robot shows that it has accepted the goal at hand."""
+        goal = self._robot.goals[action]
+        goal.accepted = self._now if goal.accepted is None else goal.accepted
 
     def _end(self, action: rosgraph.ActionClient, outcome: Outcome, data: Any) -> None:
         self._robot.goals.pop(action).handlers.ended(outcome, data, "")
@@ -299,7 +307,7 @@ class Player(Drive):
         blank = self.incoming[event].message({})
         data, fields = (blank, {}) if line.data is None else self._message(event, line, *others)
         is_read = self._controller.reads([client.response], data)
-        if is_read and line.data is not None and line.reason is not None:
+        if is_read and line.data is not None:
             raise NamingError(f"the node can read this data: it is that of the {words(event)}", "")
 
         def come_in() -> dict[str, Any] | None:
@@ -332,6 +340,10 @@ class Player(Drive):
             hint = f"write `canceled from {self._called(client.canceled.event)}`"
             raise NamingError("the controller cancels this goal itself", hint)
         goal = self._robot.goals[client]
+        self._check_not_accepted(goal, reason)
+        if reason is Failure.UNAVAILABLE and goal.is_asked:
+            hint = f"write `canceled from {self._called(client.canceled.event)}`"
+            raise NamingError("a goal that is canceled before a server is there ends canceled", hint)
 
         def end(result: Any) -> None:
             self._forget(client)
@@ -347,6 +359,20 @@ class Player(Drive):
             self._let_in(lambda: end(None))
         else:
             self._bring(client.error.event, line, end)
+
+    def _check_not_accepted(self, goal: RunningGoal, reason: Failure) -> None:
+        """Raise NamingError where the robot has shown that it accepted the goal, which a reason excludes."""
+        in_time = goal.sent + self.parameters["action_timeout_ms"] / 1000
+        match reason:
+            case Failure.REJECTED | Failure.UNAVAILABLE:
+                is_excluded = goal.accepted is not None
+            case Failure.TIMEOUT:
+                is_excluded = goal.accepted is not None and goal.accepted < in_time
+            case _:
+                is_excluded = False
+        if is_excluded:
+            hint = "an accepted goal fails with `aborted`, `canceled`, `lost` or `unreadable`"
+            raise NamingError(f"the goal has been accepted: it can't fail with `{reason}`", hint)
 
     def _give_up(self, client: Client, reason: Failure, result: Any = None) -> None:
         """Have the node's client of a service or action report a failure."""
@@ -378,6 +404,7 @@ class Player(Drive):
             again = "the node asks again after a pause: write `wait` before this line"
             raise NamingError(f"no request to cancel `{called}` waits for an answer", again)
         goal.is_asked = False
+        self._note_accepted(client)
         self._let_in(lambda: goal.handlers.cancel_answered(CancelAnswer.REFUSED))
 
     def _called(self, event: sct.Event) -> str:

@@ -71,10 +71,13 @@ def data_in_words(text: str, position: int) -> Any:
     if _LITERAL.fullmatch(data):
         return data
     try:
-        return json_value(data)
+        value = json_value(data)
     except JsonError as error:
         hint = error.hint or "data is JSON, or the name of a literal"
         raise StepError(str(error), position + error.position, hint) from None
+    if value is None:
+        raise StepError("`null` is no data", position, "leave out `with null`")
+    return value
 
 
 def _plain(found: re.Match[str]) -> str:

@@ -2,40 +2,40 @@
 
 from __future__ import annotations
 
-import json
+import math
 from collections.abc import Sequence
 from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.engine.state import Domain
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.reflection import tree
-from robosc.ros_types import RosTypes, WireType
+from robosc.ros_types import WireType
 from robosc.ros_types import wire as wire_types
-from robosc.ros_types.unknown_fields import unknown_field
 from robosc.ros_types.wire import Basic
 from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.node_data import NodeData
 from robosc.semantics.communication import happens_anyway
 from robosc.semantics.evaluation import as_double
-from robosc.semantics.failures import UNREADABLE, is_reason, possible_reasons
-from robosc.semantics.messages import is_structured, receptions, sections
+from robosc.semantics.failures import REASON, UNREADABLE, brings_data, is_reason, possible_reasons
+from robosc.semantics.messages import is_structured, receptions, source_of
 from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name, plant_of
 from robosc.semantics.walks import operands
 from robosc.simulation.unreadable import Unreadable, past_end
+from robosc.simulation.wire_fit import DIGITS, WireFit, in_short, place
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from robosc.engine import Engine
     from robosc.engine.state import Value
+    from robosc.ros_types import RosTypes
 
 #: In the place of a value that the JSON text does not give.
 _ABSENT: Any = object()
-#: The index of an element has less.
-_DIGITS = 10
 #: What each basic type is called, what JSON has for it, and its value in ROS without a default.
 _BASIC: Mapping[type[ex.Type], tuple[str, Any, Value | float]] = {
     ex.BooleanType: ("a boolean", bool, False),
@@ -46,7 +46,11 @@ _BASIC: Mapping[type[ex.Type], tuple[str, Any, Value | float]] = {
 
 
 class DataError(Exception):
-    """Data that an event can't come with."""
+    """Data that an event can't come with. `hint`: how to mend it."""
+
+    def __init__(self, message: str, hint: str | None = None) -> None:
+        super().__init__(message)
+        self.hint = hint
 
 
 def data_beside(graph: rosgraph.RosGraph, event: sct.Event) -> dict[tuple[str, ...], ex.Type]:
@@ -86,6 +90,9 @@ def reason_of(event: sct.Event, data: Mapping[str, Any]) -> str | None:
     A service that has answered has an answer that can't be read.
     """
     possible = possible_reasons(event)
+    where = data.get("where")
+    if "reason" not in data and possible and isinstance(where, dict) and REASON in where:
+        data = {"reason": where[REASON]}
     if "reason" not in data:
         is_answered = "value" in data and plant_of(event).kind == sct.PlantKind.service
         return UNREADABLE if possible and is_answered else next(iter(possible), None)
@@ -93,7 +100,7 @@ def reason_of(event: sct.Event, data: Mapping[str, Any]) -> str | None:
     if not possible:
         raise DataError("only the error of a service or an action has a reason")
     if reason not in possible:
-        raise DataError(f"the reason is {json.dumps(reason)}, expected one of {', '.join(sorted(possible))}")
+        raise DataError(f"the reason is {in_short(reason)}, expected one of {', '.join(sorted(possible))}")
     return str(reason)
 
 
@@ -110,7 +117,7 @@ class EventData:
     def __init__(self, engine: Engine, graph: rosgraph.RosGraph | None, types: RosTypes | None = None) -> None:
         """`types`: the definitions of ROS types; None: those of the environment."""
         self._events = {event_name(event): event for plant in engine.model.plants for event in plant.events}
-        self._defaults = None if graph is None else _Defaults(graph, types)
+        self._defaults = None if graph is None else WireFit(graph, types)
         self._node = None if graph is None else _JsonData(graph, engine)
         known = [] if graph is None else receptions(graph)
         self._assignments = {given.input: given for reception in known for given in reception.inputs}
@@ -118,6 +125,9 @@ class EventData:
         clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = []
         clients += [] if graph is None else [*graph.serviceClients, *graph.actionClients]
         self._errors = {event_name(client.response.event): event_name(client.error.event) for client in clients}
+        self._responses = {error: response for response, error in self._errors.items()}
+        #: Whether the event at hand brings no data, so that its data is that of a new message.
+        self._is_new = False
 
     def inputs(self, event: str, data: Mapping[str, Any]) -> dict[str, Value]:
         """Values of the event's inputs by their names. Raises DataError, KeyError for an unknown event."""
@@ -126,6 +136,7 @@ class EventData:
         if unknown:
             raise DataError(f'"{unknown[0]}" is no data of an event: write {{"value": ...}}')
         reason, computed = reason_of(declared, data), _computed(declared, data.get("where", {}))
+        self._is_new = not brings_data(declared, reason)
         if self._node is not None:
             self._node.reason = reason
         if data and not declared.inputs:
@@ -141,11 +152,24 @@ class EventData:
                     told = computed[given.text] if given.text in computed else self._value(event, given, value)
                 found[given.name] = domain.shown(domain.internal(told))
             except ValueError as error:
-                raise DataError(f"{_label(given)}: {error}") from None
+                raise DataError(f"{self._label(given, value)}: {error}") from None
         return found
 
+    def _label(self, given: sct.Input, data: Any = None) -> str:
+        """The text of an input, or its place in the data of its event."""
+        if given.text is not None:
+            return str(given.text)
+        return place(self._path(given) if given in self._assignments else tuple(_names(data, _words(given))))
+
     def unreadable(self, event: str, data: Mapping[str, Any]) -> Unreadable | None:
-        """Why the node can't read this data in the present state; None where it can, as far as the data is given."""
+        """Why the node can't read this data in the present state; None where it can, as far as the data is given.
+
+        The data of an error with the reason `unreadable` is the other way round: why it is no such error.
+        """
+        if event in self._responses and "value" in data and reason_of(self._events[event], data) == UNREADABLE:
+            response = self._responses[event]
+            is_read = self._is_readable(self._receptions[response], data["value"])
+            return Unreadable("the node can read this data", None, response) if is_read else None
         reception = self._receptions.get(event)
         if self._node is None or reception is None or "value" not in data or happens_anyway(reception.event):
             return None
@@ -158,21 +182,80 @@ class EventData:
                 return Unreadable(str(fault), self._errors.get(event))
         return None
 
+    def _is_readable(self, reception: rosgraph.Reception, data: Any) -> bool:
+        """Whether the node can read data in the present state, as far as that does not depend on what it keeps.
+
+        An array that is left out is empty: the log of an answer that can't be read leaves out what is missing.
+        """
+        assert self._node is not None
+        event = event_name(reception.event)
+        try:
+            for reaction in self._node.reactions(reception.event):
+                values = [*reaction.needs, *(assigned.value for assigned in reaction.assignments)]
+                if any(map(_reads_kept, [value for value in (reaction.guard, *values) if value is not None])):
+                    return False
+                guard = reaction.guard
+                if guard is None or self._node.value(guard, self._received(event, whole(data, guard))):
+                    for value in values:
+                        self._node.value(value, self._received(event, whole(data, value)))
+        except (UnreadableError, DataError):
+            return False
+        return True
+
     @staticmethod
     def of_unreadable(data: Mapping[str, Any]) -> dict[str, Any]:
         """Data of the error that happens in place of an answer whose data can't be read."""
         return {"value": data["value"], "reason": UNREADABLE} if "value" in data else {"reason": UNREADABLE}
 
-    def check(self, event: str, data: Mapping[str, Any]) -> None:
-        """Raise DataError where the event can't come with this data; an event that is not known can."""
+    def check(self, event: str, data: Mapping[str, Any], *, is_message: bool = False) -> None:
+        """Raise DataError where the event can't come with this data; an event that is not known can.
+
+        `is_message`: its value has the fields of the ROS message, without names of literals.
+        """
         if event not in self._events:
             return
-        self.inputs(event, data)
-        unknown = None if self._defaults is None else self._defaults.unknown_field(event, data.get("value"))
-        if unknown is not None:
-            raise DataError(unknown)
+        if self._defaults is not None and "value" in data:
+            fault = self._defaults.fault(event, data["value"], is_message=is_message)
+            if fault is not None:
+                raise DataError(*fault)
+        inputs = self.inputs(event, data)
+        if self._defaults is not None:
+            self._check_reason(event, data, inputs)
         if event in self._errors:
             self.inputs(self._errors[event], self.of_unreadable(data))
+
+    def _check_reason(self, event: str, data: Mapping[str, Any], inputs: Mapping[str, Value]) -> None:
+        """Raise DataError where an error that brings no data has other data than the defaults in an event log."""
+        declared = self._events[event]
+        reason = reason_of(declared, data)
+        if brings_data(declared, reason):
+            return
+        assert self._defaults is not None
+        new = self.inputs(event, {"reason": reason})
+        changed = (given for given in declared.inputs if given.name in inputs and inputs[given.name] != new[given.name])
+        parts = [f"`{self._label(given)}` is {in_short(inputs[given.name])}" for given in changed]
+        if "value" in data:
+            set_part = self._defaults.set_part(event, data["value"], partial(self._new_literal, event))
+            parts = [set_part, *parts] if set_part else parts
+        if parts:
+            raise DataError(f"an error with the reason `{reason}` brings no data, but {parts[0]}", "leave it out")
+
+    def _new_literal(self, event: str, conversion: rosgraph.Conversion, path: tuple[str, ...]) -> str:
+        """The literal that a conversion makes of the data at a path in a new message."""
+        assert self._node is not None
+        return str(self._node.literal(conversion, self._received(event, _ABSENT, path)))
+
+    def fitting(self, event: str, values: Mapping[str, Value]) -> dict[str, Value]:
+        """Values of an event's inputs, with others in place of those that its reason does not go with."""
+        declared = self._events[event]
+        reason = next((given.name for given in declared.inputs if is_reason(given)), None)
+        if reason is None:
+            return dict(values)
+        if not brings_data(declared, str(values[reason])):
+            return self.inputs(event, {"reason": values[reason]})
+        if self.unreadable(event, self.shaped(event, values)) is None:
+            return dict(values)
+        return {**values, reason: possible_reasons(declared)[0]}
 
     def shaped(
         self, event: str, values: Mapping[str, Value], others: Mapping[tuple[str, ...], Any] | None = None
@@ -187,7 +270,7 @@ class EventData:
             shown["reason"] = reasons[0]
         if not paths:
             return shown
-        if len(paths) == 1 and len(next(iter(paths))) < 2:
+        if len(paths) == 1 and next(iter(paths)) in ((), ("data",)):  # as in an event log
             return {"value": next(iter(paths.values())), **shown}
         return {"value": nested(paths), **shown}
 
@@ -215,7 +298,8 @@ class EventData:
             return _default(given.type, default)
         conversion = source.conversion
         if found is _ABSENT:
-            return str(conversion.default.name)
+            path = self._path(given)
+            return self._new_literal(event, conversion, path) if self._is_new else str(conversion.default.name)
         if isinstance(found, str) and found in {literal.name for literal in conversion.enumeration.literals}:
             return found
         try:
@@ -225,34 +309,12 @@ class EventData:
             raise DataError(f"expected one of {literals}, or the data to tell it from: {error}") from None
 
 
-class _Defaults:
-    """The values of fields in new messages, by event and path."""
-
-    def __init__(self, graph: rosgraph.RosGraph, types: RosTypes | None) -> None:
-        self._types = types
-        self._sections = sections(graph)
-
-    def unknown_field(self, event: str, value: Any) -> str | None:
-        """The fault of a name in the data of an event that is no field there; None where all are."""
-        if event not in self._sections or not isinstance(value, dict):
-            return None
-        self._types = self._types or RosTypes()
-        unknown = unknown_field(self._types.distributions, *self._sections[event], value)
-        return None if unknown is None else unknown[0] + (f"; did you mean `{unknown[1]}`?" if unknown[1] else "")
-
-    def wire_type(self, event: str, path: tuple[str, ...]) -> WireType | None:
-        """The type of a field, as ROS 2 or else ROS 1 defines it; None where it is unknown."""
-        self._types = self._types or RosTypes()
-        found = (known.reached(*self._sections[event], path) for known in self._types.distributions)
-        return next((reached[0] for reached in found if reached is not None), None)
-
-
 class _Given(NamedTuple):
     """JSON in the place of data from ROS, and where in the data of which event that is."""
 
     value: Any
     path: tuple[str, ...]
-    defaults: _Defaults | None
+    defaults: WireFit | None
     event: str
 
     def below(self, value: Any, step: str) -> _Given:
@@ -262,7 +324,7 @@ class _Given(NamedTuple):
     @property
     def place(self) -> str:
         """Where it is in the script's data."""
-        return "value" + "".join(f"[{step}]" if step.isdigit() else f".{step}" for step in self.path)
+        return place(self.path)
 
     @property
     def default(self) -> wire_types.Value | None:
@@ -295,7 +357,7 @@ class _JsonData(NodeData):
     def _field(self, owner: _Given, name: str) -> _Given:
         value = owner.value
         if value is not _ABSENT and not isinstance(value, dict):
-            raise DataError(f"{owner.place} is {json.dumps(value)}, expected an object with {name}")
+            raise DataError(f"{owner.place} is {in_short(value)}, expected an object with {name}")
         return owner.below(_ABSENT if value is _ABSENT else value.get(name, _ABSENT), name)
 
     def _element(self, array: Any, index: int) -> Any:
@@ -342,9 +404,9 @@ def _elements(array: _Given) -> dict[int, Any]:
         return {}
     if isinstance(data, list):
         return dict(enumerate(data))
-    if isinstance(data, dict) and all(index.isdecimal() and len(index) < _DIGITS for index in data):
+    if isinstance(data, dict) and all(index.isdecimal() and len(index) < DIGITS for index in data):
         return {int(index): element for index, element in data.items()}
-    raise DataError(f"{array.place} is {json.dumps(data)}, expected a list, or an object from index to element")
+    raise DataError(f"{array.place} is {in_short(data)}, expected a list, or an object from index to element")
 
 
 def _basic(given: _Given, kind: ex.Type | None) -> Any:
@@ -353,8 +415,10 @@ def _basic(given: _Given, kind: ex.Type | None) -> Any:
     if data is _ABSENT:
         default = given.default
         return zero if default is None else default
+    if data is None and isinstance(kind, ex.DoubleType):
+        return math.nan  # as an event log has what is no finite number
     if not isinstance(data, plain) or (isinstance(data, bool) and name in {"an integer", "a number"}):
-        raise DataError(f"{given.place} is {json.dumps(data)}, expected {name}")
+        raise DataError(f"{given.place} is {in_short(data)}, expected {name}")
     return as_double(data) if isinstance(kind, ex.DoubleType) else data
 
 
@@ -362,9 +426,18 @@ def _computed(event: sct.Event, where: Any) -> Mapping[str | None, Value]:
     """What a script says of what the node computes of data, by the text of the model. Raises DataError."""
     texts = [given.text for given in event.inputs if given.text is not None]
     if not isinstance(where, dict) or not set(where) <= set(texts):
-        expected = f"the texts {', '.join(map(repr, texts))}" if texts else "no `where`"
-        raise DataError(f'"where" is {json.dumps(where)}, expected an object with {expected}')
+        expected = f"the texts {', '.join(f'`{text}`' for text in texts)}" if texts else "no `where`"
+        raise DataError(f'"where" is {in_short(where)}, expected an object with {expected}')
     return where
+
+
+def _reads_kept(expression: ex.Expression) -> bool:
+    """Whether an expression reads what the node keeps or is set on the robot, which a script does not follow."""
+    return any(
+        isinstance(part, rosgraph.NodeVariableReference)
+        or (isinstance(part, rosgraph.WireAccess) and source_of(part) is not None)
+        for _, part in tree(expression)
+    )
 
 
 def whole(data: Any, read: ex.Expression) -> Any:
@@ -393,7 +466,7 @@ def _reached(data: Any, access: rosgraph.WireAccess) -> Any:
         if reached is _ABSENT:
             return _ABSENT
         if not isinstance(reached, dict):
-            raise DataError(f"{json.dumps(reached)} has no field {_field(step)}")
+            raise DataError(f"{in_short(reached)} has no field {_field(step)}")
         reached = reached.get(_field(step), _ABSENT)
     return reached
 
@@ -404,23 +477,24 @@ def _field(step: rosgraph.WireStep) -> str:
 
 
 def _fields(data: Any, words: list[str]) -> Any:
-    """The value of an input whose name joins the names of fields; names of fields may have `_` in them, too."""
+    """The value of an input whose name joins the names of fields."""
+    for name in _names(data, words):
+        data = data.get(name, _ABSENT) if isinstance(data, dict) else _ABSENT
+    return data
+
+
+def _names(data: Any, words: list[str]) -> list[str]:
+    """The fields whose names are joined by `_` to these words; names of fields may have `_` in them, too."""
     if not words:
-        return data
-    if isinstance(data, dict):
-        for length in range(1, len(words) + 1):
-            name = "_".join(words[:length])
-            if name in data:
-                return _fields(data[name], words[length:])
-    return _ABSENT
+        return []
+    joined = ["_".join(words[:length]) for length in range(1, len(words) + 1)]
+    name = next((name for name in joined if isinstance(data, dict) and name in data), words[0])
+    rest = words[name.count("_") + 1 :]
+    return [name, *_names(data.get(name) if isinstance(data, dict) else None, rest)]
 
 
 def _words(given: sct.Input) -> list[str]:
     return str(given.name).split("_")[2:]
-
-
-def _label(given: sct.Input) -> str:
-    return given.text or ".".join(["value", *_words(given)])
 
 
 def _default(kind: ex.Type, value: Any = 0) -> Value:

@@ -134,6 +134,7 @@ class Replay:
 
     def inject(self, event: str, data: Mapping[str, Any]) -> Moment:
         """Lets an event happen that the script does not name, if it can; else nothing changes. Raises DataError."""
+        self.simulation.data.check(event, data)
         here = self._here
         moment = self._perform(event, data)
         if not moment.happened:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -82,7 +83,7 @@ def unfit_data(file: str, steps: Iterable[Step], data: EventData) -> Iterator[Di
             data.check(step.event, step.data)
         except DataError as error:
             span = Span(step.line, 1, step.line, 1)
-            yield Diagnostic(file, span, Severity.ERROR, RULE, f"{step.event}: {error}")
+            yield Diagnostic(file, span, Severity.ERROR, RULE, f"{step.event}: {error}", error.hint)
 
 
 def spoken(model: sct.SupervisoryControlModel, text: str) -> tuple[str, dict[str, Any]] | None:
@@ -132,8 +133,8 @@ class _Line:
                 self._fault(self._start, 'expected an object like {"event": "...", "data": {"value": ...}}')
                 return None
             for key in (key for key in _OF_DATA if key in logged):
-                self._fault(self._line.find(f'"{key}"'), f"`{key}` is part of the data", 'write it inside of `"data"`')
-            known = self._known(name, self._line.find(name))
+                self._fault(self._place(f'"{key}"'), f"`{key}` is part of the data", 'write it inside of `"data"`')
+            known = self._known(name, self._place(json.dumps(name)[1:-1], name, '"event"'))
             return (
                 self._wait(str(data.get("seconds", "")))
                 if known and name == WAIT
@@ -150,6 +151,10 @@ class _Line:
             return self._wait(rest)
         data = self._json(len(self._line) - len(rest.lstrip())) if rest.strip() else {}
         return Step(self._number, name, data) if known and data is not None else None
+
+    def _place(self, *texts: str) -> int:
+        """The column of the first of some texts that the line has, from 0; its start where it has none."""
+        return next((self._line.index(text) for text in texts if text in self._line), self._start)
 
     def _in_words(self, model: sct.SupervisoryControlModel, word: str) -> Step | None:
         try:

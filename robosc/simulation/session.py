@@ -94,9 +94,10 @@ class Session:
 
     def _perform(self, event: str, data: dict[str, object]) -> str:
         try:
+            self._simulation.data.check(event, data)
             happened = self._simulation.perform(event, data)
         except DataError as error:
-            return f"{event}: {error}"
+            return f"{event}: {error}{f' ({error.hint})' if error.hint else ''}"
         if happened.by is not None:
             return self._reason(event, happened.by)
         if event == REFUSE:

@@ -133,7 +133,7 @@ class Simulation:
             return None
         event = random.choice(enabled)
         values = {given.name: _any(given.type, random) for given in self._inputs[event]}
-        return event, self.data.shaped(event, values)
+        return event, self.data.shaped(event, self.data.fitting(event, values))
 
     def random_step(self, random: Random) -> Happened | None:
         """Lets one of the enabled events happen, with random data; None where none is enabled."""
@@ -143,7 +143,7 @@ class Simulation:
     def reason(self, event: str, by: Blocked | Unreadable) -> str:
         """Why an event can't happen in the present state, in words; `by` is what keeps it from happening."""
         if isinstance(by, Unreadable):
-            return f"{by.why}, so it counts as {by.error or 'not received'}"
+            return f"{by.why}, so it counts as {by.error or by.response or 'not received'}"
         if event == REFUSE:
             return "its goal is not being canceled"
         if by is Blocked.PLANT:

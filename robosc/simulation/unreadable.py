@@ -23,10 +23,14 @@ _UNKNOWN: Any = object()
 
 @dataclass(frozen=True)
 class Unreadable:
-    """Data that can't be read: `why`, and the `error` event that happens instead; None: it counts as not received."""
+    """Data that can't be read: `why`, and the `error` event that happens instead; None: it counts as not received.
+
+    Or data of an error that can be read: then it is that of a `response`.
+    """
 
     why: str
     error: str | None
+    response: str | None = None
 
     def __str__(self) -> str:
         return "data"

@@ -6,6 +6,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import expression as ex
+from robosc.semantics.failures import brings_data
 from robosc.simulation.data import data_beside
 from robosc.simulation.replay import Replay
 from robosc.simulation.script import REFUSE, WAIT
@@ -128,6 +129,8 @@ class Record(Moments):
         beside = data_beside(self._graph, self.events[event])
         others = {path: _any(kind, random) for path, kind in beside.items()}
         inputs = self.simulation.data.inputs(event, data)
+        if not brings_data(self.events[event], data.get("reason")):
+            return event, data
         return event, self.simulation.data.shaped(event, inputs, others) if others else data
 
     def _forward(self, number: int) -> None:

@@ -264,7 +264,7 @@ def test_the_debug_console(session: Client, yard: Path) -> None:
     refusals = {
         "open": "request to `Gate.open` can't happen: the robot is not ready for it",
         "seen {": "the data can't be read: not JSON",
-        'seen "many"': "value: 'many' is none of the values: an integer",
+        'seen "many"': 'value is "many", expected an integer',
         "opne": "there is no event `opne`; did you mean `open`?",
         "wait long": "`wait` needs a number of seconds",
         "why": "there is no event ``",

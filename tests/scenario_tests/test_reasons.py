@@ -159,6 +159,22 @@ def test_a_late_answer_after_a_lost_goal_changes_nothing() -> None:
         ("error from lift because timeout with 3", "an error with the reason `timeout` brings no data", "leave out"),
         ("refuse cancel of lift", "there is no event `lift.canceled`", ""),
         ("error from go because", "this is neither a step nor an expectation", ""),
+        ('error from go with {"code": "x"}', 'value.code is "x", expected an integer', ""),
+        ('error from go because aborted with {"code": "8"}', 'value.code is "8", expected an integer', ""),
+        ('error from go with {"code": 8.5}', "value.code is 8.5, expected an integer", ""),
+        ("error from go because aborted with 5", "value is 5, expected an object", ""),
+        (
+            'error from go with {"path": 7}',
+            "value.path is 7, expected a list, or an object from index to element",
+            "",
+        ),
+        ('error from go with {"path": ["x"]}', 'value.path[0] is "x", expected a number', ""),
+        ('error from go with message {"rest": "x"}', 'value.rest is "x", expected a number', ""),
+        ('canceled from go with "boo"', 'value is "boo", expected an integer', ""),
+        ('error from lift with {"heights": [true]}', "value.heights[0] is true, expected a number", ""),
+        ('stop with "false"', 'value is "false", expected a boolean', ""),
+        ("stop with 0.5", "value is 0.5, expected a boolean", ""),
+        ("stop with null", "`null` is no data", "leave out `with null`"),
     ],
 )
 def test_steps_that_cannot_be(step: str, message: str, hint: str) -> None:
@@ -170,8 +186,50 @@ def test_steps_that_cannot_be(step: str, message: str, hint: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("steps", "message"),
+    [
+        ("feedback from go\n  error from go because rejected", "the goal has been accepted: it can't fail with `rej"),
+        ("feedback from go\n  wait 10 s\n  error from go because unavailable", "the goal has been accepted"),
+        ("feedback from go\n  wait 10 s\n  error from go because timeout", "the goal has been accepted"),
+        # It was accepted after the time for that was over.
+        ("wait 10 s\n  feedback from go\n  error from go because timeout", None),
+        ("wait 10 s\n  feedback from go\n  error from go because rejected", "the goal has been accepted"),
+        ("stop with true\n  refuse cancel of go\n  error from go because rejected", "the goal has been accepted"),
+        ("stop with true\n  refuse cancel of go\n  error from go because timeout", "the goal has been accepted"),
+        ("stop with true\n  error from go because rejected", None),
+        ("stop with true\n  error from go because timeout", None),
+        ("stop with true\n  error from go because unavailable", "a goal that is canceled before a server is there"),
+        ("feedback from go\n  error from go because aborted", None),
+        ("feedback from go\n  error from go because lost", None),
+    ],
+)
+def test_an_accepted_goal(steps: str, message: str | None) -> None:
+    """A goal is accepted at once, unless the first that a scenario has of it is that it is not."""
+    found = findings(f'scenario "one"\n  {steps}\n  expect !Base.going and !Base.stopping\n')
+    assert [line for line, _, _ in found] == ([2 + steps.count("\n")] if message else [])
+    assert not message or message in found[0][1]
+
+
+def test_a_second_goal_is_accepted_anew() -> None:
+    model = Path("crane.rscd")
+    text = (
+        model.read_text()
+        .replace("error goto unknown\n", "error goto idle\n")
+        .replace("on response from go goto low", "on response from go goto idle")
+    )
+    model.write_text(text)
+    steps = 'feedback from go\n  response from go with {"path": [1.0]}\n  wait 100 ms\n  expect Base.going\n'
+    assert findings(f'scenario "one"\n  {steps}  error from go because rejected\n  expect Base.low\n') == []
+
+
+@pytest.mark.parametrize(
     ("steps", "message", "hint"),
     [
+        (
+            'stop with true\n  canceled from go with {"code": 3}\n  error from lift with {"heights": [0.0, 1.0]}',
+            "the node can read this data: it is that of the response from `Base.lift`",
+            "",
+        ),
         (
             'error from go because unreadable with {"path": [1.0]}',
             "the node can read this data: it is that of the response from `Base.go`",

@@ -57,7 +57,9 @@ CALLED = (PRESSED, "service_lift.c_trigger")
     [
         ("action_go.u_error", "low", "aborted"),
         ('action_go.u_error {"reason": "rejected"}', "low", "rejected"),
-        ('action_go.u_error {"value": {"rest": 2.0}, "reason": "lost"}', "unknown", "lost"),
+        ('action_go.u_error {"value": {"code": 0, "rest": 0.0}, "reason": "lost"}', "unknown", "lost"),
+        ('action_go.u_error {"value": {"path": []}, "reason": "lost"}', "unknown", "lost"),
+        ('action_go.u_error {"where": {"value.path[1] > 0.5": false}, "reason": "lost"}', "unknown", "lost"),
         ('action_go.u_error {"where": {"error": "timeout"}}', "low", "timeout"),
         ('action_go.u_error {"where": {"error": "timeout"}, "reason": "rejected"}', "low", "rejected"),
         ("error from go", "low", "aborted"),
@@ -128,6 +130,88 @@ def test_a_reason_that_an_event_cannot_have(line: str, possible: tuple[str, ...]
 def test_steps_that_cannot_be_read(line: str, fault: str) -> None:
     (found,) = faults(line)
     assert fault in found
+
+
+@pytest.mark.parametrize(
+    ("data", "fault"),
+    [
+        ('{"value": {"rest": 2.0}, "reason": "lost"}', "but value.rest is 2.0"),
+        ('{"value": {"path": [0.0, 3.0]}, "reason": "lost"}', "but value.path has elements"),
+        ('{"where": {"value.path[1] > 0.5": true}, "reason": "lost"}', "but `value.path[1] > 0.5` is true"),
+        ('{"where": {"value.path[1] > 0.5": true, "error": "lost"}}', "but `value.path[1] > 0.5` is true"),
+        ('{"value": {"code": 8}, "reason": "rejected"}', "but value.code is 8"),
+        ('{"value": 3, "reason": "lost"}', "value is 3, expected an object"),
+    ],
+)
+def test_data_of_an_error_that_brings_none(data: str, fault: str) -> None:
+    """`lost`, `rejected` and `unavailable` come with the data of a new result at most, as logs have it."""
+    (found,) = faults(STARTED, f"action_go.u_error {data}")
+    assert fault in found
+
+
+def test_a_literal_of_an_error_that_brings_no_data(tmp_path: Path) -> None:
+    """A node makes it of a new result, as its log shows."""
+    model = tmp_path / "go.rscd"
+    model.write_text(GO)
+    line = '{"event": "action_go.u_error", "data": {"value": {"mode": "%s"}, "reason": "lost"}}'
+    for data, state in [("", "off"), (line % "zero", "off"), (line % "positive", None)]:
+        lines = f"{STARTED}\n{data or 'error from go because lost'}"
+        done = CliRunner().invoke(main, ["simulate", str(model), "--script", "-"], input=lines, catch_exceptions=False)
+        assert done.exit_code == (state is None), done.stderr
+        if state is None:
+            assert 'brings no data, but value.mode is "positive"' in done.stderr
+        else:
+            assert json.loads(done.stdout.splitlines()[-1])["state"]["component_Base"] == state
+
+
+GO = """robot Go {
+  interface going use Go from go_msgs
+  datatype enum Mode from integer to { value = 0 -> zero default -> positive }
+  datatype object Done { mode: Mode }
+  component Base {
+    action go with identifier: "/go", request: none, response: Done, feedback: none links going
+    behaviour {
+      initial marked state idle { on request to go goto going }
+      state going {
+        on cancel from go goto going
+        on response from go goto idle
+        on canceled from go goto idle
+        on error from go if value.mode = zero goto off
+        on error from go goto other
+      }
+      marked state off {}
+      marked state other {}
+    }
+  }
+}"""
+
+
+@pytest.mark.parametrize("loop", [(), ("--loop",)])
+@pytest.mark.parametrize(
+    ("data", "by"),
+    [
+        ('{"path": [1.0]}', "data"),
+        ('{"path": {"0": 1.0}}', "data"),
+        ('{"path": []}', None),
+        ('{"code": 5}', None),
+    ],
+)
+def test_an_error_that_can_be_read(data: str, by: str | None, loop: tuple[str, ...]) -> None:
+    """The response from `go` reads `value.path[0]`."""
+    start = "tick" if loop else STARTED
+    answer = play(start, f"error from go because unreadable with {data}", options=loop)[-1]
+    assert (answer["accepted"], answer["by"]) == (by is None, by)
+    assert answer["state"]["component_Base"] == ("going" if by else "low")
+
+
+def test_an_answer_that_can_be_read_by_hand(crane: Any) -> None:
+    session = Session(Simulation(crane.model, crane), seed=0)
+    session.do("request to go")
+    told = session.do('error from go because unreadable with {"path": [1.0]}')
+    assert told == "action_go.u_error: the node can read this data, so it counts as action_go.u_response"
+    told = session.do('action_go.u_error {"value": {"code": "x"}}')
+    assert told == 'action_go.u_error: value.code is "x", expected an integer'
+    assert session.do("error from go with null") == "`null` is no data (leave out `with null`)"
 
 
 def test_the_place_of_data_that_is_no_json() -> None:
@@ -250,6 +334,19 @@ def test_random_events_have_reasons_and_can_be_played(crane: Any) -> None:
         while simulation.undo():
             pass
     assert reasons == {"action_go.u_error": set(ACTION), "service_lift.u_error": set(SERVICE)}
+
+
+def test_random_events_are_a_script(tmp_path: Path) -> None:
+    """Each of them can happen, also an error whose input is one of several fields that the model reads."""
+    model = tmp_path / "crane.rscd"
+    # The response can always be read, so that no error is `unreadable`.
+    model.write_text(MODEL.read_text().replace("        on response from go if value.path[0] > 0.0 goto idle\n", ""))
+    for seed in range(6):
+        command = ["simulate", str(model), "--random", "60", "--seed", str(seed)]
+        lines = CliRunner().invoke(main, command, catch_exceptions=False).stdout
+        done = CliRunner().invoke(main, ["simulate", str(model), "--script", "-"], input=lines, catch_exceptions=False)
+        assert done.exit_code == 0, done.stderr
+        assert all(json.loads(line)["accepted"] for line in done.stdout.splitlines())
 
 
 def test_without_a_graph_there_are_reasons(crane: Any) -> None:

@@ -132,23 +132,23 @@ def test_all_faults_are_found_before_anything_is_played() -> None:
 @pytest.mark.parametrize(
     ("value", "complaint"),
     [
-        (3, "value is 3, expected an object with size"),
-        ({"size": 1}, "value.size is 1, expected an object with rows"),
+        (3, "value is 3, expected full, partly, or an object"),
+        ({"size": 1}, "value.size is 1, expected an object"),
         ({"size": {"rows": 1}}, "value.size.rows is 1, expected a list, or an object from index to element"),
         ({"size": {"rows": [0, "zzz"]}}, 'value.size.rows[1] is "zzz", expected an integer'),
         ({"size": {"rows": [0, 1.5]}}, "value.size.rows[1] is 1.5, expected an integer"),
-        ("zzz", 'value is "zzz", expected an object with size'),
+        ("zzz", 'value is "zzz", expected full, partly, or an object'),
     ],
 )
 def test_data_that_tells_no_literal(value: object, complaint: str) -> None:
     (found,) = faults(f"message_filling.u_response {json.dumps({'value': value})}")
-    assert found.endswith(f" expected one of full, partly, or the data to tell it from: {complaint} [script]")
+    assert found.endswith(f"message_filling.u_response: {complaint} [script]")
 
 
 @pytest.mark.parametrize(
     ("value", "fault"),
     [
-        ({"range": [1.0]}, "sensor_msgs/LaserScan has no field `range`; did you mean `ranges`?"),
+        ({"range": [1.0]}, "sensor_msgs/LaserScan has no field `range`"),
         ({"header": {"id": "a"}, "ranges": {"0": 1.0}}, "std_msgs/Header has no field `id` "),
         ({"header": {"stamp": {"nsec": 3}}}, None),
         ({"header": {"stamp": {"sec": 3}}, "ranges": [1.0]}, None),
@@ -161,6 +161,80 @@ def test_a_misspelt_field(value: object, fault: str | None) -> None:
     done = simulate("--script", "-", lines=event, model=model)
     assert done.exit_code == (fault is not None), done.stderr
     assert fault is None or fault in done.stderr
+    assert ("hint: did you mean `ranges`?" in done.stderr) is ("range" in value)
+
+
+DATA = """robot Data {
+  datatype object Sent { error_code: integer(0..3) left: boolean }
+  interface sent use Sent from data_msgs
+  component Base {
+    outgoing message level with type: integer(0..10)
+    outgoing message sent with identifier: "/sent", type: Sent links sent
+    outgoing message fix with type: sensor_msgs/NavSatFix
+    outgoing message speed with type: double
+    behaviour {
+      variable code: integer(0..3)
+      variable altitude: double
+      initial marked state low {
+        on response from level if value > 7 goto high
+        on response from sent if value.left do code := value.error_code
+        on response from fix do altitude := value.altitude
+        on response from speed if value > 0.5 goto high
+      }
+      marked state high {}
+    }
+  }
+}"""
+
+
+@pytest.mark.parametrize(
+    ("line", "fault"),
+    [
+        ("level with 9", None),
+        ("level with 32767", None),
+        ("level with 32768", "value is 32768, expected an integer from -32768 to 32767 (int16)"),
+        ("level with 9.5", "value is 9.5, expected an integer"),
+        ("level with true", "value is true, expected an integer"),
+        ('level with {"data": "x"}', 'value.data is "x", expected an integer'),
+        ('sent with {"error_code": 9}', None),
+        ('sent with {"error_code": "x"}', 'value.error_code is "x", expected an integer'),
+        ('sent with {"error_code": 1e3}', "value.error_code is 1000.0, expected an integer"),
+        (f'sent with {{"error_code": {2**64}}}', f"value.error_code is {2**64}, expected an integer from"),
+        ('sent with {"left": 1}', "value.left is 1, expected a boolean"),
+        ("sent with 5", "value is 5, expected an object"),
+        ('fix with {"altitude": "high"}', 'value.altitude is "high", expected a number'),
+        # The model does not read these.
+        ('fix with {"status": {"status": 127}, "position_covariance": [1, 2]}', None),
+        ('fix with {"status": {"status": 128}}', "value.status.status is 128, expected an integer from -128 to 127"),
+        ('fix with {"status": 1}', "value.status is 1, expected an object"),
+        ('fix with {"position_covariance": 1}', "value.position_covariance is 1, expected a list, or an object"),
+        (
+            'fix with {"position_covariance": {"9": 0.5}}',
+            'value.position_covariance is {"9": 0.5}, expected at most 9 elements',
+        ),
+        ('fix with {"position_covariance": [0.5, "x"]}', 'value.position_covariance[1] is "x", expected a number'),
+        # Logs have it for what is no finite number.
+        ('speed with {"data": null}', None),
+    ],
+)
+@pytest.mark.parametrize("command", ["simulate", "test"])
+def test_data_of_another_type(tmp_path: Path, command: str, line: str, fault: str | None) -> None:
+    """Scripts and scenarios take the same data."""
+    model, text = tmp_path / "data.rscd", tmp_path / "text"
+    model.write_text(DATA)
+    steps = f"response from {line}\n"
+    text.write_text(steps if command == "simulate" else f'scenario "one"\n{steps}  expect !Base.high or Base.high\n')
+    script = ["--script"] if command == "simulate" else []
+    done = CliRunner().invoke(main, [command, str(model), *script, str(text)], catch_exceptions=False)
+    assert done.exit_code == (fault is not None), done.output
+    assert fault is None or fault in done.output
+
+
+def test_an_event_with_a_character_that_json_escapes() -> None:
+    (found,) = faults(r'{"event": "message_level.u_response\u0000"}')
+    assert found.startswith("<stdin>:1:12: error: ")
+    (found,) = faults(r'{"event": "\u006dessage_levle.u_response"}')
+    assert found.startswith("<stdin>:1:2: error: ")
 
 
 def test_data_of_an_enum_that_reads_none(tmp_path: Path) -> None:

@@ -116,7 +116,7 @@ def test_a_script_is_played_with_what_it_asks_in_vain() -> None:
 
 def test_reasons_of_errors_and_refused_cancels() -> None:
     text = (Path(__file__).parents[1] / "simulation" / "crane.rscd").read_text()
-    lines = ["request to go", "refuse cancel of go", 'error from go because lost with {"rest": 2.5}']
+    lines = ["request to go", "refuse cancel of go", 'error from go because aborted with {"path": [0.0, 0.25, 2.5]}']
     description, _, simulation = record(text)
     steps, findings = read_script("", "\n".join(lines), simulation.engine.events, model=simulation.engine.model)
     assert findings == []
@@ -127,7 +127,12 @@ def test_reasons_of_errors_and_refused_cancels() -> None:
         ("error from Base.go", None),
     ]
     assert shown.moments[2]["reason"] == "its goal is not being canceled"
-    assert shown.moments[3]["state"] == {"action_go": "error", "component_Base": "unknown", "Base.rest": 2.5}
+    assert shown.moments[3]["state"] == {
+        "action_go": "error",
+        "component_Base": "low",
+        "Base.why": "aborted",
+        "Base.rest": 2.5,
+    }
     # By hand there are the reasons that the service can have, and what is shown of one is its reason.
     inputs = {event: about["inputs"] for event, about in description["events"].items()}  # type: ignore[attr-defined]
     assert inputs["service_lift.u_error"] == [
