@@ -108,7 +108,7 @@ def load(
             raise ModelError(reading.findings)
         base = reading.base
     if not isinstance(base, robosc.Robot):
-        raise ValueError(f"{path} holds a {type(base).__name__}, not a Robot")  # noqa: TRY004 # the file is wrong
+        raise ValueError(f"{path} holds a {type(base).__name__}, not a Robot")  # noqa: TRY004  # the file is wrong
     return base
 
 

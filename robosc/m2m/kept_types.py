@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from robosc.m2m.declarations import Declarations
     from robosc.ros_types import Fields, RosDistribution, RosTypes, WireType
 
-#: Maximum number of objects and values in an object. The log omits larger objects, which nobody could read.
+#: Maximum number of objects and values in an object. Larger objects get no fields: their log would be unreadable.
 MOST_VALUES = 1000
 
 #: Package of `Time` and `Duration`.

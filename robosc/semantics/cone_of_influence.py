@@ -43,7 +43,7 @@ class Assigned:
 class Reason:
     """The place that makes a variable or an input necessary: the access, its instance (None: the robot), its use.
 
-    `variable` is the variable that the access computes. It is None if the supervisor itself evaluates the expression.
+    `variable` is the variable that is computed from the access. It is None if the supervisor evaluates the expression.
     """
 
     access: robosc.Access | robosc.ErrorReason

@@ -196,8 +196,7 @@ def _saturated(value: Linear, low: int, high: int, origin: ex.Expression) -> tup
         return ex.IntegerLiteral(value=high if least >= high else low), Linear(0)
     kept, subtracted = value.sides()
     result = _written(kept, origin)
-    # Compares the value with each bound. A bound is reached if the kept terms equal the bound plus the subtracted
-    # terms.
+    # The first term is limited to the bounds, each increased by the subtracted terms.
     for outside, operator, bound in ((least < low, ex.LessThan, low), (greatest > high, ex.GreaterThan, high)):
         if outside:
             result = ex.Conditional(

@@ -32,8 +32,8 @@ _COMMUTATIVE = (ex.Equation, ex.Inequation, ex.Addition, ex.Multiplication, engi
 class Term:
     """A normalized expression: the class of its operator or reference, its operands, and the content of a leaf.
 
-    `values` is the interval of its values. `cells` are the variables and inputs that it depends on; if there are more
-    than one, the set is incomplete.
+    `values` is the interval of its values. `cells` are the variables and inputs that it depends on. If
+    there are several, the set may be incomplete.
     """
 
     __slots__ = ("cells", "leaf", "operands", "operator", "sort", "values")
