@@ -1,6 +1,6 @@
-"""RoboSC: write what a robot may do; get a controller that provably does only that.
+"""RoboSC: describe what a robot may do, and get a controller that provably does only that.
 
-From text to generated code, step by step, as the command line does it:
+From text to generated code, step by step, as on the command line:
 
     robot = robosc.load("line_follower.rscd")
     findings = robosc.check(robot)
@@ -9,7 +9,7 @@ From text to generated code, step by step, as the command line does it:
     models = robosc.Models(model, robosc.to_rosgraph(robot), robot)
     files = robosc.generate("ros2", models)
 
-Each function loads what it needs when it is called, so that `import robosc` costs next to nothing.
+Each function imports its modules on its first call, so that `import robosc` is fast.
 """
 
 from __future__ import annotations
@@ -75,16 +75,16 @@ def load(
     text: str | None = None,
     documents: Mapping[str | PathLike[str], str] | None = None,
 ) -> Robot:
-    """The robot in a `.rscd` file, or in an `.xmi` file of the robosc metamodel, its names resolved.
+    """Load the robot in a `.rscd` file, or in an `.xmi` file of the robosc metamodel, with resolved names.
 
-    A `text` is read instead of what is in the file, which need not be there; without a path, as if it stood in the
-    working folder. `documents` are texts that stand in place of other `.rscd` files, by their paths.
+    If `text` is given, it replaces the content of the file, which need not exist. Without a path, the text counts as a
+    file in the working folder. `documents` are texts that replace other `.rscd` files, by their paths.
 
-    Libraries are looked for beside the file, then in `library_paths`, in ROBOSC_PATH and in the standard library; ROS
-    types that take the place of objects (`type: geometry_msgs/Twist`) as `check` does.
-    Raises ModelError with all findings where text or names have errors, ValueError where the file holds no robot,
-    OSError where it can't be read, and TypeError without path and text. What the rules beyond syntax say, `check`
-    tells.
+    Libraries are searched beside the file, then in `library_paths`, in ROBOSC_PATH and in the standard library. ROS
+    types in place of objects (`type: geometry_msgs/Twist`) are searched as in `check`.
+
+    Raises ModelError with all findings if the text or its names have errors, ValueError if the file holds no robot,
+    OSError if it cannot be read, and TypeError without path and text. Does not run the rules; see `check`.
     """
     from robosc.diagnostics import ModelError, has_errors
     from robosc.metamodel import robosc
@@ -108,14 +108,14 @@ def load(
             raise ModelError(reading.findings)
         base = reading.base
     if not isinstance(base, robosc.Robot):
-        raise ValueError(f"{path} holds a {type(base).__name__}, not a Robot")  # noqa: TRY004  # it is the file that is wrong
+        raise ValueError(f"{path} holds a {type(base).__name__}, not a Robot")  # noqa: TRY004  # the file is wrong
     return base
 
 
 def check(robot: Base, interface_paths: Sequence[str | PathLike[str]] = ()) -> list[Diagnostic]:
-    """All that the rules of the language say about a robot or library and what it imports, in order (thesis 4.5).
+    """Check a robot or library, and its imports, against the rules of the language (thesis 4.5). Return all findings.
 
-    `interface_paths` are folders with ROS packages below them; types of other packages are looked for in those of
+    `interface_paths` are folders with ROS packages below them. Types of other packages are searched in the folders of
     ROBOSC_INTERFACE_PATH, in the ROS installation and among the standard types.
     """
     from robosc.checks import check as checked
@@ -125,18 +125,18 @@ def check(robot: Base, interface_paths: Sequence[str | PathLike[str]] = ()) -> l
 
 
 def to_sct(robot: Robot) -> SupervisoryControlModel:
-    """The plants and requirements of a robot in which `check` finds no error (thesis 5.2).
+    """Return the plants and requirements of a robot without errors in `check` (thesis 5.2).
 
-    Asked again for the same robot, the same model comes back. Raises ModelError where a computation over doubles is too
-    large to be tabulated.
+    Cached: the same robot gives the same model object. Raises ModelError if a computation over doubles is too large to
+    tabulate.
     """
     return _plants(robot)[0]
 
 
 def to_rosgraph(robot: Robot, interface_paths: Sequence[str | PathLike[str]] = ()) -> RosGraph:
-    """The ROS side of a robot in which `check` finds no error (thesis 5.3); its `model` is what `to_sct` gives.
+    """Return the ROS side of a robot without errors in `check` (thesis 5.3). Its `model` is the result of `to_sct`.
 
-    ROS types are looked up as `check` does: the field of a basic value is the only one of its type, else `data`.
+    ROS types are searched as in `check`. The field of a basic value is the only field of its type, else `data`.
     """
     from robosc.m2m import robosc_to_rosgraph
     from robosc.ros_types import RosTypes
@@ -145,7 +145,7 @@ def to_rosgraph(robot: Robot, interface_paths: Sequence[str | PathLike[str]] = (
 
 
 def _plants(robot: Robot) -> tuple[SupervisoryControlModel, Trace]:
-    # Kept with the robot itself: both models are about the same plants, and go when the robot goes.
+    # Stored in the robot: both models share the plants and live as long as the robot.
     memory = vars(robot)
     if "_plants" not in memory:
         from robosc.m2m import robosc_to_sct
@@ -156,11 +156,11 @@ def _plants(robot: Robot) -> tuple[SupervisoryControlModel, Trace]:
 
 
 def synthesize(model: SupervisoryControlModel) -> Supervisor:
-    """The maximally permissive, controllable, non-blocking supervisor of a model, which becomes its `supervisor`.
+    """Synthesize the maximally permissive, controllable, nonblocking supervisor of a model. Store and return it.
 
-    Raises EmptySupervisorError, a ModelError that says why, where there is none; ModelError where an action would
-    cancel itself; MemoryError where the decision diagrams would take more than 4 GB. Warnings about the supervisor
-    come from `robosc.analysis.supervise.supervise`.
+    The supervisor becomes the model's `supervisor`. Raises EmptySupervisorError, a ModelError with the cause, if there
+    is none; ModelError if an action would cancel itself; MemoryError if the decision diagrams exceed 4 GB. For warnings
+    about the supervisor, use `robosc.analysis.supervise.supervise`.
     """
     from robosc.analysis.supervise import supervise
     from robosc.diagnostics import ModelError, has_errors
@@ -174,9 +174,9 @@ def synthesize(model: SupervisoryControlModel) -> Supervisor:
 
 
 def to_engine(model: SupervisoryControlModel) -> EngineModel:
-    """What a controller executes: guards, effects and the order of events of a model with its supervisor.
+    """Return the controller's program for a model with its supervisor: guards, effects and the order of events.
 
-    Its classes are described in `metamodel/engine.ecore`. Raises ValueError where the model has no supervisor.
+    `metamodel/engine.ecore` describes its classes. Raises ValueError if the model has no supervisor.
     """
     from robosc.m2m.sct_to_engine import transform
 
@@ -191,15 +191,14 @@ def generate(
     with_tests: bool = False,
     into: str | None = None,
 ) -> dict[str, str]:
-    """The files of a target: POSIX path in the target's folder to text.
+    """Generate the files of a target: POSIX path in the target's folder to text.
 
-    Targets are `cif`, `supervisor`, `ros1`, `ros2`, `xmi`, and those of other packages that are installed.
+    Targets are `cif`, `supervisor`, `ros1`, `ros2`, `ros2-layer`, `xmi`, and those of other installed packages.
 
-    Without a configuration all settings have their defaults. `with_tests` adds a test and a Dockerfile to the packages
-    of `ros1` and `ros2`. `into` names a package, or for `supervisor` a target of CMake, of your own that the code
-    becomes part of: `fragment.cmake` is what that includes. Raises ModelError where the models or the configuration
-    don't meet the target's preconditions, ValueError where the target is unknown, or can't be included, or a model that
-    it reads is missing.
+    Without a configuration, all settings have their defaults. `with_tests` adds a test and a Dockerfile to the packages
+    of `ros1` and `ros2`. `into` names your own package (for `supervisor`: your own CMake target) that includes the code
+    through `fragment.cmake`. Raises ModelError if the models or the configuration violate the target's preconditions.
+    Raises ValueError if the target is unknown or cannot be included, or if a model that it reads is missing.
     """
     from robosc.configuration import Configuration
     from robosc.diagnostics import ModelError, has_errors

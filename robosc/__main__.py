@@ -1,12 +1,12 @@
-"""`python -m robosc`, and the program `robosc`: the command line."""
+"""Command line, as `python -m robosc` and as the program `robosc`."""
 
 import signal
 from typing import NoReturn
 
 
 def run() -> NoReturn:
-    """Loads the command line and runs it."""
-    # While it loads nothing has to be undone: an interrupt ends the process at once, and without a traceback.
+    """Load the command line and run it."""
+    # During the import there is nothing to clean up: an interrupt ends the process at once, without a traceback.
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     from robosc import cli  # noqa: PLC0415

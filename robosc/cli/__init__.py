@@ -1,4 +1,4 @@
-"""The command line: one file a command, each loaded when it is called."""
+"""Command line: one module for each command, imported on its call."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from robosc.files.resources import locate
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-#: Exit statuses, beside 0.
+#: Exit statuses other than 0.
 ERRORS_FOUND = 1
 WRONG_CALL = 2
 EMPTY_SUPERVISOR = 3
@@ -48,24 +48,24 @@ _COMMANDS = {
     "lsp": "Serve an editor: findings while typing, completion, and more.",
     "diagram": "Draw a model or a metamodel.",
 }
-#: How the names of models end.
+#: Suffixes of model files.
 _MODELS = (".rscd", ".cif", ".xmi")
-#: Where a command stands in another module than that of its name: `report` collects findings.
+#: Commands whose module has another name: the module `report` collects findings.
 _MODULES = {"report": "safety_report"}
 
 
 def say(text: str = "", *, err: bool = False, nl: bool = True) -> None:
-    """Prints text for people, on the standard error output if `err`: nothing in it steers the terminal."""
+    """Print text for people, to standard error if `err`. Escapes characters that control the terminal."""
     click.echo(visible_lines(text), err=err, nl=nl)
 
 
 def put(text: str, *, err: bool = False, nl: bool = True) -> None:
-    """Prints text as it is: what a program reads, or what is visible already and painted."""
+    """Print text unchanged: output for programs, or text that is escaped and colored already."""
     click.echo(text, err=err, nl=nl)
 
 
 class CallError(click.ClickException):
-    """The call can't be answered: the wrong file, a folder that can't be written."""
+    """Error of a call that cannot be executed: a wrong file, a folder that is not writable."""
 
     exit_code = WRONG_CALL
 
@@ -76,7 +76,7 @@ class _InternalError(click.ClickException):
 
 @contextmanager
 def _visible_errors() -> Iterator[None]:
-    """What is wrong with a call may cite it: nothing in that steers the terminal."""
+    """Escape characters that control the terminal in error messages, which may cite the call."""
     try:
         yield
     except click.ClickException as error:
@@ -88,7 +88,7 @@ def _visible_errors() -> Iterator[None]:
 
 
 class _Commands(click.Group):
-    """The commands, each in a module of this package with its name, and what holds for all of them."""
+    """The commands, each in a module of this package with its name, and their common behavior."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(_COMMANDS)
@@ -110,7 +110,7 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        # As click does it, but without loading the commands.
+        # Like click, but without loading the commands.
         with formatter.section("Commands"):
             formatter.write_dl(list(_COMMANDS.items()))
 
@@ -125,7 +125,7 @@ class _Commands(click.Group):
     def _invoked(self, ctx: click.Context) -> Any:
         for stream in (sys.stdout, sys.stderr):
             if hasattr(stream, "reconfigure"):
-                # A terminal that lacks a character, or a file name that is no text, shall not end in an error.
+                # A missing character in the terminal's encoding, or an undecodable file name, must not cause an error.
                 stream.reconfigure(errors="backslashreplace")
         try:
             with noting():
@@ -141,7 +141,7 @@ class _Commands(click.Group):
 
 
 def _told(error: Exception, *, show: bool) -> click.ClickException:
-    """What is said of an error that no command has foreseen; with `show` also where it comes from."""
+    """Return the error message for an exception that no command handles. With `show`, also print its traceback."""
     if isinstance(error, OSError):
         named = bool(error.filename)
         return CallError(f"{visible(str(error.filename))}: {error.strerror}" if named else str(error))
@@ -171,7 +171,7 @@ def _cmake_dir(context: click.Context, _parameter: click.Parameter, asked: bool)
 )
 @click.option("--traceback", is_flag=True, envvar="ROBOSC_TRACEBACK", help="Show where a fault of robosc itself is.")
 def main(**_: Any) -> None:
-    """Make a ROS controller that provably does only what a model of the robot allows.
+    """Generate a ROS controller that provably does only what a model of the robot allows.
 
     \b
     Examples:
@@ -182,21 +182,21 @@ def main(**_: Any) -> None:
       robosc run line_follower.rscd --ros2
       robosc rule marked-state
 
-    Exit status: 0 fine, 1 errors in the model, 2 a wrong call, 3 an empty supervisor.
+    Exit status: 0 success, 1 errors in the model, 2 a wrong call, 3 an empty supervisor.
     """
 
 
 def run() -> NoReturn:
-    """The program `robosc`.
+    """Run the program `robosc`.
 
-    What is loaded stays until the end, and then the process ends with it: collecting the objects of the metamodels and
-    taking them apart one by one would take a third of the time of a short run.
+    Loaded objects live until the process ends. Collecting the objects of the metamodels and freeing them one by one
+    would take a third of the time of a short run.
     """
     interruption.note()
     gc.set_threshold(500_000, 20, 20)
-    sys.set_int_max_str_digits(0)  # how many states a robot has, for one
+    sys.set_int_max_str_digits(0)  # the number of states of a robot may have many digits
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
-        if getattr(sys, name) is None:  # closed by the caller, who wants nothing of it
+        if getattr(sys, name) is None:  # closed by the caller, who does not need it
             setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: PTH123, SIM115
     status = ERRORS_FOUND
     try:
@@ -204,12 +204,12 @@ def run() -> NoReturn:
             main(prog_name="robosc")
         except SystemExit as end:
             status = end.code if isinstance(end.code, int) else 0
-        if not sys.stdout.closed:  # a server closes it when its editor goes
+        if not sys.stdout.closed:  # a server closes it when its editor ends
             sys.stdout.flush()
     except KeyboardInterrupt:
-        pass  # told below
+        pass  # reported below
     except BrokenPipeError:
-        pass  # whoever reads has read enough
+        pass  # the reader needs no more output
     except OSError as error:
         status = WRONG_CALL
         say(f"Error: the output can't be written: {error.strerror}", err=True)

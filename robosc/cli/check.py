@@ -1,4 +1,4 @@
-"""`robosc check`."""
+"""Command `robosc check`."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic
     from robosc.language import Reading
 
-#: One edit may show the next fault; two never go round in a circle for longer.
+#: Maximum number of rounds: an edit may uncover further faults, and edits may undo each other.
 _ROUNDS = 10
 
 
@@ -41,11 +41,11 @@ _ROUNDS = 10
 @click.option("--watch", is_flag=True, help="Check again whenever a file changes, until Ctrl-C.")
 @paths
 def command(models: Sequence[str], form: str, fix: bool, watch: bool, paths: Paths) -> None:
-    """Read robots and libraries, resolve their names and say what breaks a rule of the language.
+    """Read robots and libraries, resolve their names, and report violations of the rules of the language.
 
-    MODEL is a .rscd file, a .cif file, or an .xmi file of one of the metamodels. With --fix a .rscd file is changed
-    where a hint says what to write (`did you mean`, `write 0.0`), and what is left is said. Exit status: 0 no errors, 1
-    errors.
+    MODEL is a .rscd file, a .cif file, or an .xmi file of one of the metamodels. With --fix, the command first edits
+    .rscd files where a hint has exactly one edit (`did you mean`, `write 0.0`), and then reports the remaining
+    findings. Exit status: 0 no errors, 1 errors.
 
     \b
     Examples:
@@ -67,7 +67,7 @@ def command(models: Sequence[str], form: str, fix: bool, watch: bool, paths: Pat
             _check(models, form, paths)
             say("no errors", err=True)
         except click.exceptions.Exit:
-            pass  # the errors are counted
+            pass  # the report has the errors
         except OSError as error:
             say(f"{visible(str(error.filename))}: {error.strerror}", err=True)
         say("waiting for changes, Ctrl-C ends", err=True)
@@ -85,14 +85,14 @@ class _Checked(NamedTuple):
 
 
 def _mend(model: str, paths: Paths) -> None:
-    """Apply the edits of findings to a text, and those of what is found then, where they make nothing worse."""
+    """Apply the edits of findings to a text, repeatedly, unless they make it worse."""
     if not model.endswith(".rscd"):
         raise CallError(f"{model} is no .rscd file: only a text can be mended")
     interfaces = RosTypes(paths.interfaces)
 
     def checked(content: str) -> _Checked:
         interruption.check()
-        with noting():  # What is read here may be written over.
+        with noting():  # files that this reads may be overwritten
             reading = read_text(model, paths.libraries, interfaces, Documents({model: content}))
         return _Checked(reading, [*reading.findings, *rules_of(reading.base, reading.findings, interfaces)])
 
@@ -101,7 +101,7 @@ def _mend(model: str, paths: Paths) -> None:
     try:
         content = before = written.decode("utf-8")
     except UnicodeDecodeError:
-        return  # To write the text anew would lose the bytes that can't be read.
+        return  # writing the text would lose the bytes that cannot be decoded
     seen = {content}
     for _ in range(_ROUNDS):
         found = checked(content)
@@ -118,7 +118,7 @@ def _mend(model: str, paths: Paths) -> None:
 
 
 def _check(models: Sequence[str], form: str, paths: Paths) -> None:
-    """Check each model; a fault of the tool itself in one ends the call after the findings about the others."""
+    """Check each model. An internal error in one model is raised after the findings for all others are reported."""
     faults: list[Exception] = []
     try:
         with Report(form) as report:

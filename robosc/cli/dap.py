@@ -1,4 +1,4 @@
-"""`robosc dap`."""
+"""Command `robosc dap`."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class _Kept(Report):
-    """Collects findings; the debugger's client shows them."""
+    """Collects findings for the debugger's client, which shows them."""
 
     def _show(self) -> None:
         pass
@@ -35,17 +35,17 @@ class _Kept(Report):
 @click.option("--once", is_flag=True, help="With --port: end after the first client.")
 @synthesizer
 def command(port: int | None, once: bool) -> None:
-    """Debug robots in an editor, by the Debug Adapter Protocol: step by event, step back, stop, look, ask why.
+    """Debug robots in an editor with the Debug Adapter Protocol: step, step back, break, inspect, explain.
 
-    The editor starts this and talks to it over the standard input and output, or on a port. What it launches is a
-    model, with a script, an event log or a counterexample of `verify`; docs/debugging.md says how editors are set up.
+    The editor starts this command and communicates over standard input and output, or over a port. It launches a model
+    with a script, an event log or a counterexample of `verify`. docs/debugging.md describes the setup of editors.
 
     \b
     Examples:
       robosc dap
       robosc dap --port 4711
 
-    Exit status: 0 the client is done, 2 a wrong call, or a stream that is no Debug Adapter Protocol.
+    Exit status: 0 the client has finished, 2 a wrong call, or a stream that is no Debug Adapter Protocol.
     """
     if port is None:
         if once:

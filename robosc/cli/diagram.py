@@ -1,4 +1,4 @@
-"""`robosc diagram`."""
+"""Command `robosc diagram`."""
 
 from __future__ import annotations
 
@@ -53,9 +53,9 @@ def command(
 ) -> None:
     """Draw a model, or a metamodel.
 
-    MODEL is a .rscd file, or an .xmi file that `transform --to xmi` wrote. `behaviour` shows the automaton of each
-    component as the text has it, `ros-graph` the controller's node with its topics, services and actions, `plants` what
-    synthesis works on.
+    MODEL is a .rscd file, or an .xmi file written by `transform --to xmi`. `behaviour` shows the automata of the
+    components in the text, `ros-graph` the controller's node with its topics, services and actions, `plants` the input
+    of synthesis.
 
     \b
     Examples:
@@ -64,7 +64,7 @@ def command(
       robosc diagram line_follower.rscd --kind plants --format dot | dot -Tpdf -o plants.pdf
       robosc diagram --metamodel sct --format svg -o sct.svg
 
-    Exit status: 0 done, 1 errors in the model, 2 a wrong call.
+    Exit status: 0 success, 1 errors in the model, 2 a wrong call.
     """
     if model is None and name is None and kind is None:
         raise CallError("give a MODEL or --metamodel NAME")
@@ -89,7 +89,7 @@ def command(
 
 
 def _graph(path: str, kind: str, paths: Paths, report: Report) -> Graph:
-    """What is drawn of the model in a file. Ends the report where there are errors."""
+    """Return the graph of a kind for the model in a file. Ends the report if there are errors."""
     if kind == "behaviour":
         base = read(path, paths, report)
         report.stop_on_errors()

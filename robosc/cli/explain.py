@@ -1,4 +1,4 @@
-"""`robosc explain`."""
+"""Command `robosc explain`."""
 
 from __future__ import annotations
 
@@ -57,13 +57,14 @@ def command(
     as_data: bool,
     paths: Paths,
 ) -> None:
-    """Say why an event can't happen in a state, or never, or why nothing can.
+    """Explain why an event is forbidden in a state or in all states, or why there is no supervisor.
 
-    MODEL is a .rscd file with a robot, or an .xmi file that `transform --to xmi` wrote. An event is a communication's
-    name for what it is there for (`move`, `Platform.move`), or one of its events (`drive.cancel`, `grip.error`), or the
-    name in `synthesize --json` (`message_move.c_trigger`). What a state leaves open is chosen so that the robot gets
-    there soonest; the answer shows the state and the way to it. What is explained is the supervisor that a saved model
-    has, that of --synthesizer, else ours; what would have to be loosened is told of ours.
+    MODEL is a .rscd file with a robot, or an .xmi file written by `transform --to xmi`. An event is one of: a
+    communication's name for its usual event (`move`, `Platform.move`), one of its events (`drive.cancel`,
+    `grip.error`), or a name from `synthesize --json` (`message_move.c_trigger`). You may give only part of a state. The
+    tool picks the matching state that is reached in the fewest steps, and shows the path to it. The explained
+    supervisor is that of --synthesizer, else that of a saved model, else that of RoboSC's own synthesis. Suggestions
+    for looser requirements always refer to the latter.
 
     \b
     Examples:
@@ -73,7 +74,7 @@ def command(
       robosc explain line_follower.rscd --why-never halt
       robosc explain broken.rscd --why-empty
 
-    Exit status: 0 answered, 1 errors in the model, 2 a wrong call, 3 no supervisor exists and --why-empty did not ask.
+    Exit status: 0 success, 1 errors in the model, 2 a wrong call, 3 no supervisor exists (without --why-empty).
     """
     if [event is not None, why_empty, why_never is not None].count(True) != 1:
         raise click.UsageError("give one of --event, --why-empty and --why-never")
@@ -85,7 +86,7 @@ def command(
         with progress("exploring what the robot can do"):
             answer = explored(plants, emptiness if why_empty else _question(plants, event, state, why_never))
         if answer is None and not why_empty:
-            supervise(plants)  # raises, and says why there is no supervisor
+            supervise(plants)  # raises with the cause
         elif as_data:
             put(json.dumps(data_of(answer, _position), indent=2))
         else:
@@ -96,7 +97,7 @@ def command(
 def _question(
     model: sct.SupervisoryControlModel, event: str | None, state: str | None, why_never: str | None
 ) -> Callable[[SynthesizedSystem], Explanation | Possibility | None]:
-    """What is asked of the system; the answer is None where the supervisor is empty."""
+    """Return the analysis that answers the question. Its result is None if the supervisor is empty."""
     try:
         asked = event_named(model, event or why_never or "")
         codes = {} if state is None else state_given(model, state)

@@ -1,4 +1,4 @@
-"""`robosc format`."""
+"""Command `robosc format`."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from robosc.language.text import decode
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-#: What findings call the standard input.
+#: File name of the standard input in findings.
 _STDIN = "<stdin>"
 
 
@@ -29,10 +29,10 @@ _STDIN = "<stdin>"
 @click.option("--check", is_flag=True, help="Write nothing; list the files that would change.")
 @click.option("--diff", is_flag=True, help="Write nothing; show what would change.")
 def command(models: Sequence[str], check: bool, diff: bool) -> None:
-    """Lay out robots and libraries in the one canonical way; what they mean and their comments stay.
+    """Format robots and libraries in the canonical layout. Their meaning and comments do not change.
 
-    MODEL is a .rscd file, a folder, for all .rscd files in it and below, or `-`: then the standard input is written to
-    the standard output. A file with syntax errors is left alone. Names need not resolve.
+    MODEL is a .rscd file, a folder (all .rscd files in it and below), or `-` (standard input to standard output). Files
+    with syntax errors stay unchanged. Names need not resolve.
 
     \b
     Examples:
@@ -40,7 +40,7 @@ def command(models: Sequence[str], check: bool, diff: bool) -> None:
       robosc format --check --diff robots libraries
       robosc format - < line_follower.rscd
 
-    Exit status: 0 done, 1 syntax errors or, with --check, files that would change, 2 a wrong call.
+    Exit status: 0 success, 1 syntax errors or, with --check, files that would change, 2 a wrong call.
     """
     changing = False
     with Report(aside=True) as report:
@@ -59,7 +59,7 @@ def command(models: Sequence[str], check: bool, diff: bool) -> None:
 
 
 def _files(model: str) -> Iterator[str]:
-    """The files of one argument, those of a folder in the order of their paths."""
+    """Return the files of one argument, those of a folder in the order of their paths."""
     if model == "-":
         yield _STDIN
     elif model.endswith(".xmi"):

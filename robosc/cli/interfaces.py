@@ -1,4 +1,4 @@
-"""`robosc interfaces`."""
+"""Command `robosc interfaces`."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 @click.group("interfaces")
 def command() -> None:
-    """Messages, services and actions of your own.
+    """Build messages, services and actions of your own.
 
     \b
     Examples:
       robosc interfaces build my_msgs
       robosc interfaces build --help
 
-    Exit status: 0 done, 2 a wrong call, or packages that can't be built.
+    Exit status: 0 success, 2 a wrong call, or packages that cannot be built.
     """
 
 
@@ -39,10 +39,10 @@ def command() -> None:
     help="The folder that the modules are written to, for PYTHONPATH.",
 )
 def build(folders: Sequence[str], output: str) -> None:
-    """Build the Python modules of all interface packages below FOLDER, for the wheels of ROS 2, without colcon.
+    """Build the Python modules of all interface packages below FOLDER for the wheels of ROS 2, without colcon.
 
-    It takes the Python that has the wheels (pip install 'robosc[ros2]'), and compilers of C and C++. A package may name
-    types of what is installed, and of the others that are built with it.
+    This needs a Python with the wheels (pip install 'robosc[ros2]'), and compilers of C and C++. A package may use
+    types of installed packages, and of the other packages in the same call.
 
     \b
     Examples:
@@ -50,7 +50,7 @@ def build(folders: Sequence[str], output: str) -> None:
       robosc interfaces build ~/ros2_ws/src -o ~/ros2_modules
       PYTHONPATH=~/ros2_modules robosc run my_robot.rscd --ros2
 
-    Exit status: 0 done, 2 a wrong call, or packages that can't be built.
+    Exit status: 0 success, 2 a wrong call, or packages that cannot be built.
     """
     try:
         from robosc.runtime.ros2 import interfaces

@@ -1,7 +1,7 @@
-"""An interrupt ends the program as one, whatever becomes of the exception that tells of it.
+"""Records interrupts, so that the program ends with the right status even if the exception is lost.
 
-Python raises KeyboardInterrupt wherever it happens to be: from within an import it may come out as another exception,
-from within a callback not at all.
+Python raises KeyboardInterrupt in whatever code is running: an import may turn it into another exception, and a
+callback may swallow it.
 """
 
 from __future__ import annotations
@@ -13,24 +13,24 @@ _noted: list[int] = []
 
 
 def note() -> None:
-    """From now on interrupts are noted, too; not where the caller wants them to be ignored."""
+    """Record interrupts from now on, unless the caller ignores them."""
     if signal.getsignal(signal.SIGINT) in (signal.SIG_DFL, signal.default_int_handler):
         signal.signal(signal.SIGINT, _interrupt)
 
 
 def leave() -> None:
-    """From now on they are none of ours: a ROS node has its own way to end."""
+    """Stop recording interrupts: a ROS node handles them itself."""
     if signal.getsignal(signal.SIGINT) is _interrupt:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def happened() -> bool:
-    """Whether there was one."""
+    """Return whether an interrupt was recorded."""
     return bool(_noted)
 
 
 def check() -> None:
-    """Raises KeyboardInterrupt, again, if there was one: what follows is not to be done any more."""
+    """Raise KeyboardInterrupt again if an interrupt was recorded, before an action that must not follow it."""
     if _noted:
         raise KeyboardInterrupt
 

@@ -1,4 +1,4 @@
-"""`robosc lsp`."""
+"""Command `robosc lsp`."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from robosc.cli.options import Paths, paths
 )
 @paths
 def command(port: int | None, paths: Paths) -> None:
-    """Serve an editor by the Language Server Protocol, over the standard input and output.
+    """Serve an editor with the Language Server Protocol, over standard input and output.
 
-    The editor starts it: docs/editor.md says how in Neovim, Helix and Emacs. It needs two packages more:
-    pip install 'robosc[editor]'.
+    The editor starts this command. docs/editor.md describes the setup of Neovim, Helix and Emacs. It needs extra
+    packages: pip install 'robosc[editor]'.
 
     \b
     Examples:

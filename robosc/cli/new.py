@@ -1,4 +1,4 @@
-"""`robosc new`."""
+"""Command `robosc new`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from robosc.language.formatting import format_text
 from robosc.language.text import Text
 from robosc.starter import Choices, files
 
-#: What the questions are, and the choices that they make.
+#: Questions on a terminal, by the choice that they set.
 _QUESTIONS = {
     "sensors": "Messages that say whether the robot may move (std_msgs/Bool)",
     "command": "The command that needs them",
@@ -37,9 +37,10 @@ _NONE = "-"
 @click.option("-o", "--output", "folder", type=click.Path(), help="The new folder, if not one named after the robot.")
 @click.option("-y", "--yes", is_flag=True, help="Ask nothing on a terminal, either.")
 def command(name: str, folder: str | None, yes: bool, **given: Any) -> None:
-    """Begin a model of a robot: a folder with model, configuration, README.md and test.
+    """Create a model of a robot: a folder with model, configuration, README.md and test.
 
-    On a terminal, what no option says is asked. The model passes `check`, `format --check` and `verify`.
+    On a terminal, the command prompts for all choices that no option sets. The model passes `check`, `format --check`
+    and `verify`.
 
     \b
     Examples:
@@ -47,9 +48,9 @@ def command(name: str, folder: str | None, yes: bool, **given: Any) -> None:
       robosc new Porter --sensor clear --sensor docked --twist --yes
       robosc new Lift --ros 1 --command raise --stop hold --service calibrate
 
-    Exit status: 0 done, 2 a wrong call, such as a folder with something in it.
+    Exit status: 0 success, 2 a wrong call, such as a folder that is not empty.
     """
-    # Questions are asked when no name can be wrong any more that was given.
+    # Reject invalid names in the call before any prompt.
     _choices(name, given)
     choices = _choices(name, given if yes or not _on_terminal() else _asked(given))
     target = Path(folder or choices.stem)
@@ -79,7 +80,7 @@ def _on_terminal() -> bool:
 
 
 def _asked(given: dict[str, Any]) -> dict[str, Any]:
-    """What was given, and what the user answers to a question for each choice that was not."""
+    """Return the options of the call, with the user's answers for all missing choices."""
     answers = dict(given)
     if not answers["ros"]:
         answers["ros"] = click.prompt("ROS", type=click.Choice(["1", "2"]), default="2", err=True)

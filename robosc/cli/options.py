@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class _File(click.Path):
-    """A file that must be there; if it is not, the error suggests one beside it with a similar name."""
+    """An existing file. If it does not exist, the error suggests a similar name in its folder."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         try:
@@ -37,7 +37,7 @@ class _File(click.Path):
             raise
 
 
-#: A file that must be there.
+#: An existing file.
 FILE = _File(exists=True, dir_okay=False, readable=True)
 
 model = click.argument("model", type=FILE)
@@ -85,7 +85,7 @@ memory = click.option(
 
 
 def over_ros(text: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Return a decorator that gives a command the flag `--ros2`, which it receives as `live`. `text` is its help."""
+    """Return a decorator that adds the flag `--ros2` to a command, which receives it as `live`. `text` is its help."""
     return click.option("--ros2", "live", is_flag=True, help=text)
 
 
@@ -101,7 +101,7 @@ def _keep(context: click.Context, _parameter: click.Parameter, name: str | None)
         context.meta[_SYNTHESIZER] = known[name]
 
 
-#: For commands that synthesize; which one was chosen `chosen_synthesizer` knows.
+#: Option of commands that synthesize. `chosen_synthesizer` returns its value.
 synthesizer = click.option(
     "--synthesizer",
     metavar="NAME",
@@ -112,7 +112,7 @@ synthesizer = click.option(
 
 
 def chosen_synthesizer() -> Extension | None:
-    """The synthesizer that the running command was called with, if any."""
+    """Return the synthesizer in the call of the running command, if any."""
     context = click.get_current_context(silent=True)
     chosen: Extension | None = None if context is None else context.meta.get(_SYNTHESIZER)
     return chosen
@@ -120,14 +120,14 @@ def chosen_synthesizer() -> Extension | None:
 
 @dataclass(frozen=True)
 class Paths:
-    """Folders in which the libraries, and the ROS types, of a model are looked for."""
+    """Folders with the libraries and the ROS types of a model."""
 
     libraries: Sequence[str] = ()
     interfaces: Sequence[str] = ()
 
 
 def paths(command: Callable[..., None]) -> Callable[..., None]:
-    """Gives a command the options for folders to search; it gets them as `paths`."""
+    """Add the options for search folders to a command, which receives them as `paths`."""
 
     @_library_path
     @_interface_path

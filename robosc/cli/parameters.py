@@ -1,4 +1,4 @@
-"""`--param`: what is set on the robot, for commands that run a model."""
+"""Option `--param`: parameters on the robot, for commands that run a model."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ parameters = click.option(
 
 
 def set_parameters(graph: rosgraph.RosGraph | None, given: Sequence[str]) -> None:
-    """Gives parameters of a graph other values than the model does. Raises CallError for one that does not fit."""
+    """Set parameters of a graph to values from the call. Raises CallError for an invalid one."""
     known = {} if graph is None else {found.name: (place, found) for place, found in model_parameters(graph).items()}
     for text in given:
         name, _, value = text.partition("=")

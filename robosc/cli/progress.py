@@ -1,4 +1,4 @@
-"""Says what takes longer than a second, on a terminal only, and ends it when interrupted."""
+"""Progress of operations that take longer than a second, on a terminal only, and their interruption."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PATIENCE_SECONDS = 1.0
 
 
 class _Line:
-    """What is shown, asked for anew each time."""
+    """A text that is computed anew at each update."""
 
     def __init__(self, text: Callable[[], str]) -> None:
         self._text = text
@@ -36,7 +36,7 @@ class _Line:
 
 @contextmanager
 def progress(what: str | Callable[[], str]) -> Iterator[None]:
-    """While the `with` block runs on for over a second, a terminal shows what it does; nothing of it stays there."""
+    """Show the text on a terminal while the `with` block runs for longer than a second, then erase it."""
     if not sys.stderr.isatty():
         yield
         return
@@ -63,9 +63,9 @@ def progress(what: str | Callable[[], str]) -> Iterator[None]:
 
 @contextmanager
 def synthesizing(model: sct.SupervisoryControlModel) -> Iterator[Statistics]:
-    """Show the progress of a model's synthesis in the `with` block, which keeps these statistics.
+    """Show the progress of a model's synthesis in the `with` block, which fills these statistics.
 
-    An interrupt ends it within a moment. Raises MemoryError with a hint where it lacks memory.
+    An interrupt ends it within a moment. Raises MemoryError with a hint if memory is exhausted.
     """
     from robosc.synthesis import Statistics
 
@@ -102,10 +102,10 @@ def _number(number: int) -> str:
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """An interrupt ends the `with` block within a moment, or else the process, with the status for it.
+    """End the `with` block, or else the process, within a moment after an interrupt.
 
-    Python hears of a signal only between two operations, and one on decision diagrams may take minutes. Nothing that
-    has to be cleaned up may be open in the block.
+    Python handles a signal only between two operations, and an operation on decision diagrams may take minutes. The
+    block must not hold resources that need cleanup. The process ends with the status for interrupts.
     """
     if current_thread() is not main_thread():
         yield
@@ -119,7 +119,7 @@ def interruptible() -> Iterator[None]:
         while heard := ears.recv(1):
             if heard[0] == signal.SIGINT and not ended.wait(PATIENCE_SECONDS):
                 if sys.stderr.isatty():
-                    # What is shown there has hidden the cursor.
+                    # The progress display has hidden the cursor.
                     os.write(2, b"\r\x1b[2K\x1b[?25h")
                 os._exit(INTERRUPTED)
 

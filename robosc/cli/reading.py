@@ -1,4 +1,4 @@
-"""Reads the MODEL of a command."""
+"""Reading of the MODEL argument of commands."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ if TYPE_CHECKING:
 
 
 def read(path: str, paths: Paths, report: Report) -> Root | None:
-    """The model in a file of any kind; all findings of reading and of the rules go to the report.
+    """Return the model in a file of any kind. All findings of reading and of the rules go to the report.
 
-    None where so little could be read that there is none. Raises ModelError for an XMI file with faults.
+    None if the file is too damaged to contain a model. Raises ModelError for an XMI file with faults.
     """
     interfaces = RosTypes(paths.interfaces)
 
     def locate(name: str) -> str | None:
-        # Whoever saved a model chose the names of the texts that it came from: they are looked for in a few folders.
+        # The author of a saved model chose the names of its source texts. They are searched only in a few folders.
         folders = [Path(path).parent, *search_folders(paths.libraries)]
         found = next((text for folder in folders if (text := _text_below(folder, name))), None)
         if found is not None:
@@ -49,7 +49,7 @@ def read(path: str, paths: Paths, report: Report) -> Root | None:
         finally:
             report.add((), texts)
         if isinstance(root, engine.EngineModel):
-            root = root.model  # From which it is made again.
+            root = root.model  # the engine model is derived from it
         findings = []
     elif path.endswith(".cif"):
         from robosc.cif import read as read_cif
@@ -67,7 +67,7 @@ def read(path: str, paths: Paths, report: Report) -> Root | None:
 
 
 def _text_below(folder: Path, name: str) -> str | None:
-    """The path of a `.rscd` file of that relative name in a folder or below; None where there is none."""
+    """Return the path of a `.rscd` file with that relative name in a folder or below. None if there is none."""
     relative = PurePath(name)
     if relative.is_absolute() or ".." in relative.parts:
         return None
@@ -75,13 +75,13 @@ def _text_below(folder: Path, name: str) -> str | None:
     try:
         real = path.resolve(strict=True)
         is_text = real.suffix == ".rscd" and real.is_file() and real.is_relative_to(folder.resolve())
-    except (OSError, ValueError, RuntimeError):  # a null character, links in a circle
+    except (OSError, ValueError, RuntimeError):  # a null character, or circular links
         return None
     return str(path) if is_text else None
 
 
 def read_configuration(model: str, chosen: str | None, report: Report) -> Configuration:
-    """The configuration in the file that was chosen, else in the one near the model; what is wrong may be shown.
+    """Return the configuration in the chosen file, else in the one near the model. Findings may quote the file.
 
     Raises ModelError and OSError as `robosc.configuration` does.
     """
@@ -95,9 +95,9 @@ def read_configuration(model: str, chosen: str | None, report: Report) -> Config
 
 
 def read_models(path: str, paths: Paths, report: Report, *, cif: bool = False) -> Models:
-    """The sct model in a file, or made from what it holds, and what else there is about the robot.
+    """Return the models of the robot in a file: the sct model in it, or created from it, and all others.
 
-    Ends the report where there are errors. Raises CallError for a library, and for CIF where the call does not take it.
+    Ends the report if there are errors. Raises CallError for a library, and for CIF if the call does not support it.
     """
     if path.endswith(".cif") and not cif:
         raise CallError(
@@ -118,12 +118,11 @@ def read_models(path: str, paths: Paths, report: Report, *, cif: bool = False) -
 
 
 def supervise_models(models: Models, report: Report, *, memory: int | None = None) -> None:
-    """Gives the sct model its supervisor, unless it has one; warnings about it go to the report.
+    """Synthesize the supervisor of the sct model, unless it has one. Warnings about it go to the report.
 
-    Where the command was called with another synthesizer, that one gives it, also in place of one that is there.
-
-    `memory` is the most that the process may take, in bytes, if not the default of synthesis. Ends the report where
-    there are errors. Raises EmptySupervisorError where there is no supervisor.
+    With another synthesizer in the call, its supervisor also replaces an existing one. `memory` limits the memory of
+    the process in bytes; the default is that of synthesis. Ends the report if there are errors. Raises
+    EmptySupervisorError if there is no supervisor.
     """
     from robosc.analysis.supervise import supervise
     from robosc.cli.progress import synthesizing
@@ -137,9 +136,9 @@ def supervise_models(models: Models, report: Report, *, memory: int | None = Non
 
 
 def supervise_otherwise(model: sct.SupervisoryControlModel, *, memory: int | None = None) -> Synthesis | None:
-    """Gives the model the supervisor of the synthesizer that the command was called with.
+    """Set the supervisor of the model by the synthesizer in the call.
 
-    None where it was called with none: the model is as it was. `memory` and errors are those of
+    Returns None, and leaves the model unchanged, if the call names none. `memory` and errors are those of
     `robosc.analysis.other_synthesizers.supervise_by`.
     """
     chosen = chosen_synthesizer()

@@ -1,4 +1,4 @@
-"""Shows what was found, however a command ends, and turns it into the exit status."""
+"""Report of a command's findings, also if it ends with an error, and its exit status."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ _PAINTS: Mapping[Part, Callable[[str], str]] = {
 
 
 class Report:
-    """Collects findings and shows them when its `with` block ends, by whatever way.
+    """Collects findings and shows them at the end of its `with` block, also after an exception.
 
-    Findings as text go to the standard error output where the command prints something else (`aside`), all other
-    forms to the standard output. Ends the program with the status that the errors call for.
+    Findings as text go to standard error if the command prints something else (`aside`). Other formats go to standard
+    output. Ends the program with the status that the errors require.
     """
 
     def __init__(self, form: str = "text", *, aside: bool = False) -> None:
@@ -47,19 +47,19 @@ class Report:
         self.status = 0
 
     def add(self, findings: Iterable[Diagnostic], texts: Mapping[str, str] | None = None) -> None:
-        """Adds findings, and the source texts of their files."""
+        """Add findings, and the source texts of their files."""
         self.texts |= texts or {}
         self.findings += findings
 
     def may_quote(self, file: str) -> None:
-        """Lets findings show lines of a file that is not read as text; of no other file lines are ever shown.
+        """Allow findings to show lines of a file that is not yet read as text. Lines of other files are never shown.
 
-        A saved model says by itself which file its findings are about: that may be any.
+        A saved model names the files of its findings itself: they may be any files.
         """
         self._quotable.add(file)
 
     def stop_on_errors(self) -> None:
-        """Leaves the `with` block where there are errors: what comes next could not make sense of the model."""
+        """Leave the `with` block if there are errors: the next steps need a valid model."""
         if has_errors(self.findings):
             raise click.exceptions.Exit(ERRORS_FOUND)
 
@@ -101,7 +101,7 @@ class Report:
             put(as_text.summary(self.findings), err=True)
 
     def _text(self, file: str) -> str | None:
-        """The source of a file: as it was read, else from the file if it may be quoted; None if there is none."""
+        """Return the source of a file: as read before, else from the file if quoting is allowed, else None."""
         if file not in self.texts and file in self._quotable:
             with suppress(OSError):
                 self.texts[file] = files.read(file).decode("utf-8", errors="replace")

@@ -1,4 +1,4 @@
-"""`robosc rule`."""
+"""Command `robosc rule`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from robosc.diagnostics.rules import page, rules
 @click.command("rule")
 @click.argument("rule", required=False)
 def command(rule: str | None) -> None:
-    """Print what a RULE means, with a wrong and a right model; without a RULE, the names of all.
+    """Explain a RULE, with a wrong and a right model. Without a RULE, list the names of all rules.
 
     \b
     Examples:

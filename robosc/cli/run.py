@@ -1,4 +1,4 @@
-"""`robosc run`."""
+"""Command `robosc run`."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ def command(
     arguments: Sequence[str],
     live: bool,  # noqa: ARG001  # there is no other ROS
 ) -> None:
-    """Be a robot's controller: the node that `transform` would generate, straight from the model.
+    """Run the controller of a robot as a ROS node, directly from the model.
 
-    MODEL is a .rscd file with a robot, or a .rosgraph.xmi file that `transform --to xmi` wrote. ROS 2 needs no
-    installation: pip install -e '.[ros2]' in robosc's repository brings it. Ctrl-C stops the robot as the
-    configuration says, then the node.
+    The node is equal to the one that `transform` generates. MODEL is a .rscd file with a robot, or a .rosgraph.xmi file
+    written by `transform --to xmi`. ROS 2 need not be installed: pip install -e '.[ros2]' in robosc's repository is
+    enough. Ctrl-C stops the robot as configured, and then the node.
 
     \b
     Examples:
@@ -87,7 +87,7 @@ def _run(models: Models, configuration: Configuration, arguments: Sequence[str],
     )
     interruption.check()
     interruption.leave()
-    # The models stay until the end; what is made from now on is collected as ever.
+    # The models live until the end. Objects from now on are collected normally.
     gc.freeze()
     gc.set_threshold(700, 10, 10)
     try:

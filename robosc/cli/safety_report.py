@@ -1,4 +1,4 @@
-"""`robosc report`; `robosc.cli.report` collects findings."""
+"""Command `robosc report`. The module `robosc.cli.report` collects findings."""
 
 from __future__ import annotations
 
@@ -34,11 +34,12 @@ def command(
     chosen: str | None,
     paths: Paths,
 ) -> None:
-    """Write what a person reads who must sign for the robot: one page of HTML that needs nothing else.
+    """Write a verification report for the person who signs off the robot: one self-contained HTML page.
 
-    MODEL is what `verify` takes but CIF. The page tells of each requirement what it guards, what synthesis added, where
-    it stands in the generated code, what is proved of it, and where the generated tests saw it; what is assumed; how
-    much of the robot the tests cover; the digests of tool, model and generated files. docs/report.md says more.
+    MODEL is a model that `verify` accepts, except CIF. For each requirement, the page shows the events that it
+    restricts, additions of synthesis, its place in the generated code, the proofs, and the generated tests that cover
+    it. It also lists the assumptions, the test coverage of the robot, and the digests of tool, model and generated
+    files. See docs/report.md.
 
     \b
     Examples:
@@ -46,7 +47,7 @@ def command(
       robosc report line_follower.rscd -o report.html --needs needs.json
       robosc report line_follower.rscd --json | jq .coverage.transitions
 
-    Exit status: 0 done, 1 something is refuted or errors in the model, 2 a wrong call, 3 no supervisor exists.
+    Exit status: 0 success, 1 a refuted property or errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
     with Report(aside=True) as report:
         models = read_models(model, paths, report)
@@ -75,6 +76,6 @@ def command(
 
 
 def _relative(model: str, name: str) -> str:
-    """The path of a file that was read as it is on every machine: below the model's folder, else its name."""
+    """Return the machine-independent path of an input file: relative to the model's folder, else its name."""
     path, folder = Path(name).resolve(), Path(model).resolve().parent
     return path.relative_to(folder).as_posix() if path.is_relative_to(folder) else path.name

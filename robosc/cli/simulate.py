@@ -1,4 +1,4 @@
-"""`robosc simulate`."""
+"""Command `robosc simulate`."""
 
 from __future__ import annotations
 
@@ -50,12 +50,12 @@ def command(
     given: Sequence[str],
     paths: Paths,
 ) -> None:
-    """Try a supervised robot: step by step by hand, by a script, or at random.
+    """Simulate a supervised robot: step by step by hand, by a script, or at random.
 
-    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote. Without --script
-    and --random commands are read from the terminal; `h` lists them. A line of a script is an event with its data, a
-    step of a scenario such as `error from lift because timeout`, or a line of an event log. Only what the script names
-    happens, unless --loop runs the control loop between the lines.
+    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file written by `transform --to xmi`. Without --script
+    and --random, the command reads commands from the terminal; `h` lists them. A line of a script is an event with its
+    data, a step of a scenario such as `error from lift because timeout`, or a line of an event log. Only the events in
+    the script happen, unless --loop runs the control loop between the lines.
 
     \b
     Examples:
@@ -64,7 +64,7 @@ def command(
       robosc simulate line_follower.rscd --script trace.jsonl
       echo 'message_scan.u_response {"value": "clear"}' | robosc simulate line_follower.rscd --script -
 
-    Exit status: 0 done, 1 errors in the model or script, 2 a wrong call, 3 no supervisor exists.
+    Exit status: 0 success, 1 errors in the model or script, 2 a wrong call, 3 no supervisor exists.
     """
     if sum((script is not None, number is not None)) > 1:
         raise click.UsageError("--script and --random exclude each other")
@@ -95,7 +95,7 @@ def _settings(model: str, chosen: str | None, report: Report) -> Settings:
 
 
 def _played(models: Models, script: str, settings: Settings | None, report: Report) -> Iterator[dict[str, Any]]:
-    """The answer to each line of a script; what is wrong with the script goes to the report, which then ends."""
+    """Return the answer to each line of a script. Errors in the script go to the report and end it."""
     name = "<stdin>" if script == "-" else script
     decoded, faults = decode(name, files.read_stdin(name) if script == "-" else files.read(script))
     report.add([replace(fault, rule=RULE) for fault in faults], {name: decoded.content})
@@ -140,7 +140,7 @@ def _converse(simulation: Simulation, seed: int) -> None:
             return
         try:
             answer = session.do(line)
-        except (OSError, ValueError) as error:  # no such file, or nothing that can be the name or the text of one
+        except (OSError, ValueError) as error:  # no such file, or no valid file name or content
             answer = str(error)
         if answer:
             say(answer)

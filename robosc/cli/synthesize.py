@@ -1,4 +1,4 @@
-"""`robosc synthesize`."""
+"""Command `robosc synthesize`."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from robosc.analysis.observations import Weight
     from robosc.synthesis import Counts, Statistics, Synthesis
 
-#: What may be spent on a guard, in nodes looked at: some tenths of a second, and far more than a person reads.
+#: Effort limit for one guard, in visited nodes: some tenths of a second, and far more than a readable guard needs.
 _EFFORT = 500_000
 
 
@@ -45,23 +45,24 @@ _EFFORT = 500_000
 @synthesizer
 @paths
 def command(model: str, as_json: bool, counts: bool, count_inputs: bool, megabytes: int, paths: Paths) -> None:
-    """Synthesize the supervisor of a robot: its states, and when it allows what.
+    """Synthesize the supervisor of a robot and print its states and guards.
 
-    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote. A guard says where
-    the supervisor allows an event, beyond what the robot itself forbids; what no requirement asks for and synthesis had
-    to add is shown apart. Of each requirement it is said in how many states it matters: where it forbids what the robot
-    could do; of `never` and `always`, how many states they forbid. --json lists all events, those for the data to send
-    and those from the robot, too, and tells what synthesis cost. A guard that would be far too long to read is not
-    written out: its `guard` is null, and `guard_nodes` tells how large its decision diagram is. --counts writes no
-    guards out at all. --count-inputs counts each state once for each value of what the robot sends, as CIF's
-    tools do; in a .cif file that is how states are counted at any rate.
+    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file written by `transform --to xmi`. A guard is the
+    condition under which the supervisor allows an event that the robot itself can perform. Additions of synthesis,
+    which no requirement states, are shown separately. For each requirement, the output has the number of states in
+    which it restricts the robot; for `never` and `always`, the number of states that they forbid.
+
+    --json lists all events, including those for outgoing data and those from the robot, and the cost of synthesis.
+    Guards too long to read are omitted (`guard` is null), and `guard_nodes` is the size of the decision diagram.
+    --counts omits all guards. --count-inputs counts each state once for each value of the robot's inputs, as CIF's
+    tools do. States of .cif files are always counted in this way.
 
     \b
     Examples:
       robosc synthesize line_follower.rscd
       robosc synthesize line_follower.rscd --json | jq .controlled_states
 
-    Exit status: 0 done, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
+    Exit status: 0 success, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
     if counts and chosen_synthesizer() is not None:
         raise click.UsageError("--counts is what our own synthesis counts: leave it or --synthesizer out")
@@ -133,7 +134,7 @@ def _show_json(model: sct.SupervisoryControlModel, synthesis: Diagnosis, times: 
 
 
 def _weight(weight: Weight) -> dict[str, Any]:
-    """A requirement of the text, and in how many states it matters."""
+    """Return a requirement of the text and the number of states in which it matters."""
     first = weight.requirements[0]
     file, span = place(first)
     texts = list(dict.fromkeys(requirement.text for requirement in weight.requirements))
@@ -148,7 +149,7 @@ def _weight(weight: Weight) -> dict[str, Any]:
 
 
 def _cost(statistics: Statistics) -> dict[str, Any]:
-    """What synthesis cost; the seconds and bytes alone differ from run to run."""
+    """Return the cost of synthesis. Only its seconds and bytes differ from run to run."""
     return {
         "peak_nodes": statistics.peak_nodes,
         "operations": statistics.operations,
@@ -160,7 +161,7 @@ def _cost(statistics: Statistics) -> dict[str, Any]:
 
 
 def _peak_bytes() -> int | None:
-    """The most memory that the whole process has had so far; None where the system does not tell."""
+    """Return the peak memory of the process in bytes. None if the system does not report it."""
     if sys.platform == "win32":
         return None
     most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
@@ -168,7 +169,7 @@ def _peak_bytes() -> int | None:
 
 
 def _event(event: sct.Event, guard: sct.EventGuard | None, synthesis: Synthesis) -> dict[str, Any]:
-    """An event with its guard; of an event without one, whether the plants ever let it happen depends on others."""
+    """Return an event with its guard. Without a guard, `ever_enabled` depends on the reachable states of the plants."""
     shown = RobotPrinter() if event.kind in (sct.EventKind.plain, sct.EventKind.input) else SctPrinter()
     parts = [part for part in (guard.requirement, guard.synthesis) if part] if guard else []
     whole = conjunction(map(copied, parts))
@@ -184,14 +185,14 @@ def _event(event: sct.Event, guard: sct.EventGuard | None, synthesis: Synthesis)
 
 
 def _states(model: sct.SupervisoryControlModel, counts: Counts | Synthesis, times: int) -> str:
-    """How many states there are, each counted so many times."""
+    """Return the number of states, each counted `times` times."""
     without = counts.uncontrolled_states
     beside = "" if without is None else f", of {grouped(without * times)} without requirements"
     return f"{model.name}: {counted(counts.controlled_states * times, 'state')}{beside}"
 
 
 def _show(model: sct.SupervisoryControlModel, synthesis: Diagnosis, times: int) -> None:
-    """What tells something: the choice among data to send restricts nothing that the robot does."""
+    """Print the states and guards. Omits the selection of outgoing data, which does not restrict the robot."""
     assert synthesis.supervisor is not None
     say(_states(model, synthesis, times))
     for guard in synthesis.supervisor.guards:

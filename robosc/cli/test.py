@@ -1,4 +1,4 @@
-"""`robosc test`."""
+"""Command `robosc test`."""
 
 from __future__ import annotations
 
@@ -78,12 +78,12 @@ def command(
     form: str,
     paths: Paths,
 ) -> None:
-    """Play scenarios: what comes from the robot, and what is expected of its controller then.
+    """Run scenario tests: events from the robot, and the expected reactions of its controller.
 
-    MODEL is a .rscd file with a robot. docs/scenarios.md says what stands in a FILE. They are played with the robot's
-    controller in Python; with `--engine c` its control loop is also compared with that of the generated C, compiled, in
-    every step. With `--ros2` a node plays them, too: it is started for each of them, in simulated time, and
-    has to do the same with the same data. Nothing else is to be on these topics, least of all a robot.
+    MODEL is a .rscd file with a robot. docs/scenarios.md describes the format of a FILE. The robot's controller in
+    Python runs the scenarios. `--engine c` also compares its control loop with the compiled control loop of the
+    generated C in every step. `--ros2` also starts a node for each scenario, in simulated time, which must show the
+    same events with the same data. Nothing else may use these topics, in particular no robot.
 
     \b
     Examples:
@@ -93,7 +93,7 @@ def command(
       robosc test porter.rscd *.scenarios --ros2 --node "ros2 run porter_controller porter_controller"
       robosc test line_follower.rscd line_follower.scenarios --traces ros2/line_follower_controller/test/traces
 
-    Exit status: 0 all is as expected, 1 something is not, or errors, 2 a wrong call, 3 no supervisor exists.
+    Exit status: 0 all scenarios passed, 1 a scenario failed, or errors, 2 a wrong call, 3 no supervisor exists.
     """
     if not model.endswith(".rscd"):
         raise CallError(f"{model} is no text: scenarios speak of a robot in a .rscd file")
@@ -139,7 +139,7 @@ def command(
 def _read(
     path: str, names: Sequence[str], paths: Paths, report: Report
 ) -> tuple[Models, Mapping[Holds, ex.Expression], list[Scenario]]:
-    """The models of a robot, scenarios, and what their conditions mean; what is wrong goes to the report."""
+    """Return the models of a robot, its scenarios, and the expressions of their conditions. Errors go to the report."""
     plain = read_models(path, paths, report)
     scenarios: list[Scenario] = []
     conditions: list[Holds] = []
@@ -156,26 +156,26 @@ def _read(
 def _meant(
     path: str, plain: Models, conditions: Sequence[Holds], paths: Paths, report: Report
 ) -> tuple[Models, Mapping[Holds, ex.Expression]]:
-    """The models with which conditions can be evaluated, and what these mean there."""
+    """Return models with which the conditions can be evaluated, and their expressions in these models."""
     if not conditions:
         return plain, {}
     text, _ = decode(path, files.read(path))
     assert plain.robosc is not None
-    span = plain.robosc.source.span  # type: ignore[union-attr]  # what was read from a text has its place
+    span = plain.robosc.source.span  # a model from a text has a place
     longer = extended(text.content, text.offset(span.end_line, span.end_column), conditions)
     types = RosTypes(paths.interfaces)
     reading = read_text(path, paths.libraries, types, Documents({path: longer.text}))
     findings = [*reading.findings, *(check(reading.base, reading.findings, types) if reading.base else ())]
     report.add(finding for finding in map(longer.told, findings) if finding.rule == RULE)
     report.stop_on_errors()
-    robot: rsc.Robot = reading.base  # type: ignore[assignment]  # it is the same but for the properties
+    robot: rsc.Robot = reading.base  # equal except for the properties
     model = robosc.to_sct(robot)
     meant = dict(zip(conditions, longer.expressions(model), strict=True))
     return Models(model, robosc.to_rosgraph(robot, paths.interfaces), robot), meant
 
 
 def _live(models: Models, settings: Configuration, player: Player, node: str | None) -> LiveNode:
-    """The node that plays scenarios: the one that a command starts, else the model run as it is here."""
+    """Return the node that runs scenarios: by the given command, else `robosc run` of the model."""
     assert models.rosgraph is not None
     files = player_files(models.rosgraph, settings, player.parameters, player.incoming)
     generated = TARGETS["ros2"].files(models, settings, TraceTest(player.parameters, files, "", ()))
@@ -184,7 +184,7 @@ def _live(models: Models, settings: Configuration, player: Player, node: str | N
 
 
 def _command() -> list[str]:
-    """What runs the model as a node, found and configured as for this call."""
+    """Return the command that runs the model as a node, with the search folders and configuration of this call."""
     given = click.get_current_context().params
     options = [word for folder in given["library_paths"] for word in ("-I", folder)]
     options += [word for folder in given["interface_paths"] for word in ("--interface-path", folder)]
@@ -195,7 +195,7 @@ def _command() -> list[str]:
 
 
 def _followed(live: LiveNode, scenario: Scenario, player: Player) -> list[Diagnostic]:
-    """What the node does otherwise than the scenario. Raises CallError where there is no node."""
+    """Return the node's deviation from the scenario. Raises CallError if there is no node."""
     try:
         difference = live.follow(scenario, player.trace, player.sources)
     except LiveError as error:
@@ -204,7 +204,7 @@ def _followed(live: LiveNode, scenario: Scenario, player: Player) -> list[Diagno
 
 
 def _compared(models: Models, settings: Configuration, runs: Sequence[Operations]) -> list[Diagnostic]:
-    """Where the generated control loop does something else. Raises CallError where it can't be compiled here."""
+    """Return the deviations of the generated control loop. Raises CallError if it cannot be compiled here."""
     compiler = c_compiler()
     if compiler is None:
         raise CallError("there is no C compiler to play scenarios with")

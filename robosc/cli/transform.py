@@ -1,4 +1,4 @@
-"""`robosc transform`."""
+"""Command `robosc transform`."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from robosc.m2t.models import Models, TraceTest
 
 
-#: What a package of ROS, or a target of CMake, may be called here.
+#: Valid names of a ROS package or a CMake target.
 _INCLUDING = re.compile(r"[A-Za-z][\w.-]*", re.ASCII)
 
 
@@ -115,10 +115,10 @@ def command(
     megabytes: int,
     paths: Paths,
 ) -> None:
-    """Check a robot, synthesize its supervisor and generate the TARGETs from it, all of them or none.
+    """Check a robot, synthesize its supervisor and generate the TARGETs, all of them or none.
 
-    MODEL is a .rscd file with a robot, or an .xmi file that an earlier `--to xmi` wrote; where no ROS is asked for also
-    a .cif file, which its CIF imports from where it is.
+    MODEL is a .rscd file with a robot, or an .xmi file written by an earlier `--to xmi`. If no target is a ROS package,
+    it may also be a .cif file, which the generated CIF imports from its place.
 
     \b
     Examples:
@@ -129,7 +129,7 @@ def command(
       robosc transform line_follower.rscd --to ros2 --list-inputs
       robosc transform line_follower.rscd --to ros2 --into my_robot -o generated
 
-    Exit status: 0 done, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
+    Exit status: 0 success, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
     _refuse_what_does_not_fit(targets, with_tests, typed_state, into)
     with Report(form, aside=list_inputs) as report:
@@ -138,7 +138,7 @@ def command(
             if target.needs_graph and models.rosgraph is None:
                 raise CallError(f"{model} has no ROS graph, which {target.name} needs: give its .rosgraph.xmi or .rscd")
         settings = _settings(model, chosen, typed_state, into, report)
-        # What a build makes stays where it is built.
+        # The output of a build stays in the build.
         copied = [] if into else targets
         copies = _copies(Path(model).parent, copied, settings, confirmed, report)
         report.stop_on_errors()
@@ -164,7 +164,7 @@ def command(
             (made,) = files.values()
             trees = {folder: {**made, "inputs.txt": "".join(f"{name}\n" for name in _inputs())}}
         interruption.check()
-        with progress(f"writing to {folder}"):  # it may wait for another run
+        with progress(f"writing to {folder}"):  # may wait for another run
             changed = set(write(trees))
     for written, texts in trees.items():
         resolved = written.resolve()
@@ -173,7 +173,7 @@ def command(
 
 
 def _settings(model: str, chosen: str | None, typed_state: bool, into: str | None, report: Report) -> Configuration:
-    """The configuration with what the call asks for; what does not fit goes to the report."""
+    """Return the configuration, changed by the options of the call. Conflicts go to the report."""
     settings = read_configuration(model, chosen, report)
     settings = settings.model_copy(update={"typed_state": typed_state or settings.typed_state})
     if into and settings.typed_state:
@@ -187,7 +187,7 @@ def _settings(model: str, chosen: str | None, typed_state: bool, into: str | Non
 
 
 def _tests(target: Target, models: Models, settings: Configuration, paths: Paths) -> TraceTest | None:
-    """The test for the package of a target; None where it can't have any."""
+    """Return the test for the package of a target. None if the target has no tests."""
     from robosc.node_tests.trace_test import trace_test_of
 
     return trace_test_of(target, models, settings, paths.interfaces)
@@ -214,17 +214,17 @@ def _refuse_what_does_not_fit(targets: Sequence[Target], with_tests: bool, typed
 
 
 def _inputs() -> list[str]:
-    """The files that were read, by their own paths."""
+    """Return the absolute paths of all input files."""
     return sorted(str(Path(name).resolve()) for name in inputs())
 
 
 def _copies(
     folder: Path, targets: Sequence[Target], configuration: Configuration, confirmed: Sequence[str], report: Report
 ) -> dict[Target, Path]:
-    """The folders that get copies, as the configuration of the model in `folder` asks; errors go to the report.
+    """Return the folders for copies that the configuration of the model in `folder` names. Errors go to the report.
 
-    Whoever wrote the configuration may be somebody else than who runs the tool: what lies outside of the model's folder
-    has to be confirmed.
+    The author of the configuration may not be the user who runs the tool. Folders outside of the model's folder
+    therefore need confirmation.
     """
     copies = {}
     for target in targets:
@@ -252,7 +252,7 @@ def _trees(
     models: Models,
     configuration: Configuration,
 ) -> dict[Path, dict[str, str]]:
-    """What goes where: all targets below the output folder, and the copies that the configuration asks for."""
+    """Return the texts of each folder: all targets below the output folder, and the configured copies."""
     trees: dict[Path, dict[str, str]] = {folder: {}}
     packages: dict[PurePosixPath, Target] = {}
     for target, files in generated.items():

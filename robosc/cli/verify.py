@@ -1,4 +1,4 @@
-"""`robosc verify`."""
+"""Command `robosc verify`."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _STYLES = {
     Outcome.SAMPLED: "yellow",
     Outcome.SKIPPED: "yellow",
 }
-#: The width of the table where nobody looks at a terminal.
+#: Width of the table without a terminal.
 _WIDTH = 120
 
 
@@ -49,11 +49,11 @@ def command(
     chosen: str | None,
     paths: Paths,
 ) -> None:
-    """Prove what a supervised robot promises, or refute it by a shortest trace.
+    """Prove the properties of a supervised robot, or refute them with a shortest trace.
 
-    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote, whose supervisor
-    is taken as it is. Examined are the supervised system, with its requirements, silent events, control loop; and
-    whether the generated C and CIF do the same. docs/verify.md says what each property means.
+    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file written by `transform --to xmi`; the supervisor of
+    an .xmi file is used unchanged. The command analyzes the supervised system with its requirements, silent events and
+    control loop, and compares it with the generated C and CIF. docs/verify.md explains each property.
 
     \b
     Examples:
@@ -61,7 +61,7 @@ def command(
       robosc verify line_follower.rscd --junit verify.xml
       robosc verify out/LineFollower.sct.xmi --json | jq .proved
 
-    Exit status: 0 nothing refuted, 1 refuted or errors in the model, 2 a wrong call, 3 no supervisor exists.
+    Exit status: 0 no property refuted, 1 refuted or errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
     with Report(aside=True) as report:
         models = read_models(model, paths, report, cif=True)

@@ -1,4 +1,4 @@
-"""`robosc view`."""
+"""Command `robosc view`."""
 
 from __future__ import annotations
 
@@ -57,12 +57,12 @@ def command(
     given: Sequence[str],
     paths: Paths,
 ) -> None:
-    """See a supervised robot decide, in a browser: states, commands, and why they are forbidden.
+    """Show the decisions of a supervised robot in a browser: states, commands, and why they are forbidden.
 
-    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote. The robot is
-    simulated: a click lets an event happen. --log and --trace show a run that has been, and from any moment of it one
-    goes on in simulation. --ros2 shows a robot that runs, by what its node reports on ~/state. Of several
-    models the page shows the one that is chosen there.
+    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file written by `transform --to xmi`. By default, the
+    robot is simulated: a click performs an event. --log and --trace show a recorded run, and you can continue from any
+    moment of it in simulation. --ros2 shows a running robot, from its node's reports on ~/state. With several models,
+    you select one on the page.
 
     \b
     Examples:
@@ -74,7 +74,7 @@ def command(
       robosc view line_follower.rscd --trace never-collides
       robosc view line_follower.rscd --log events.jsonl --export page
 
-    Exit status: 0 done, 1 errors in the model or log, 2 a wrong call, 3 no supervisor exists.
+    Exit status: 0 success, 1 errors in the model or log, 2 a wrong call, 3 no supervisor exists.
     """
     if sum([live, log is not None, refuted is not None]) > 1:
         raise click.UsageError("--ros2, --log and --trace exclude each other")
@@ -119,12 +119,12 @@ def command(
 
 
 def _nodes(graph: rosgraph.RosGraph, settings: Configuration) -> list[str]:
-    """The full names that the robot's controller and layer have where nothing renames them."""
+    """Return the default full names of the robot's controller and layer."""
     return list(dict.fromkeys(f"/{name}" for name in (settings.package_name(graph), settings.layer_name(graph))))
 
 
 def _listening(heard: Sequence[tuple[Sequence[str], Live]]) -> Callable[[], Callable[[], None]]:
-    """What lets the page hear what nodes tell, to be called once it is served; it gives what ends that."""
+    """Return the function that starts listening to the nodes. It returns the function that stops it."""
 
     def begin() -> Callable[[], None]:
         from robosc.runtime.core.node import StartError
@@ -148,7 +148,7 @@ def _record(
     seed: int,
     report: Report,
 ) -> Record:
-    """What is played. Ends the report where the log has faults."""
+    """Return the record to show. Ends the report if the log has faults."""
     from robosc import view
 
     try:

@@ -1,4 +1,4 @@
-"""Does something again whenever a file changes that it depends on."""
+"""Repetition of an action whenever one of its files changes."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from robosc.files import reading as files
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-#: How often files are looked at.
+#: Polling period.
 PERIOD_SECONDS = 0.3
 
-#: What tells a text from a later one, without reading it: when it changed, how long it is, and which file has it.
+#: Identity of a text without its content: time of change, length, and file number.
 _Stamp: TypeAlias = tuple[int, int, int]
 
 
 def whenever_files_change(
     do: Callable[[Sequence[str]], None], named: Sequence[str], folders: Iterable[str | Path]
 ) -> None:
-    """Calls `do` now, and again after each change of a file that it has read, of one that is `named`, and of models.
+    """Call `do` now, and again after each change of a file that it read, of a `named` file, and of models.
 
-    `do` gets the names of the files that changed. Models are the `.rscd` files in the folders: one that is new there
-    may be the library that was missing. Only an exception, such as KeyboardInterrupt, ends this.
+    `do` gets the names of the changed files. Models are the `.rscd` files in the folders: a new one may be a missing
+    library. Only an exception, such as KeyboardInterrupt, ends this.
     """
     read: list[str] = []
     changed: list[str] = []
@@ -33,7 +33,8 @@ def whenever_files_change(
         with files.noting():
             do(changed)
             read = files.inputs()
-        # A file that was read for the first time is compared with what it is now, all others with what they were.
+        # Files that were read for the first time are compared with their present state, all others with their earlier
+        # state.
         before = _stamps([*named, *read], folders) | before
         while not (changed := _changed(before, _stamps(list(before), folders))):
             time.sleep(PERIOD_SECONDS)
@@ -47,7 +48,7 @@ def _stamps(names: Iterable[str], folders: Iterable[str | Path]) -> dict[str, _S
 def _stamp(name: str) -> _Stamp | None:
     try:
         found = Path(name).stat()
-    except OSError:  # it is not there, for the moment
+    except OSError:  # it does not exist at the moment
         return None
     return found.st_mtime_ns, found.st_size, found.st_ino
 

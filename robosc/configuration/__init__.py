@@ -1,4 +1,4 @@
-"""What a user sets for the generated code: `controller-config.json` (thesis section 5.4), read, checked and located."""
+"""Settings of the generated code: `controller-config.json` (thesis section 5.4), read, checked and located."""
 
 import json
 import re
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
 
 FILE_NAME = "controller-config.json"
 RULE = "configuration"
-#: What a node says at its start where nothing would stop its robot: when it ends, and when a topic falls silent.
+#: Warnings of a node at its start that nothing stops its robot: when the node ends, and when a topic falls silent.
 NO_STOP = "onShutdown names no message: when this node ends, the robot goes on as it was told last"
 NO_STOP_ON_SILENCE = (
     "watchdog_stops holds commands back and does not stop the robot: onShutdown names no message, it goes on as it was"
     " told last"
 )
-#: How many folders below the model a configuration is looked for.
+#: Maximum depth of folders below the model in the search for a configuration.
 SEARCH_DEPTH = 3
 
-#: Faults that pydantic calls by Python's names.
+#: Reasons for errors in which pydantic uses Python's names.
 _WRONG_TYPE = {"model_type": "be an object", "dict_type": "be an object", "list_type": "be an array"}
 
-#: Where a value stands: keys of objects, positions in arrays, from the outside inwards.
+#: Position of a value: keys of objects and indices of arrays, from the outside inwards.
 Key = tuple[str | int, ...]
 
 _Value = TypeVar("_Value")
@@ -49,10 +49,10 @@ def _by_topic(values: dict[str, _Value]) -> dict[str, _Value]:
     return named
 
 
-#: One value for each topic, service or action that the user names; keys lose their leading `/`.
+#: One value for each topic, service or action. Keys lose their leading `/`.
 ByTopic = Annotated[dict[str, _Value], AfterValidator(_by_topic)]
 Milliseconds = Annotated[int, Field(ge=1, le=24 * 3600 * 1000)]
-#: The C engine counts events of a tick in 16 bits.
+#: Limited because the C engine counts events of a tick in 16 bits.
 Count = Annotated[int, Field(ge=0, le=0xFFFF)]
 
 
@@ -71,7 +71,7 @@ class Output(_Settings):
     ros2_supervisor_node_location: str | None = Field(default=None, min_length=1)
 
 
-#: The keys of the folders for copies, as a call names them, by their attributes.
+#: Keys of the folders for copies in dotted notation, by their attributes.
 LOCATIONS = {name: f"output.{field.alias}" for name, field in Output.model_fields.items()}
 
 
@@ -92,7 +92,7 @@ class Launch(_Settings):
 
 
 class ExistingController(_Settings):
-    """How a launch file starts the controller that the supervisory layer stands before: one of the two."""
+    """Start of the controller behind the supervisory layer: by `run` or by `launch`."""
 
     run: Run | None = None
     launch: Launch | None = None
@@ -105,7 +105,7 @@ class Supervisor(_Settings):
 
 
 class ControlLoop(_Settings):
-    """When the controller acts."""
+    """Timing of the controller."""
 
     period_ms: Milliseconds = Field(default=100, description="Time from one tick to the next.")
     events_per_tick: Count = Field(default=0, description="Most events sent in a tick; 0: no limit.")
@@ -128,7 +128,7 @@ class Actions(_Settings):
 
 
 class QualityOfService(_Settings):
-    """ROS 2 quality of service of one communication; what is absent keeps the default of its kind."""
+    """ROS 2 quality of service of one communication. Absent settings keep the default of its kind."""
 
     reliability: Literal["reliable", "best_effort"] | None = None
     durability: Literal["volatile", "transient_local"] | None = None
@@ -136,7 +136,7 @@ class QualityOfService(_Settings):
 
 
 class Package(_Settings):
-    """What `package.xml` says."""
+    """Metadata for `package.xml`."""
 
     name: str | None = Field(
         default=None,
@@ -212,49 +212,49 @@ class Configuration(_Settings):
     _text: str = PrivateAttr("{}")
 
     def model_post_init(self, context: Any) -> None:
-        """Keeps what the configuration was read from, so that later findings can be located."""
+        """Store the file and text of the configuration, so that later findings can be located."""
         self._file, self._text = context or (FILE_NAME, "{}")
 
     def package_name(self, robot: "NamedElement") -> str:
-        """The name of a robot's package, node and executable."""
+        """Return the name of a robot's package, node and executable."""
         return self.package.name or controller_name(robot)
 
     def interfaces_name(self, robot: "NamedElement") -> str:
-        """The name of the package with the type of a robot's state."""
+        """Return the name of the package with the type of a robot's state."""
         return f"{self.package.name or snake_case(robot.name)}_msgs"
 
     def layer_name(self, robot: "NamedElement") -> str:
-        """The same for the supervisory layer before a robot."""
+        """Return the name of the package, node and executable of a robot's supervisory layer."""
         return self.package.name or layer_name(robot)
 
     def error(self, key: Key, message: str, hint: str | None = None) -> Diagnostic:
-        """An error at a key of the file that this was read from, such as `("onShutdown", 0)` or `("qos", "scan")`.
+        """Return an error at a key of the configuration file, such as `("onShutdown", 0)` or `("qos", "scan")`.
 
-        Where the file does not have the key, the error stands at the innermost one around it.
+        If the file does not have the key, the error is at the innermost key around it.
         """
         return Diagnostic(self._file, _span(self._text, key), Severity.ERROR, RULE, message, hint)
 
     def warning(self, key: Key, message: str, hint: str | None = None) -> Diagnostic:
-        """A warning at such a key."""
+        """Return a warning at a key of the configuration file."""
         return replace(self.error(key, message, hint), severity=Severity.WARNING)
 
     @property
     def says_how_to_stop(self) -> bool:
-        """Whether somebody has decided what is sent when the node ends, be it nothing."""
+        """Whether the user has decided on the messages at the node's end, possibly none."""
         return "on_shutdown" in self.model_fields_set
 
     @property
     def watchdog_meaning(self) -> str:
-        """What the parameter `watchdog_stops` means with these settings."""
+        """Description of the parameter `watchdog_stops` with these settings."""
         if not self.on_shutdown:
             stands = "It sends nothing: what the robot was told last stands."
             return f"Whether a silent topic holds commands back and cancels actions. {stands}"
         return f"Whether a silent topic holds commands back, cancels actions and sends {', '.join(self.on_shutdown)}."
 
     def unknown_names(self, topics: Sequence[str]) -> list[Diagnostic]:
-        """Warnings about settings for what the robot does not have.
+        """Return warnings about settings for interfaces that the robot does not have.
 
-        `topics` are its topics, services and actions without a `/` in front.
+        `topics` are its topics, services and actions without a leading `/`.
         """
         settings = (("frameId", self.frame_id), ("qos", self.qos), ("watchdogMs", self.watchdog_ms))
         return [
@@ -268,13 +268,13 @@ class Configuration(_Settings):
 
 
 def find(folder: Path) -> Path | None:
-    """The `controller-config.json` in a model's folder, else in a folder below it; None where there is none.
+    """Return the `controller-config.json` in a model's folder, else in a folder below it. None if there is none.
 
-    The nearest one counts; hidden folders are left out. Raises ModelError where two are equally near.
+    The nearest one counts. Skips hidden folders. Raises ModelError if two are equally near.
     """
     level = [folder]
     for _ in range(SEARCH_DEPTH + 1):
-        # A pipe or device counts, so that `read` reports it.
+        # `read` reports a pipe or device.
         found = [folder / FILE_NAME for folder in level if _is_there(folder / FILE_NAME)]
         if len(found) > 1:
             names = " and ".join(f"{file.relative_to(folder)}" for file in found[:2])
@@ -292,7 +292,7 @@ def _is_there(file: Path) -> bool:
 
 
 def read(file: Path) -> Configuration:
-    """The configuration in a file. Raises ModelError with all that is wrong with it, and OSError."""
+    """Return the configuration in a file. Raises ModelError with all its errors, and OSError."""
     name = str(file)
     try:
         text = files.read(file).decode("utf-8")
@@ -313,7 +313,7 @@ def read(file: Path) -> Configuration:
 
 
 def schema() -> str:
-    """The JSON Schema of the file, as it ships in `robosc/schemas`."""
+    """Return the JSON Schema of the file, as in `robosc/schemas`."""
     document = {"$schema": "https://json-schema.org/draft/2020-12/schema", **Configuration.model_json_schema()}
     return json.dumps(document, indent=2) + "\n"
 
@@ -332,7 +332,7 @@ def _error(file: str, message: str, span: Span | None = None, hint: str | None =
 
 
 def _explained(file: str, text: str, fault: Any) -> Diagnostic:
-    """What pydantic found, in words that name the key."""
+    """Return an error of pydantic as a finding that names the key."""
     key: Key = fault["loc"]
     name = ".".join(str(part) for part in key)
     span = _span(text, key)
@@ -351,7 +351,7 @@ def _one_of(name: str, known: Sequence[str]) -> str:
 
 
 def _repair(key: Key) -> str:
-    """A known key like an unknown one: beside it, else anywhere; failing these, all keys beside it."""
+    """Suggest a similar known key: beside the unknown one, else anywhere. If there is none, list all keys beside it."""
     name, known = str(key[-1]), _keys_at(key[:-1])
     elsewhere = {below: f"{outer}.{below}" for outer in _keys_at(()) for below in _keys_below(outer)}
     close = get_close_matches(name, sorted(elsewhere), n=1, cutoff=0.8)
@@ -362,14 +362,14 @@ def _repair(key: Key) -> str:
 
 
 def _keys_below(outer: str) -> list[str]:
-    """The keys of the object that a key of the configuration has; none where it has no object."""
+    """Return the keys of the object at a top-level key of the configuration. Empty if it has no object."""
     field = next(entry for entry in Configuration.model_fields.values() if entry.alias == outer)
     by_topic = get_origin(field.annotation) is dict
     return _keys_at((outer,)) if _settings_in(field.annotation) and not by_topic else []
 
 
 def _keys_at(key: Key) -> list[str]:
-    """The keys that an object of the configuration may have."""
+    """Return the keys that an object of the configuration may have."""
     model: type[BaseModel] = Configuration
     for name in key:
         field = next((entry for entry in model.model_fields.values() if entry.alias == name), None)
@@ -385,7 +385,7 @@ def _settings_in(annotation: Any) -> type[BaseModel] | None:
 
 
 def _span(text: str, key: Key) -> Span:
-    """Where a key of a JSON text stands; of one that is not there, the innermost key around it."""
+    """Return the span of a key in a JSON text. If it is missing, return that of the innermost key around it."""
     start = end = inside = _skip(text, 0)
     for name in key:
         entry = next((entry for entry in _entries(text, inside) if entry[0] in (name, f"/{name}")), None)
@@ -405,7 +405,7 @@ def _duplicates(text: str, start: int) -> Iterator[tuple[str, Span]]:
 
 
 def _entries(text: str, start: int) -> Iterator[tuple[str | int, int, int, int]]:
-    """The members of the object or array at `start`: key or position, where that stands, where the value begins."""
+    """Iterate over the members of the object or array at `start`: key or index, start and end of it, start of value."""
     if text[start] not in "{[":
         return
     place, at = 0, _skip(text, start + 1)
@@ -423,7 +423,7 @@ def _entries(text: str, start: int) -> Iterator[tuple[str | int, int, int, int]]
 
 
 def _skip(text: str, start: int) -> int:
-    """The next place that is no blank."""
+    """Return the position of the next nonblank character."""
     return next((at for at in range(start, len(text)) if text[at] not in " \t\r\n"), len(text))
 
 

@@ -1,4 +1,4 @@
-"""The parameters of a node, run or generated, with their ranges and the defaults that the configuration gives them."""
+"""Parameters of a node, run or generated, with their ranges and their defaults from the configuration."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Topic: TypeAlias = "rosgraph.Subscription | rosgraph.Publisher"
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a node; a number lies between its bounds. `changes`: it may be set while the node runs."""
+    """A parameter of a node. A number lies between its bounds. `changes`: it can be set while the node runs."""
 
     name: str
     default: Value
@@ -36,7 +36,7 @@ _COUNT = 0xFFFF
 
 
 def controller_parameters(graph: rosgraph.RosGraph, configuration: Configuration, log: str) -> list[Parameter]:
-    """The parameters of a controller; `log` is where its event log goes by default."""
+    """Return the parameters of a controller. `log` is the default file of its event log."""
     clients = [
         *_timeouts(graph, configuration),
         Parameter(
@@ -73,7 +73,7 @@ def controller_parameters(graph: rosgraph.RosGraph, configuration: Configuration
 
 
 def model_parameters(graph: rosgraph.RosGraph) -> dict[rosgraph.Parameter, Parameter]:
-    """The parameters that the model declares; one of a component has its name before it."""
+    """Return the parameters that the model declares. Those of a component have its name as prefix."""
     found = {}
     for declared in graph.parameters:
         name = declared.name if declared.component is None else f"{declared.component}.{declared.name}"
@@ -88,12 +88,12 @@ def model_parameters(graph: rosgraph.RosGraph) -> dict[rosgraph.Parameter, Param
 
 
 def watchdog(words: Mapping[Topic, str], topic: rosgraph.Subscription) -> str:
-    """The parameter that bounds the silence of a topic; `words` are those of `topic_words`."""
+    """Return the parameter that limits the silence of a topic; `words` are those of `topic_words`."""
     return f"watchdog_ms.{words[topic]}"
 
 
 def topic_words(graph: rosgraph.RosGraph) -> dict[Topic, str]:
-    """A word for each subscription and publisher, no two alike: its topic's name in letters, digits and underscores."""
+    """Return a unique word for each subscription and publisher: its topic's name in letters, digits and underscores."""
     words: dict[Topic, str] = {}
     taken: set[str] = set()
     topics: list[Topic] = [*graph.subscriptions, *graph.publishers]
@@ -106,7 +106,7 @@ def topic_words(graph: rosgraph.RosGraph) -> dict[Topic, str]:
 
 
 def layer_parameters(graph: rosgraph.RosGraph, configuration: Configuration, log: str) -> list[Parameter]:
-    """The parameters of a supervisory layer."""
+    """Return the parameters of a supervisory layer."""
     period = configuration.control_loop.period_ms
     return [
         Parameter("period_ms", period, "Time from one report of the state to the next.", (1, _DAY)),

@@ -1,4 +1,4 @@
-"""The reference interpreter: executes an sct model with its supervisor, with or without the control loop."""
+"""Reference interpreter: executes an sct model with its supervisor, with or without the control loop."""
 
 from robosc.engine.control_loop import ControlLoop, Hooks, Settings
 from robosc.engine.interpreter import Blocked, Engine

@@ -1,4 +1,4 @@
-"""The control loop of every generated controller, in Python: batches of incoming data, ticks, settling."""
+"""Control loop of every generated controller, in Python: batches of incoming data, ticks, settling."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 class Settings:
     """Limits of a control loop.
 
-    `events_per_tick`: most cancels and triggers in a tick; 0: no limit. `reactions_per_tick`: most that one topic,
-    service or action starts between two ticks. `react_immediately`: whether the end of a batch starts any.
-    `resolution_ms`: by how many milliseconds the time that the caller passes may lag behind the true one, as it was
-    rounded down; timers are set that much later, so that none expires early.
+    `events_per_tick`: maximum number of cancels and triggers in a tick; 0: no limit. `reactions_per_tick`: maximum
+    number that one topic, service or action starts between two ticks. `react_immediately`: whether the end of a batch
+    starts any. `resolution_ms`: maximum delay in milliseconds of the caller's time, which is rounded down, behind the
+    true time. It is added to every timer so that none expires early.
     """
 
     events_per_tick: int = 0
@@ -34,11 +34,11 @@ class Settings:
 
 @dataclass(frozen=True)
 class Hooks:
-    """What the loop calls, if given. No hook may call the loop.
+    """Optional callbacks of the loop. No callback may call the loop.
 
-    `before`: an enabled event is about to happen; False withholds it where it is a cancel, a trigger or silent, until
-    it is asked again. `after`: it has happened. `livelock`: silent events don't come to rest; once, until they have
-    rested again.
+    `before`: an enabled event is about to happen. If it is a cancel, a trigger or silent, False withholds it until the
+    loop tries it again. `after`: the event has happened. `livelock`: silent events do not settle. It is called once
+    until they have settled again.
     """
 
     before: Callable[[str], bool] | None = None
@@ -47,7 +47,7 @@ class Hooks:
 
 
 class SavedLoop(NamedTuple):
-    """All of a control loop between two calls: what `restore` goes back to, also in another loop of the model."""
+    """State of a control loop between two calls. `restore` accepts it, also in another loop of the model."""
 
     cells: tuple[int, ...]
     inputs: tuple[int, ...]
@@ -58,15 +58,16 @@ class SavedLoop(NamedTuple):
 class ControlLoop:
     """Runs a model with its supervisor.
 
-    Incoming data: `begin()`, `perform(event, data)` for each event of the batch, `end()`. Every period: `tick()`.
+    For incoming data, call `begin()`, `perform(event, data)` for each event of the batch, and `end()`. Call `tick()`
+    periodically.
 
-    To settle is to run silent events to completion, with the choice of data before each and at the end; a livelock is
-    reported where more of them follow each other than the model's bound says. After `end` and `tick` the loop has
-    settled. Cancels and triggers run from two queues, the least recently run first. Each topic, service and action has
-    a count of reactions of its own, so that none uses up another's. Raises what `Engine` raises.
+    Settling runs silent events to completion. The loop selects data before each of them and at the end. It reports a
+    livelock if more of them follow each other than the model's bound. The loop has settled after `end` and `tick`.
+    Cancels and triggers run from two queues, the least recently run first. Each topic, service and action has its own
+    count of reactions, so that none exhausts another's. Raises the exceptions of `Engine`.
 
-    `timers` are the model's times: tell them before each call what time it is (`timers.at`), and call `expire` when
-    they want to be asked (`timers.wait`), until it finds nothing.
+    `timers` are the model's timers. Set their time before each call (`timers.at`). When the next one is due
+    (`timers.wait`), call `expire` until it returns None.
     """
 
     def __init__(
@@ -105,18 +106,18 @@ class ControlLoop:
         self._reactions = [0] * (len(executed.sources) + 1)
         self._source = 0
         self._owed: set[str] = set()
-        #: The groups of which an event has run.
+        #: Groups with an event that has run.
         self._taken: set[engine.Group] = set()
         self._state_before = self.engine.state
 
     @property
     def state(self) -> State:
-        """The current state."""
+        """Current state."""
         return self.engine.state
 
     @property
     def saved(self) -> SavedLoop:
-        """What the loop is in, when no call and no batch is under way."""
+        """State of the loop. Precondition: no call and no batch is active."""
         groups = self._groups_by_number
         rest = (
             tuple(self._cancels),
@@ -132,7 +133,7 @@ class ControlLoop:
         return SavedLoop(*self.engine.saved, self.timers.saved, rest)
 
     def restore(self, saved: SavedLoop) -> None:
-        """Goes back to what `saved` was."""
+        """Restore the state of the loop from `saved`."""
         self.engine.restore((saved.cells, saved.inputs))
         self.timers.restore(saved.timers)
         cancels, triggers, reactions, owed, taken, *counted = saved.rest
@@ -141,11 +142,11 @@ class ControlLoop:
         self._next_silent, self._quiescent, self._livelocked, self._ticked = counted
 
     def enabled(self, event: str) -> bool:
-        """Whether the event can happen now."""
+        """Return whether the event can happen now."""
         return self.engine.enabled(event)
 
     def perform(self, event: str, data: Mapping[str, Value] | None = None) -> bool:
-        """Lets one event happen with its data, if it is enabled and not withheld; says whether it did."""
+        """Perform an event with its data, if it is enabled and not withheld. Return whether it happened."""
         if data:
             self.engine.set_inputs(event, data)
         happened = self.engine.enabled(event) and self._run(event)
@@ -154,17 +155,17 @@ class ControlLoop:
         return happened
 
     def begin(self) -> None:
-        """Starts a batch: what one message from the robot means. Its last event says which topic it comes from."""
+        """Start a batch: the events of one message from the robot. The last event of the batch determines its topic."""
         self._settle()
         self._source = 0
         self._state_before = self.engine.state
 
     def end(self) -> None:
-        """Ends a batch: settles, then runs each cancel and trigger that it made possible or whose data it changed.
+        """End a batch: settle, then run the cancels and triggers that it enabled or whose data it changed.
 
-        None is run before the first tick or without `react_immediately`. One topic, service or action starts at most
-        `reactions_per_tick` of them between two ticks. What is left over waits for the end of a later batch that
-        changes the state, or for the next tick.
+        None runs before the first tick or without `react_immediately`. One topic, service or action starts at most
+        `reactions_per_tick` of them between two ticks. The rest waits for the end of a later batch that changes the
+        state, or for the next tick.
         """
         self._settle()
         if self._ticked and self.settings.react_immediately:
@@ -178,7 +179,10 @@ class ControlLoop:
                 self._owed.clear()
 
     def expire(self) -> str | None:
-        """Lets the first time run out that is up: its event is a batch. Says which event that is; None: none is up."""
+        """Perform the event of the timer that expired first, as a batch.
+
+        Return the event, or None if no timer expired.
+        """
         event = self.timers.expire()
         if event is not None:
             self.begin()
@@ -187,9 +191,9 @@ class ControlLoop:
         return event
 
     def tick(self) -> None:
-        """Settles, then runs each enabled cancel and trigger once, cancels first.
+        """Settle, then run each enabled cancel and trigger once, cancels first.
 
-        At most `events_per_tick` are run, and one of those that share a topic.
+        At most `events_per_tick` run, and at most one of those that share a topic.
         """
         self._ticked = True
         self._reactions = [self.settings.reactions_per_tick] * len(self._reactions)
@@ -199,7 +203,10 @@ class ControlLoop:
         self._serve(self._queued(), self.settings.events_per_tick or len(self._queued()))
 
     def settle(self) -> None:
-        """Settles, then runs each enabled cancel once: what a supervisory layer, without ticks, does after an event."""
+        """Settle, then run each enabled cancel once.
+
+        A supervisory layer, which has no ticks, does this after an event.
+        """
         self._settle()
         self._serve(self._cancels, len(self._cancels))
 
@@ -207,7 +214,7 @@ class ControlLoop:
         return [*self._cancels, *self._triggers]
 
     def _candidates(self) -> list[str]:
-        """What is enabled now and was not before the batch, or has other data."""
+        """Return the events that the batch enabled, or whose data it changed."""
         before, now = self._state_before, self.engine.state
         return [
             event
@@ -217,13 +224,13 @@ class ControlLoop:
         ]
 
     def _data(self, event: str, state: State) -> Value | None:
-        """Which data the event sends in a state."""
+        """Return the selection of the event's data in a state."""
         return state[self._chosen_in[event].name] if event in self._chosen_in else None
 
     def _serve(self, due: Collection[str], most: int) -> int:
-        """Asks each due event at its turn, cancels first, and runs at most so many; returns what is left of these.
+        """Run enabled events of `due` in turn, cancels first, at most `most`; return how many more may run.
 
-        The model has settled whenever one is asked.
+        The model has settled before each of them.
         """
         for queue in (self._cancels, self._triggers):
             for event in [event for event in queue if event in due]:
@@ -235,7 +242,7 @@ class ControlLoop:
         return most
 
     def _run(self, event: str) -> bool:
-        """Lets an enabled event happen, unless the caller withholds it."""
+        """Run an enabled event unless the caller withholds it. Return whether it happened."""
         if self.hooks.before is not None and not self.hooks.before(event) and event in self._own:
             return False
         self.timers.before(event)
@@ -279,7 +286,7 @@ class ControlLoop:
                 self._quiescent = True
 
     def _provide(self) -> None:
-        """Chooses the data to send: for each choice the first alternative whose event is enabled."""
+        """Select the data to send: for each choice, the first alternative whose event is enabled."""
         for alternatives in self._choices:
             event, chosen = next(
                 (alternative for alternative in alternatives if self.engine.enabled(alternative[0])), ("", None)

@@ -1,4 +1,4 @@
-"""Executes single events of an engine model."""
+"""Execution of single events of an engine model."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ if TYPE_CHECKING:
 
 
 class Blocked(StrEnum):
-    """What keeps an event from happening; of several reasons the first of these."""
+    """Cause that blocks an event. If there are several, the first of these."""
 
     PLANT = "plant"
     REQUIREMENT = "requirement"
     SYNTHESIS = "synthesis"
 
 
-#: Writes the values after an event into the last list, given cells and inputs before it.
+#: Writes values after an event to the last list, given the cells and inputs before it.
 _Step = Callable[[Sequence[int], Sequence[int], list[int]], None]
 
 
 class Engine:
-    """A model in some state, at first its initial one.
+    """A model with its current state, at first its initial one.
 
-    Events are named with their plant (`message_move.c_trigger`). An event happens where its guard holds: every plant
-    that has it on an edge has one from its location with a true guard, and so has the supervisor. All that it changes
-    is changed at once, from the values before. Raises ValueError where the model has no supervisor or one without a
-    guard for a controllable event; a KeyError means that there is no event or input of that name.
+    Event names include their plant (`message_move.c_trigger`). An event happens only if its guard is true: each of its
+    plants has an enabled edge for it in its location, and the supervisor allows it. All changes are simultaneous and
+    use the values before the event. Raises ValueError if the model has no supervisor, or one without a guard for a
+    controllable event. Raises KeyError for an unknown event or input.
     """
 
     def __init__(self, model: sct.SupervisoryControlModel) -> None:
@@ -64,7 +64,7 @@ class Engine:
 
     @property
     def state(self) -> State:
-        """The current state: a mapping from names to values, unchangeable, hashable. Assign one to go there."""
+        """Current state: an immutable, hashable mapping from names to values. Assign a state to change it."""
         return State(self._layout, self._cells)
 
     @state.setter
@@ -75,23 +75,23 @@ class Engine:
 
     @property
     def saved(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """The cells of the state, and the values of the inputs: `restore` goes back there, also in another engine."""
+        """Cells of the state and values of the inputs. `restore` accepts them, also in another engine of the model."""
         return self._cells, tuple(self._inputs)
 
     def restore(self, saved: tuple[tuple[int, ...], tuple[int, ...]]) -> None:
-        """Goes back to what `saved` was in an engine of this model."""
+        """Restore the state from `saved` of an engine of this model."""
         self._cells, self._inputs[:] = saved
 
     @property
     def codes(self) -> dict[sct.Plant | sct.DiscreteVariable, int]:
-        """The state by the codes of decision diagrams: positions of locations and literals, distances from minima."""
+        """State in the codes of decision diagrams: positions of locations and literals, differences from minima."""
         cells = zip(self._layout.elements, self._layout.domains, self._cells, strict=True)
         return {element: value - domain.low for (_, element), domain, value in cells}
 
     def state_with(self, values: Mapping[sct.Plant | sct.DiscreteVariable, Value]) -> State:
-        """The current state, but for the locations of some plants and the values of some variables.
+        """Return the current state with other locations of some plants and other values of some variables.
 
-        Raises ValueError where one has no such location or value.
+        Raises ValueError for a location or value that does not exist.
         """
         cells = list(self._cells)
         for element, value in values.items():
@@ -103,7 +103,7 @@ class Engine:
         return State(self._layout, tuple(cells))
 
     def reads(self, event: str) -> frozenset[sct.Plant | sct.DiscreteVariable]:
-        """The parts of the state on which it depends whether the event can happen, and why it can't."""
+        """Return the parts of the state that determine whether the event is enabled, and the reasons that block it."""
         asked = self._by_name[event]
         conditions = [term.condition for term in asked.guard.terms]
         parts = [asked.guard.plants, asked.guard.requirement, asked.guard.synthesis]
@@ -113,7 +113,7 @@ class Engine:
         return frozenset(variable.variable or variable.plant for variable in read)
 
     def blocked_by(self, event: str) -> Blocked | None:
-        """What keeps the event from happening in this state; None where it is enabled."""
+        """Return the cause that blocks the event in this state. None if it is enabled."""
         if self.enabled(event):
             return None
         if event not in self._reasons:
@@ -123,7 +123,7 @@ class Engine:
         return next(reason for reason, holds in self._reasons[event] if not holds(self._cells, ()))
 
     def failing(self, event: str) -> list[sct.Requirement]:
-        """The requirements on the event that forbid it in this state, whatever else does."""
+        """Return the requirements on the event that forbid it in this state, independent of other causes."""
         if event not in self._failing:
             self._failing[event] = [
                 (reason.requirement, self.condition(reason.condition))
@@ -133,21 +133,21 @@ class Engine:
         return [requirement for requirement, forbids in self._failing[event] if forbids()]
 
     def enabled(self, event: str, state: State | None = None) -> bool:
-        """Whether the event can happen in this state, or in another one of this engine."""
+        """Return whether the event is enabled in this state, or in another state of this engine."""
         cells = self._cells if state is None else state.cells
         return bool(self._guards[event](cells, ()))
 
     def set_inputs(self, event: str, data: Mapping[str, Value]) -> None:
-        """Sets inputs of the event (`i_response`) for this and later events; integers saturate at their range.
+        """Set inputs of the event (`i_response`) for this and later events. Integers saturate at their range.
 
-        Raises ValueError where a value is of another type.
+        Raises ValueError for a value of another type.
         """
         for name, value in data.items():
             position = self._carried[event][name]
             self._inputs[position] = self._input_domains[position].internal(value)
 
     def perform(self, event: str, data: Mapping[str, Value] | None = None) -> bool:
-        """Lets the event happen with this data if it is enabled, and nothing else; says whether it did."""
+        """Perform the event with this data if it is enabled. Return whether it happened."""
         if data:
             self.set_inputs(event, data)
         if not self.enabled(event):
@@ -159,21 +159,21 @@ class Engine:
         return True
 
     def location(self, plant: sct.Plant) -> int:
-        """The position of the location that the plant is in."""
+        """Return the position of the plant's location."""
         cell = self._layout.cells.get(plant)
         return 0 if cell is None else self._cells[cell]
 
     def value(self, variable: sct.DiscreteVariable) -> Value:
-        """The value of a variable, as a reader of the state sees it."""
+        """Return the value of a variable in its external form."""
         cell = self._layout.cells[variable]
         return self._layout.domains[cell].shown(self._cells[cell])
 
     def cell(self, variable: engine.StateVariable) -> int:
-        """The value of a part of the state; of a location its position."""
+        """Return the value of a state variable. The value of a location is its position."""
         return self._cells[self._layout.position[variable.name]]
 
     def condition(self, condition: ex.Expression) -> Callable[[], bool]:
-        """A function that says whether a condition of the engine model holds in the present state, with the inputs."""
+        """Return a function that evaluates a condition of the engine model in the current state, with the inputs."""
         function = self._compile(condition)
         return lambda: bool(function(self._cells, self._inputs))
 
@@ -206,7 +206,7 @@ class Engine:
         return choose
 
     def read(self, reference: ex.Expression) -> object:
-        """What a reference of the sct model stands for in this state, with the inputs that were set last."""
+        """Return the value of a reference of the sct model in this state, with the latest inputs."""
         match reference:
             case sct.LocationReference(location=location):
                 plant: sct.Plant = location.eContainer()
@@ -220,7 +220,7 @@ class Engine:
 
 
 def _object(kind: ex.Type, value: int) -> object:
-    """A value of a cell as expressions of the sct model have it."""
+    """Return the value of a cell in the form of the sct model's expressions."""
     if isinstance(kind, ex.EnumerationType):
         return kind.enumeration.literals[value]
     return bool(value) if isinstance(kind, ex.BooleanType) else value

@@ -1,4 +1,4 @@
-"""The state of an engine model: a location of each plant that has several, and a value of each variable."""
+"""State of an engine model: a location of each plant with several, and a value of each variable."""
 
 from __future__ import annotations
 
@@ -13,14 +13,15 @@ from robosc.semantics.domains import domain
 if TYPE_CHECKING:
     from robosc.metamodel import sct
 
-#: What a reader sees: a boolean, an integer, or the name of a location or literal.
+#: External form of a value: a boolean, an integer, or the name of a location or literal.
 Value = bool | int | str
 
 
 class Domain:
-    """The values of a type, as the engine and as its readers see them.
+    """Values of a type, in their internal and external form.
 
-    Inside the engine values are integers: locations and literals by position. Raises ValueError where it has no bounds.
+    The internal form is an integer: locations and literals have their position. Raises ValueError for a type without
+    bounds.
     """
 
     def __init__(self, kind: ex.Type) -> None:
@@ -34,13 +35,13 @@ class Domain:
         self._boolean = isinstance(kind, ex.BooleanType)
 
     def shown(self, value: int) -> Value:
-        """A value as a reader sees it."""
+        """Return the external form of a value."""
         if self._names is not None:
             return self._names[value]
         return bool(value) if self._boolean else value
 
     def internal(self, value: Value) -> int:
-        """A reader's value as the engine sees it; an integer saturates. ValueError: it is of another type."""
+        """Return the internal form of a value. Integers saturate. Raises ValueError for a value of another type."""
         possible = None if self._names is None else self._names[self.low : self.high + 1]
         if possible is not None and isinstance(value, str) and value in possible:
             return self.low + possible.index(value)
@@ -50,17 +51,17 @@ class Domain:
         raise ValueError(f"{json.dumps(value, default=repr)} is none of the values: {expected}")
 
     def clamp(self, value: int) -> int:
-        """The nearest value of the domain."""
+        """Return the value of the domain that is nearest to `value`."""
         return min(max(value, self.low), self.high)
 
 
 class Layout:
-    """Which cell of a state holds what. Names are as in `~/state`: `component_Gauge`, `Gauge.level`."""
+    """Assignment of the cells of a state. Names are as in `~/state`: `component_Gauge`, `Gauge.level`."""
 
     def __init__(self, model: engine.EngineModel) -> None:
         self.domains = [Domain(variable.type) for variable in model.variables]
         self.position = {variable.name: cell for cell, variable in enumerate(model.variables)}
-        #: The name of each cell, and what it is of.
+        #: Name and element of each cell.
         self.elements: list[tuple[str, sct.Plant | sct.DiscreteVariable]] = [
             (variable.name, variable.variable or variable.plant) for variable in model.variables
         ]
@@ -68,7 +69,7 @@ class Layout:
 
 
 class State(Mapping[str, Value]):
-    """One state, unchangeable; equal to another state of the same engine with the same values, and hashable."""
+    """An immutable, hashable state. States of one engine are equal if their values are."""
 
     __slots__ = ("cells", "layout")
 

@@ -1,4 +1,4 @@
-"""The times of a model that run: what is up, and what comes next."""
+"""Running timers of a model: expired ones, and the time of the next."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 class Timers:
-    """The timers of an engine's model on a clock of milliseconds that its caller reads.
+    """Timers of an engine's model, on the caller's clock in milliseconds.
 
-    `resolution` is how much later than `now` it may really be: what starts counts from then, so that nothing is early.
+    `resolution` is the clock error in milliseconds. It is added to every timer so that none expires early.
     """
 
     def __init__(self, engine: Engine, resolution: int) -> None:
@@ -22,7 +22,7 @@ class Timers:
         self._resolution = resolution
         timers = list(engine.executed.timers)
         number = {timer: position for position, timer in enumerate(timers)}
-        #: Whether the model has any.
+        #: Whether the model has timers.
         self.exist = bool(timers)
         self._events = [timer.event.name for timer in timers]
         self._of = {event: position for position, event in enumerate(self._events)}
@@ -44,30 +44,33 @@ class Timers:
             for event in engine.executed.events
             if event.restarts
         }
-        #: When each that runs is up, the numbers in the order of the text.
+        #: Expiry time of each running timer, by its number in the order of the text.
         self._up: dict[int, int] = {}
         for timer in timers:
             if timer.initial:
                 self._start(number[timer])
 
     def at(self, now: int) -> None:
-        """What follows happens at this time; where that is before what was said last, all that run start anew."""
+        """Set the time. If the clock went back, restart all running timers."""
         anew, self.now = now < self.now, now
         if anew:
             self.restart()
 
     def restart(self) -> None:
-        """Starts all that run anew."""
+        """Restart all running timers."""
         for number in self._up:
             self._start(number)
 
     def set_duration(self, duration: sct.Duration, milliseconds: int) -> None:
-        """How long timers run that are started from now on, where that is set on the robot."""
+        """Set the length of timers with a duration from a parameter, in milliseconds.
+
+        Running timers are not affected.
+        """
         for number in self._set[duration]:
             self._length[number] = milliseconds
 
     def before(self, event: str) -> None:
-        """Starts and stops timers as an event does that is about to happen."""
+        """Start and stop timers for an event that is about to happen."""
         self._up.pop(self._of.get(event, -1), None)
         for holds, left, starts in self._restarts.get(event, ()):
             if holds is None or holds():
@@ -78,15 +81,15 @@ class Timers:
 
     @property
     def saved(self) -> tuple[int, Mapping[int, int]]:
-        """What is the time, and what runs until when: `restore` goes back there."""
+        """Time, and expiry times of the running timers. `restore` accepts them."""
         return self.now, dict(self._up)
 
     def restore(self, saved: tuple[int, Mapping[int, int]]) -> None:
-        """Goes back to what `saved` was."""
+        """Restore the time and the timers from `saved`."""
         self.now, self._up = saved[0], dict(saved[1])
 
     def expire(self) -> str | None:
-        """The event of what is up, that which was up first, and which runs no longer; None where nothing is."""
+        """Stop the timer that expired first and return its event, or None."""
         wait, number = self._next
         if wait is None or wait > 0:
             return None
@@ -95,13 +98,13 @@ class Timers:
 
     @property
     def wait(self) -> int | None:
-        """How long until the next is up, 0 where one is; None where none runs."""
+        """Milliseconds until the next timer expires; 0 if one has expired. None if none runs."""
         wait, _ = self._next
         return None if wait is None else max(wait, 0)
 
     @property
     def running(self) -> dict[str, int]:
-        """The events of those that run, in the order of the text, each with the time left."""
+        """Events of the running timers in the order of the text, each with the remaining milliseconds."""
         return {self._events[number]: max(self._up[number] - self.now, 0) for number in sorted(self._up)}
 
     @property

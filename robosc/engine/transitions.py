@@ -1,4 +1,4 @@
-"""The transitions of components that are tried and taken as an event happens."""
+"""Transitions of components that an event tries and takes."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 
 class Transitions:
-    """Those of an engine's model that its author wrote; what plants do besides, so as not to block, is none."""
+    """Transitions in the text of an engine's model. Edges that plants have only to not block an event are excluded."""
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
-        #: Of each event the transitions that plants may take, each with the location that it leaves, if not any.
+        #: For each event, the edges that plants may take, each with the location that it leaves; None: all locations.
         self._edges = {
             event_name(event): [
                 (plant, [(edge, origin(edge)) for edge in edges])
@@ -31,7 +31,7 @@ class Transitions:
         }
 
     def tried(self, event: str) -> Iterator[tuple[sct.Edge, bool]]:
-        """What an enabled event tries in the present state, with the inputs that are set, and whether it is taken."""
+        """Iterate over the transitions that an enabled event tries in the current state, and whether each is taken."""
         for plant, edges in self._edges.get(event, ()):
             here = plant.locations[self._engine.location(plant)]
             for edge, left in edges:
@@ -44,5 +44,5 @@ class Transitions:
                     break
 
     def taken(self, event: str) -> tuple[sct.Edge, ...]:
-        """What an enabled event takes in the present state, with the inputs that are set."""
+        """Return the transitions that an enabled event takes in the current state, with the current inputs."""
         return tuple(edge for edge, taken in self.tried(event) if taken)

@@ -1,4 +1,4 @@
-"""Types, enumerations and initial values of a robot model in the models that are made of it."""
+"""Types, enumerations and initial values of a robot model in the target models."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from robosc.semantics.inputs import Computed, FailureReason
     from robosc.semantics.instances import InstanceVariable
 
-#: The type that becomes of a basic type without bounds, and the value of a variable without initial one.
+#: Target type of each basic type without bounds, and the value of a variable without an initial value.
 _BASIC: dict[type[robosc.DataType], tuple[type[ex.Type], Value]] = {
     robosc.BooleanDataType: (ex.BooleanType, False),
     robosc.IntegerDataType: (ex.IntegerType, 0),
@@ -27,9 +27,11 @@ _BASIC: dict[type[robosc.DataType], tuple[type[ex.Type], Value]] = {
 
 
 class Declarations:
-    """The types of one model, whose enumerations (thesis listing 5.6) it owns and that are made when first asked for.
+    """Types of one target model.
 
-    Enumerations of `others`, of the model that it refers to, are not made again.
+    The model owns their enumerations (thesis listing 5.6), which are created on first use.
+
+    Reuses the enumerations of `others`, the declarations of a model that the target model refers to.
     """
 
     def __init__(
@@ -44,7 +46,7 @@ class Declarations:
         self._names = Names(enumeration.name for enumeration in self.enumerations.values())
 
     def type(self, declared: robosc.DataType) -> ex.Type:
-        """The type of a variable or of data, which is basic or an enum (rule `variable-type`)."""
+        """Return the type of a variable or of data, which is basic or an enum (rule `variable-type`)."""
         if isinstance(declared, robosc.IntegerDataType):
             return ex.IntegerType(minimum=declared.minimum, maximum=declared.maximum)
         if type(declared) in _BASIC:
@@ -52,7 +54,7 @@ class Declarations:
         return ex.EnumerationType(enumeration=self.enumeration(_enum(declared)))
 
     def computed(self, told: Computed) -> ex.Type:
-        """The type of what is computed of data; an integer has bounds (rule `integer-range`)."""
+        """Return the type of a value computed from data. An integer has bounds (rule `integer-range`)."""
         if isinstance(told.type, EnumType):
             return ex.EnumerationType(enumeration=self.enumeration(told.type.definition))
         if told.bounds is None:
@@ -60,16 +62,19 @@ class Declarations:
         return ex.IntegerType(minimum=told.bounds[0], maximum=told.bounds[1])
 
     def reason(self, told: FailureReason) -> ex.Type:
-        """The reasons for which the service or action of an error can fail, which follow each other in the enum."""
+        """Return the type of the reasons for which a service or action can fail.
+
+        They are consecutive literals of the enum.
+        """
         literals = {literal.name: literal for literal in self.enumeration(told.enum).literals}
         possible = [literal for name, literal in literals.items() if name in reasons(told.port.communication)]
         return ex.EnumerationType(enumeration=self.enumerations[told.enum], first=possible[0], last=possible[-1])
 
     def enumeration(self, enum: robosc.EnumDataType) -> ex.Enumeration:
-        """The enumeration of an enum."""
+        """Return the enumeration of an enum."""
         if enum not in self.enumerations:
             enumeration = ex.Enumeration(name=self._names.fresh(enum.name), source=enum.source)
-            # Several rules may give one value.
+            # Several rules may have the same value.
             literals: dict[str, ex.EnumerationLiteral] = {}
             for rule in enum.rules:
                 name = rule.value.name
@@ -82,12 +87,12 @@ class Declarations:
         return self.enumerations[enum]
 
     def literal(self, value: robosc.EnumValue) -> ex.EnumerationLiteral:
-        """The literal of an enum value."""
+        """Return the literal of an enum value."""
         self.enumeration(value.eContainer().eContainer())
         return self.literals[value]
 
     def initial(self, owned: InstanceVariable) -> ex.Expression:
-        """The first value of a variable as one literal: its initial expression is constant (rule `type`)."""
+        """Return the initial value of a variable as one literal. Its initial expression is constant (rule `type`)."""
         kind, value = owned.type, constant_value(owned.variable.initial, owned.instance)
         if value is None:
             value = _BASIC[type(kind)][1] if type(kind) in _BASIC else default_value(_enum(kind))
@@ -97,7 +102,7 @@ class Declarations:
 
 
 def default_value(enum: robosc.EnumDataType) -> robosc.EnumValue:
-    """The value of an enum's default rule."""
+    """Return the value of an enum's default rule."""
     return next(rule.value for rule in enum.rules if isinstance(rule, robosc.EnumDefaultRule))
 
 

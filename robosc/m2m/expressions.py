@@ -1,4 +1,4 @@
-"""Expressions of a robot model as expressions of its sct model, and as those that the ROS node evaluates."""
+"""Translates expressions of a robot model for its sct model and for the ROS node."""
 
 from __future__ import annotations
 
@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from robosc.semantics.cone_of_influence import Reading
     from robosc.semantics.instances import Instance, InstanceParameter, InstanceVariable
 
-    #: What an access with segments means, whose indices are translated: the expression, and the type of what it reads.
+    #: Translates an access with segments, whose indices are translated already. Returns the expression and the type of
+    #: its value.
     Wire = Callable[
         [robosc.DataType, Instance | None, Sequence[str], robosc.Access, Sequence[ex.Expression]],
         tuple[ex.Expression, robosc.DataType],
@@ -35,9 +36,9 @@ if TYPE_CHECKING:
 
 
 class Carried(NamedTuple):
-    """What `value` stands for where an expression stands: data of a type, below some fields of what comes in.
+    """Meaning of `value` at the place of an expression: data of a type, below some fields of the received message.
 
-    `within` is the instance that declares it.
+    `within` is the instance that declares the type.
     """
 
     type: robosc.DataType
@@ -46,7 +47,7 @@ class Carried(NamedTuple):
 
 
 class _Expressions:
-    """What both have in common: states, variables and enum values become references, literals stay."""
+    """Common part of both translations: states, variables and enum values become references; literals stay."""
 
     def __init__(
         self,
@@ -95,7 +96,7 @@ class _Expressions:
 
 
 class SctExpressions(_Expressions):
-    """Translates the expressions that the supervisor needs; what they read is in the trace already."""
+    """Translates expressions that the supervisor needs. The elements that they read are in the trace already."""
 
     def __init__(self, trace: Trace) -> None:
         super().__init__(trace, trace.declarations, {}, {})
@@ -107,9 +108,10 @@ class SctExpressions(_Expressions):
         transition: robosc.Transition | robosc.RequirementTransition | None = None,
         assigned: InstanceVariable | None = None,
     ) -> ex.Expression:
-        """A condition, or what a transition assigns to a variable; it may read the data of the transition's event.
+        """Translate a condition, or the value that a transition assigns to a variable.
 
-        `within` is the instance whose text it is. Raises ModelError where a comparison of doubles has too many cases.
+        The expression may read the data of the transition's event. `within` is the instance whose text contains it.
+        Raises ModelError if a comparison of doubles has too many cases.
         """
         written = self._trace.instances.expanded(expression, within)
         readings = list(read_data(self._trace.instances, written, within, transition, assigned))
@@ -119,14 +121,14 @@ class SctExpressions(_Expressions):
         present = conjunction(sct.InputReference(input=self._input(reading)) for reading in demanded)
         if present is None or assigned is None:
             return made
-        # An assignment that can't be read is left out.
+        # An assignment without a readable value does not happen.
         kept = sct.VariableReference(variable=self._trace.variables[assigned])
         return ex.Conditional(condition=present, then=made, otherwise=kept)
 
     def _translated(
         self, written: ex.Expression, within: Instance | None, inputs: Mapping[ex.Expression, sct.Input]
     ) -> ex.Expression:
-        """A written out expression, of which some parts are inputs."""
+        """Translate an expanded expression. Some of its parts are inputs."""
 
         def translated(original: ex.Expression, operands: list[ex.Expression]) -> ex.Expression:
             if original in inputs:
@@ -154,8 +156,8 @@ class SctExpressions(_Expressions):
 class NodeExpressions(_Expressions):
     """Translates expressions and makes every conversion from integer to double explicit.
 
-    `variables` are the node's own, those that the supervisor does not need, `parameters` what is set on the robot;
-    `wire` says what reads data of ROS.
+    `variables` are the variables that only the node needs, `parameters` the parameters that are set on the robot.
+    `wire` translates reads of ROS data.
     """
 
     def __init__(
@@ -172,7 +174,7 @@ class NodeExpressions(_Expressions):
     def __call__(
         self, expression: ex.Expression, within: Instance | None, data: Carried | None = None
     ) -> ex.Expression:
-        """The expression on the node's side; `within` is the instance whose text it is, `data` what `value` means."""
+        """Translate an expression for the node. `within` is its instance, `data` the meaning of `value`."""
         names = Names()
         quantifiers: dict[robosc.ArrayElement, rosgraph.ArrayQuantifier] = {}
         reached: dict[ex.Expression, tuple[robosc.DataType, Instance | None]] = {}
@@ -233,7 +235,7 @@ class NodeExpressions(_Expressions):
         return with_operands(original, operands)
 
     def as_double(self, expression: ex.Expression) -> ex.Expression:
-        """The expression itself where it is a double, else its conversion."""
+        """Return the expression itself if it is a double, else its conversion."""
         if self._types(expression) == DOUBLE:
             return expression
         if isinstance(expression, ex.IntegerLiteral):
@@ -246,7 +248,7 @@ def _no_name(reference: ex.Expression) -> Value:
 
 
 def _start(read: ex.Expression) -> rosgraph.WireAccess:
-    """What reads the data: itself, or what a conversion takes."""
+    """Return the access to the data: the expression itself, or the argument of a conversion."""
     access = read.argument if isinstance(read, rosgraph.ConversionCall) else read
     assert isinstance(access, rosgraph.WireAccess)
     return access

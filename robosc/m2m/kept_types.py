@@ -1,4 +1,4 @@
-"""The types of objects that a node keeps: of their fields what the model and the definitions of ROS say."""
+"""Types of objects that a node stores: their fields, from the model and the ROS definitions."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from robosc.m2m.declarations import Declarations
     from robosc.ros_types import Fields, RosDistribution, RosTypes, WireType
 
-#: Of an object of more objects and values nothing is known: a log of them would be of no use.
+#: Maximum number of objects and values in an object. Larger objects get no fields: their log would be unreadable.
 MOST_VALUES = 1000
 
-#: The package of `Time` and `Duration`.
+#: Package of `Time` and `Duration`.
 _TIMES = "builtin_interfaces"
 
 _TYPES: Mapping[str, type[ex.Type]] = {
@@ -29,7 +29,7 @@ _TYPES: Mapping[str, type[ex.Type]] = {
     "string": ex.StringType,
 }
 
-#: What ROS has for each type but the basic ones.
+#: Kind of ROS type of each non-basic type.
 _KINDS: Mapping[type[robosc.DataType], type[WireType]] = {
     robosc.Array: Sequence,
     robosc.ComplexDataTypeReference: Nested,
@@ -38,14 +38,14 @@ _KINDS: Mapping[type[robosc.DataType], type[WireType]] = {
 
 
 class _Defined(NamedTuple):
-    """A type as one of the two ROS has it; of an object the section that it is."""
+    """A type in one ROS distribution. `section` is the section that an object stands for."""
 
     distribution: RosDistribution
     wire: WireType
     section: Section
 
     def fields(self) -> Fields | None:
-        """The fields of an object; None where nobody knows them."""
+        """Return the fields of an object. None if they are unknown."""
         if not isinstance(self.wire, Nested):
             return None
         try:
@@ -55,10 +55,10 @@ class _Defined(NamedTuple):
 
 
 class KeptTypes:
-    """Makes the types of variables that hold objects.
+    """Creates the types of variables that hold objects.
 
-    A graph is one of both ROS: of a ROS type it has the fields that all agree on that define it, and those that the
-    model names. Of a type that none defines it has the properties of the data type.
+    A graph serves both ROS versions. An object of a ROS type has the fields that all known definitions share, and those
+    that the model names. If no definition is known, it has the properties of the data type.
     """
 
     def __init__(self, declarations: Declarations, interfaces: RosTypes) -> None:
@@ -69,7 +69,7 @@ class KeptTypes:
     def type_of(
         self, declared: robosc.DataType, interface: rosgraph.Interface, section: Section, path: Several[str]
     ) -> ex.Type:
-        """The type of a variable of a data type, which holds what stands at the end of a path in a ROS message."""
+        """Return the type of a variable of a data type that holds the value at `path` of a ROS message."""
         found = [
             _Defined(distribution, *reached)
             for distribution in self._distributions
@@ -82,7 +82,7 @@ class KeptTypes:
         return rosgraph.ArrayType() if isinstance(declared, robosc.Array) else rosgraph.ObjectType()
 
     def _type(self, declared: robosc.DataType | None, defined: Several[_Defined]) -> ex.Type | None:
-        """A type that is declared, or that ROS defines; None where its definitions disagree."""
+        """Return the type for a declaration or for ROS definitions. None if the definitions disagree."""
         while isinstance(declared, robosc.ComplexDataTypeReference) and isinstance(declared.type, robosc.EnumDataType):
             declared = declared.type.type
         kinds = {type(known.wire) for known in defined} if declared is None else {_KINDS.get(type(declared), Basic)}
@@ -105,7 +105,7 @@ class KeptTypes:
         if isinstance(declared, robosc.ComplexDataTypeReference) and isinstance(declared.type, robosc.ObjectDataType):
             named = {given.name: given.type for given in declared.type.properties}
         found = [(definition, fields) for definition in defined if (fields := definition.fields()) is not None]
-        # Of times the two agree on the seconds alone, and rospy not even on their name.
+        # Only the seconds of times have the same meaning in ROS 1 and ROS 2, and rospy has another name for them.
         known = [
             (definition, fields) for definition, fields in found if str(definition.wire).partition("/")[0] != _TIMES
         ]

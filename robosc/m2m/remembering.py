@@ -1,4 +1,4 @@
-"""Results of transformations that are made once while a model does not change."""
+"""Cache of transformations, valid while a model does not change."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ if TYPE_CHECKING:
 
 _Made = TypeVar("_Made")
 
-#: While `remembered` lasts, what was made, by its key.
+#: Results by key while `remembered` is active, else None.
 _made: ContextVar[dict[object, Any] | None] = ContextVar("made", default=None)
 
 
 @contextmanager
 def remembered() -> Iterator[None]:
-    """A context in which `once` keeps its results, so that each model is transformed once.
+    """Cache the results of `once`, so that each model is transformed once.
 
-    Models must not change meanwhile. Within another context it is that one.
+    Models must not change in this context. A nested context shares the cache of the outer one.
     """
     known = _made.get()
     before = _made.set({} if known is None else known)
@@ -30,7 +30,7 @@ def remembered() -> Iterator[None]:
 
 
 def once(key: object, make: Callable[[], _Made]) -> _Made:
-    """The result of `make()`; within `remembered`, that of the first call with an equal `key`."""
+    """Return the result of `make()`. Within `remembered`, return the cached result of an equal `key`."""
     known = _made.get()
     if known is None:
         return make()

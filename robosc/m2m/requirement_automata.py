@@ -1,7 +1,7 @@
-"""From orders, counts and automata of a text to requirement automata, and to the requirements on their locations.
+"""Translates orders, counts and automata to requirement automata, and to requirements on their locations.
 
-A requirement automaton follows its events and blocks none: in each location it has an edge for each. What it forbids
-are requirements, which ask where it is.
+A requirement automaton observes its events and blocks none: each location has an edge for each event. Requirements that
+read its location forbid events.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class RequirementAutomaton:
-    """One of them: its automaton, and for each event that it restricts the condition under which that may happen."""
+    """A requirement automaton under construction, and the condition under which each restricted event may happen."""
 
     trace: Trace
     statement: Statement[robosc.Requirement]
@@ -37,7 +37,7 @@ class RequirementAutomaton:
     allowed: dict[sct.Event, ex.Expression] = field(default_factory=dict)
 
     def fill(self, expressions: SctExpressions) -> None:
-        """Gives the automaton its edges, and finds the conditions; the locations of all automata are there."""
+        """Add the edges of the automaton and set the conditions. Precondition: all automata have their locations."""
         match self.statement.element:
             case robosc.OrderRequirement() as order:
                 self._order(order)
@@ -47,7 +47,7 @@ class RequirementAutomaton:
                 self._automaton(automaton, expressions)
 
     def declare(self) -> None:
-        """Gives the automaton its locations."""
+        """Add the locations of the automaton."""
         element = self.statement.element
         if isinstance(element, robosc.AutomatonRequirement):
             unmarked = not any(state.marked for state in element.states)
@@ -143,9 +143,10 @@ class RequirementAutomaton:
         tried: Sequence[tuple[robosc.RequirementTransition, sct.Location]],
         expressions: SctExpressions,
     ) -> None:
-        """The edges of a location for an event: of the first transition whose condition holds.
+        """Add the edges of a location for an event: the first transition whose condition holds is taken.
 
-        Where none holds the event is forbidden, and where an edge would lead does not matter: it is that of the last.
+        If no condition holds, a requirement forbids the event, so that the target does not matter: the last transition
+        is taken.
         """
         before: list[ex.Expression] = []
         for number, (transition, target) in enumerate(tried, start=1):

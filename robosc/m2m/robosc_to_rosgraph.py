@@ -1,4 +1,4 @@
-"""From a robot model to the ROS side of its controller (thesis 5.3, table 5.3)."""
+"""Transformation of a robot model to the ROS side of its controller (thesis 5.3, table 5.3)."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ if TYPE_CHECKING:
     from robosc.semantics.inputs import Told
     from robosc.semantics.instances import Instance, InstanceParameter, InstanceVariable, PortInstance
 
-#: The field that holds a basic value in a type of std_msgs.
+#: Field of a basic value in a type of std_msgs.
 _FIELD = "data"
 
 
-#: The kinds of ROS types, by the kinds of communication.
+#: Kind of ROS type for each kind of communication.
 _KINDS = {
     robosc.Message: rosgraph.InterfaceKind.message,
     robosc.Service: rosgraph.InterfaceKind.service,
@@ -51,11 +51,10 @@ _KINDS = {
 
 
 def transform(trace: Trace, interfaces: RosTypes | None = None) -> rosgraph.RosGraph:
-    """The ROS graph of the robot whose transformation to the sct model left this trace.
+    """Return the ROS graph of a robot from the trace of its transformation to the sct model.
 
-    `interfaces` is what is known of ROS types; None: what is known without folders of the call.
-    Topics, services and actions stand in the order of the text. All messages that one topic feeds with one ROS type
-    are one subscription.
+    `interfaces` holds the known ROS types. None: the types that are known without extra folders. Topics, services and
+    actions are in the order of the text. Messages of one topic and ROS type share one subscription.
     """
     return _Transformation(trace, interfaces or RosTypes()).run()
 
@@ -102,7 +101,7 @@ class _Transformation:
         self.types_of_kept_data()
         return self.graph
 
-    # Data that the node keeps
+    # Data that the node stores
 
     def variable(self, owned: InstanceVariable) -> None:
         variable = rosgraph.NodeVariable(
@@ -136,10 +135,10 @@ class _Transformation:
     # Communication
 
     def message(self, port: PortInstance) -> None:
-        """All messages on one topic of one ROS type are one subscription, or one publisher."""
+        """Add a message. Messages of one topic and ROS type share one subscription or publisher."""
         (event,) = events(port.communication)
         topic, interface = port.instance.topic(port.communication), self.interface(port.communication)
-        # Written with a slash or without, it is one topic, and what comes on it one batch.
+        # A leading slash does not matter: both spellings are one topic, and its messages form one batch.
         key = topic.removeprefix("/"), interface
         where = port.communication.source
         if event.is_sent:
@@ -154,7 +153,7 @@ class _Transformation:
             self.subscriptions[key].receptions.append(self.reception(port, event))
 
     def client(self, port: PortInstance) -> None:
-        """The features of a client are called as the events are in texts; one more is `reset`."""
+        """Add a client. Its features have the names of the events in the language, and `reset`."""
         is_action = isinstance(port.communication, robosc.Action)
         client = rosgraph.ActionClient() if is_action else rosgraph.ServiceClient()
         client.identifier = port.instance.topic(port.communication)
@@ -171,7 +170,7 @@ class _Transformation:
         clients.append(client)
 
     def interface(self, communication: robosc.CommunicationType) -> rosgraph.Interface:
-        """The ROS type that a communication links, or the one of `std_msgs` or `std_srvs` for its basic data."""
+        """Return the ROS type that a communication links, or the type of `std_msgs` or `std_srvs` for basic data."""
         kind, linked = _KINDS[type(communication)], communication.interface
         named = ros_type(communication)
         assert named is not None
@@ -231,7 +230,7 @@ class _Transformation:
         made = self.expressions(value, within)
         return self.expressions.as_double(made) if isinstance(declared, robosc.DoubleDataType) else made
 
-    # Data that comes in
+    # Incoming data
 
     def reception(self, port: PortInstance, event: PortEvent) -> rosgraph.Reception:
         reception = rosgraph.Reception(
@@ -258,13 +257,13 @@ class _Transformation:
         return reception
 
     def field(self, port: PortInstance, event: PortEvent) -> str:
-        """The field that holds a basic value."""
+        """Return the field of a basic value."""
         linked = port.communication.interface
         assert event.section is not None
         return _FIELD if linked is None else self.known.field_of_basic(linked.package, linked.type, event.section)
 
     def value_of(self, port: PortInstance, event: PortEvent) -> Carried:
-        """What `value` means where a ROS message carries the data of an event."""
+        """Return the meaning of `value` in a ROS message with the data of an event."""
         carried = data_type(port.communication, event)
         assert carried is not None
         is_object = isinstance(basis(carried), robosc.ComplexDataTypeReference)
@@ -278,7 +277,7 @@ class _Transformation:
         access: robosc.Access,
         indices: Sequence[ex.Expression],
     ) -> tuple[ex.Expression, robosc.DataType]:
-        """What an access to data of a type reads, below some fields, and its type; an enum is converted."""
+        """Translate an access to data of a type, below some fields, and return its type. Enums are converted."""
         steps, reached = _steps(access.segments, whole, iter(indices))
         steps[:0] = [rosgraph.FieldStep(name=name) for name in fields]
         enum = reached.type if isinstance(reached, robosc.ComplexDataTypeReference) else None
@@ -292,7 +291,7 @@ class _Transformation:
         return rosgraph.WireAccess(steps=steps, type=self.wire_type(reached)), reached
 
     def argument(self, value: ex.Expression, within: Instance | None) -> ex.Expression:
-        """What an enum gets in the text of an instance, as it is said outside of components."""
+        """Return an argument of an enum in a form that is valid outside of components."""
         access = set_on_robot(value)
         if access is None:
             return self.instances.expanded.constant(value, within)
@@ -300,13 +299,13 @@ class _Transformation:
         return robosc.Access(component=owned.instance.component if owned.instance else None, item=owned.parameter)
 
     def node_type(self, kind: robosc.DataType) -> ex.Type:
-        """The type of what the node keeps or sends."""
+        """Return the type of data that the node stores or sends."""
         if isinstance(declared_type(kind), ObjectType):
             return rosgraph.ObjectType()
         return self.wire_type(kind) or self.declarations.type(kind)
 
     def wire_type(self, kind: robosc.DataType) -> ex.Type | None:
-        """The type of a basic value or an array; None of an object."""
+        """Return the type of a basic value or an array. None for an object."""
         if isinstance(kind, robosc.Array):
             element = kind.type if isinstance(kind.type, robosc.BasicDataType) else None
             return rosgraph.ArrayType(element=self.declarations.type(element) if element else None)
@@ -315,7 +314,7 @@ class _Transformation:
     def conversion(
         self, enum: robosc.EnumDataType, arguments: Mapping[robosc.FormalParameter, ex.Expression]
     ) -> rosgraph.Conversion:
-        """Listing 5.13, for the enum with some arguments."""
+        """Return the conversion (listing 5.13) of an enum with some arguments."""
         key = (enum, tuple(map(RoboscPrinter(), arguments.values())))
         if key not in self.conversions:
             conversion = rosgraph.Conversion(
@@ -339,7 +338,7 @@ class _Transformation:
             self.graph.conversions.append(conversion)
         return self.conversions[key]
 
-    # What events change in the node
+    # Reactions of the node to events
 
     def reactions(self, instance: Instance) -> None:
         tried: dict[tuple[sct.Event, robosc.State | None], list[robosc.Transition]] = {}
@@ -359,7 +358,7 @@ class _Transformation:
                 if owned in self.variables:
                     variable = self.variables[owned]
                     if happens_anyway(event) and reads_elements(value):
-                        # It is left out where it can't be read.
+                        # The assignment does not happen if its value cannot be read.
                         kept = rosgraph.NodeVariableReference(variable=variable)
                         value = rosgraph.IfReadable(value=value, otherwise=kept)
                     reaction.assignments.append(
@@ -374,7 +373,10 @@ class _Transformation:
     def first(
         self, transition: robosc.Transition, others: Sequence[robosc.Transition], instance: Instance
     ) -> ex.Expression | None:
-        """That a transition of an event is the first whose guard holds; a silent one happens only where it does."""
+        """Return the condition that a transition of an event is the first whose guard holds.
+
+        None for a silent transition: the supervisor already requires this condition.
+        """
         if not isinstance(transition, robosc.ResultTransition):
             return None
         data = self.data(transition, instance)
@@ -386,7 +388,7 @@ class _Transformation:
         return conjunction([*(ex.Negation(operand=guard) for guard in guards), *own])
 
     def types_of_kept_data(self) -> None:
-        """Objects and arrays of objects have the ROS type of what is stored in them, in one step or several."""
+        """Set the ROS types of objects and arrays of objects from the data that is stored in them."""
         declared = {variable: owned.type for owned, variable in self.variables.items()}
         for variable, places in origins(self.graph).items():
             if holds_objects(variable.type):
@@ -396,7 +398,7 @@ class _Transformation:
                 variable.type = self.kept.type_of(declared[variable], interface, section, variable.path)
 
     def data(self, transition: robosc.Transition, instance: Instance) -> Carried | None:
-        """What `value` means in a transition; None where its event brings no data."""
+        """Return the meaning of `value` in a transition. None if its event carries no data."""
         if not isinstance(transition, robosc.ResultTransition):
             return None
         port = self.instances.port(transition.communicationType, instance)
@@ -406,7 +408,7 @@ class _Transformation:
 
 
 def _false_if_missing(condition: ex.Expression) -> ex.Expression:
-    """A condition that is false where an element of an array is missing that it reads."""
+    """Make a condition false if an array element that it reads is missing."""
     if not reads_elements(condition):
         return condition
     return rosgraph.IfReadable(value=condition, otherwise=ex.BooleanLiteral(value=False))
@@ -415,7 +417,7 @@ def _false_if_missing(condition: ex.Expression) -> ex.Expression:
 def _steps(
     segments: Sequence[robosc.AccessSegment], whole: robosc.DataType, indices: Iterator[ex.Expression]
 ) -> tuple[list[rosgraph.WireStep], robosc.DataType]:
-    """The steps into ROS data that segments mean, and the type of what they reach."""
+    """Return the steps of segments into ROS data, and the type of the data that they lead to."""
     steps: list[rosgraph.WireStep] = []
     reached = whole
     for segment in segments:

@@ -1,4 +1,4 @@
-"""From a robot model to plants and requirements: thesis 5.2 as the specification of the semantics makes it exact."""
+"""Transformation of a robot model to plants and requirements: thesis 5.2, made exact by the semantics specification."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 _Stated = TypeVar("_Stated", bound=robosc.StatedDefinition)
 
-#: What comes from outside, or must always be possible: a component elsewhere than in the right state ignores it.
+#: Events from the robot, or events that must always be possible. A component ignores them in all other states.
 _NEVER_BLOCKED = (
     sct.EventKind.response,
     sct.EventKind.error,
@@ -66,21 +66,21 @@ _ACTION = (
     (ERROR, sct.EventKind.reset, IDLE),
 )
 _MESSAGE = ((READY, sct.EventKind.trigger, READY), (READY, sct.EventKind.response, READY))
-#: The transitions that have an event of their own, with its kind and, before a number, its name.
+#: Transitions with an event of their own: its kind, and its name before a number.
 _OWN_EVENTS = (
     (robosc.TauTransition, sct.EventKind.tau, "tau"),
     (robosc.TimedTransition, sct.EventKind.timeout, "after"),
 )
-#: The edges of the plant of each communication (thesis, listings 5.1 and 5.2; in place of 5.3 an action ends when its
-#: server says so). The first location is the initial and the marked one.
+#: Edges of the plant of each communication (thesis, listings 5.1 and 5.2). Unlike listing 5.3, an action ends when its
+#: server reports the end. The first location is the initial and the marked one.
 _PLANTS = {robosc.Message: _MESSAGE, robosc.Service: _SERVICE, robosc.Action: _ACTION}
 
 
 def transform(robot: robosc.Robot) -> tuple[sct.SupervisoryControlModel, Trace]:
-    """The plants and requirements of a robot that the checks accept, and what became of what.
+    """Return the plants and requirements of a valid robot, and the trace of the transformation.
 
-    Plants stand in the order of the text, component by component: communication, then behaviour; data plants last.
-    Raises ModelError where a comparison of doubles ranges over too many integers.
+    Plants are in the order of the text, component by component: communication, then behaviour; data plants are last.
+    Raises ModelError if a comparison of doubles ranges over too many integers.
     """
     return _Transformation(robot).run()
 
@@ -100,7 +100,7 @@ class _Transformation:
             self.told.setdefault(carried.port, []).append(carried)
 
     def run(self) -> tuple[sct.SupervisoryControlModel, Trace]:
-        # Targets first, then what refers to them: a guard may name any component's state.
+        # Create referenced elements first: a guard may name any component's state.
         for instance in self.instances:
             for communication in instance.communications:
                 self.communication(PortInstance(instance, communication))
@@ -155,7 +155,7 @@ class _Transformation:
         return f"{port.instance.name}_{name}" if shared else name
 
     def inputs(self, plant: sct.Plant, port: PortInstance) -> None:
-        """Algorithm 1, for what is in the cone of influence."""
+        """Add the inputs of a plant (Algorithm 1) for data in the cone of influence."""
         names = Names()
         computed = 0
         for carried in self.told.get(port, ()):
@@ -181,7 +181,7 @@ class _Transformation:
     # Behaviour
 
     def behaviour(self, instance: Instance) -> None:
-        """Locations, variables and silent events of section 5.2.1; the edges follow once all targets exist."""
+        """Add locations, variables and silent events of section 5.2.1. The edges need all targets and follow later."""
         assert instance.automaton is not None
         kind = sct.PlantKind.behaviour
         plant = self.plant(f"component_{instance.name}", kind, instance.name, instance.component.source)
@@ -211,7 +211,7 @@ class _Transformation:
                 self.trace.origins[event] = transition
 
     def variables(self, instance: Instance) -> list[InstanceVariable]:
-        """Those in the cone of influence."""
+        """Return the variables of an instance in the cone of influence."""
         return [variable for variable in instance.variables if variable in self.trace.cone.variables]
 
     def edges(self, instance: Instance) -> None:
@@ -237,7 +237,10 @@ class _Transformation:
         instance: Instance,
         others: Sequence[robosc.Transition],
     ) -> None:
-        """The edge of a transition that is taken where the guards of `others`, which are tried before, do not hold."""
+        """Add the edge of a transition.
+
+        It is taken only if the guards of `others`, which come before it, do not hold.
+        """
         target = location if transition.target is None else self.trace.locations[instance, transition.target]
         edge = _edge(location, self.trace.event_of(transition, instance), target)
         edge.source = transition.source
@@ -250,7 +253,7 @@ class _Transformation:
                 edge.updates.append(sct.Update(variable=variable, value=value, source=assignment.source))
 
     def timers(self, instance: Instance) -> None:
-        """How long the times of an instance are, and what starts them anew."""
+        """Set the durations of an instance's timers and the events that restart them."""
         entries: dict[sct.Location, list[sct.Edge]] = {}
         for location in self.trace.behaviours[instance].locations:
             for edge in location.edges:
@@ -273,7 +276,7 @@ class _Transformation:
                 )
 
     def duration(self, transition: robosc.TimedTransition, instance: Instance) -> sct.Duration | None:
-        """How long a transition waits, where that is set on the robot."""
+        """Return the duration of a transition if it is set on the robot, else None."""
         access = set_on_robot(transition.duration)
         if access is None:
             return None
@@ -293,7 +296,7 @@ class _Transformation:
     def first(
         self, transition: robosc.Transition, others: Sequence[robosc.Transition], instance: Instance
     ) -> ex.Expression | None:
-        """That a transition is the first whose guard holds."""
+        """Return the condition that a transition is the first whose guard holds."""
         guard = guard_of(transition)
         if guard is None:
             return self.none_of(others, instance)
@@ -301,7 +304,7 @@ class _Transformation:
         return conjunction(filter(None, (self.none_of(others, instance), own)))
 
     def none_of(self, transitions: Sequence[robosc.Transition], instance: Instance) -> ex.Expression | None:
-        """That no guard of these holds; None where there are none."""
+        """Return the condition that no guard of the transitions holds. None if there are no guards."""
         guards = ((guard_of(transition), transition) for transition in transitions)
         found = [self.expressions(guard, instance, transition) for guard, transition in guards if guard is not None]
         return conjunction(ex.Negation(operand=guard) for guard in found)
@@ -309,7 +312,7 @@ class _Transformation:
     # Provided data
 
     def data_plant(self, port: PortInstance) -> None:
-        """Listing 5.4, with names that do not change from run to run."""
+        """Add the plant that selects provided data (listing 5.4). Its names are stable from run to run."""
         statements = self.instances.provided(port)
         if not statements:
             return
@@ -339,7 +342,7 @@ class _Transformation:
     # Requirements
 
     def requirements(self) -> None:
-        """Section 5.2.2: one for each communication named, on its trigger; and the cancelling of actions."""
+        """Add the requirements of section 5.2.2: on the trigger of each named communication, and on cancels."""
         automata = list(self.requirement_automata())
         on_action: dict[PortInstance, list[Statement[robosc.CommunicationRequirement]]] = {
             port: [] for port in self.instances.ports() if isinstance(port.communication, robosc.Action)
@@ -378,7 +381,10 @@ class _Transformation:
         self.trace.origins[target] = requirement
 
     def requirement_automata(self) -> Iterator[RequirementAutomaton]:
-        """Those of the orders, counts and automata, without edges: what reads one needs its locations."""
+        """Create the automata of orders, counts and automata, without edges.
+
+        Conditions on the edges need the locations of all automata.
+        """
         kinds = (robosc.OrderRequirement, robosc.CountRequirement, robosc.AutomatonRequirement)
         stated = (
             statement
@@ -399,7 +405,7 @@ class _Transformation:
             yield made
 
     def restrictions(self, automaton: RequirementAutomaton) -> None:
-        """The requirements on the locations of a requirement automaton, one for each event that it restricts."""
+        """Add the requirements on the locations of a requirement automaton, one for each event that it restricts."""
         statement = automaton.statement
         for event, condition in automaton.allowed.items():
             target = sct.Requirement(
@@ -415,7 +421,7 @@ class _Transformation:
             self.trace.origins[target] = statement.element
 
     def said(self, statement: Statement[robosc.Requirement]) -> str:
-        """An order, a count or an automaton in its author's words."""
+        """Return the text of an order, a count or an automaton."""
         match statement.element:
             case robosc.OrderRequirement() as order:
                 fresh = "each " if order.each else ""
@@ -474,7 +480,7 @@ class _Transformation:
         self.trace.origins[made] = claimed
 
     def heading(self, statement: Statement[_Stated]) -> str:
-        """What the text of a requirement or property begins with: its name and its text."""
+        """Return the first words of a requirement's or property's text: its name and its own text."""
         text = statement.element.text
         said = [_stated_name(statement), None if text is None else self.print(ex.StringLiteral(value=text))]
         named = " ".join(filter(None, said))
@@ -482,7 +488,10 @@ class _Transformation:
         return f"{word} {named}:" if named else word
 
     def cancelling(self, port: PortInstance, requirements: list[Statement[robosc.CommunicationRequirement]]) -> None:
-        """Algorithm 2, starting at false: an action is cancelled exactly when it could not be started any more."""
+        """Add the requirement on an action's cancel: allowed exactly if the action could not be started any more.
+
+        This is Algorithm 2, with the initial value false.
+        """
         broken: list[ex.Expression] = []
         for requirement in requirements:
             condition = self.expressions(requirement.element.condition, requirement.within)
@@ -507,7 +516,7 @@ class _Transformation:
 
 
 def _stated_name(statement: Statement[_Stated]) -> str | None:
-    """The name of a requirement or property, with its component where it stands in one."""
+    """Return the name of a requirement or property, with its component if it is inside one."""
     name = statement.element.name
     return f"{statement.within.name}.{name}" if name and statement.within else name
 
@@ -519,14 +528,14 @@ def _location(plant: sct.Plant, name: str, *, initial: bool = False, marked: boo
 
 
 def _edge(leaving: sct.Location | sct.Plant, event: sct.Event, target: sct.Location) -> sct.Edge:
-    """An edge that leaves a location, or each of a plant's."""
+    """Add an edge that leaves a location, or every location of a plant."""
     edge = sct.Edge(event=event, target=target)
     leaving.edges.append(edge)
     return edge
 
 
 def _event(plant: sct.Plant, name: str, kind: sct.EventKind, source: Place | None) -> sct.Event:
-    """An event, its name with `c_` before it if it is controllable, else with `u_`."""
+    """Add an event. Its name starts with `c_` if it is controllable, else with `u_`."""
     controllable = kind in CONTROLLABLE
     event = sct.Event(
         name=f"{'c' if controllable else 'u'}_{name}", kind=kind, controllable=controllable, source=source

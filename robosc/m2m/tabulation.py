@@ -1,4 +1,4 @@
-"""Comparisons of doubles and strings, which no sct model has, as conditions on what they are computed from."""
+"""Tabulation of comparisons of doubles and strings, which no sct model has, to conditions on integers."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from robosc.semantics.walks import copied, fold, operands, parts, with_operands
 
 
 class TooLargeError(Exception):
-    """The integers of a comparison have too many valuations to tabulate; `count` says how many."""
+    """Error of a comparison whose integers have too many valuations; `count` is their number."""
 
     def __init__(self, count: int) -> None:
         self.count = count
@@ -25,20 +25,20 @@ class TooLargeError(Exception):
 
 
 class _Column(NamedTuple):
-    """Runs of values of the integer at `depth`, each with what the comparison still depends on; none: it is false."""
+    """Runs of values of the integer at `depth`, each with the remaining table. For values outside, it is false."""
 
     depth: int
     runs: tuple[tuple[int, int, _Table], ...]
 
 
-#: Where a comparison holds, integer by integer; equal for equal conditions.
+#: Truth table of a comparison, integer by integer. Equal conditions have equal tables.
 _Table: TypeAlias = bool | _Column
 
 
 def tabulate(comparison: ex.Expression) -> ex.Expression:
-    """A condition over integer comparisons that holds exactly where the comparison does. Raises TooLargeError.
+    """Return a condition over integer comparisons that is equivalent to the comparison. Raises TooLargeError.
 
-    Of a choice between numbers its condition is a part of that.
+    The condition of a conditional number becomes a part of the result.
     """
     choices: dict[sct.DiscreteVariable, ex.Expression] = {}
     comparison = fold(lambda part, operands: _decided(part, operands, choices), comparison, _numbers)
@@ -57,14 +57,14 @@ def tabulate(comparison: ex.Expression) -> ex.Expression:
 
 
 def _numbers(part: ex.Expression) -> list[ex.Expression]:
-    """What a number is computed from: of a choice its branches."""
+    """Return the operands that determine a number. A conditional has its branches."""
     return [part.then, part.otherwise] if isinstance(part, ex.Conditional) else operands(part)
 
 
 def _decided(
     part: ex.Expression, inside: list[ex.Expression], choices: dict[sct.DiscreteVariable, ex.Expression]
 ) -> ex.Expression:
-    """The part, with a variable in the place of each condition."""
+    """Return the part, with a variable in place of each condition."""
     if not isinstance(part, ex.Conditional):
         return with_operands(part, inside) if inside else copied(part)
     variable = sct.DiscreteVariable(name="choice", type=ex.BooleanType())
@@ -73,7 +73,7 @@ def _decided(
 
 
 def _column(depth: int, whole: range, rows: list[_Table]) -> _Table:
-    """The runs of values with equal tables; where all are equal, that table: it does not depend on the integer."""
+    """Return the runs of values with equal tables. If all tables are equal, return this table."""
     runs: list[tuple[int, int, _Table]] = []
     table: _Table
     for table, group in groupby(zip(whole, rows, strict=True), key=lambda row: row[1]):
@@ -86,7 +86,10 @@ def _column(depth: int, whole: range, rows: list[_Table]) -> _Table:
 
 
 def _condition(table: _Table, references: list[ex.Expression], ranges: list[range]) -> ex.Expression:
-    """The condition of a table: no deeper than integers of two values or more that fit into the largest one."""
+    """Return the condition of a table.
+
+    Its depth is the number of integers with two or more values, which is limited.
+    """
     if isinstance(table, bool):
         return ex.BooleanLiteral(value=table)
     alternatives = []
@@ -99,7 +102,7 @@ def _condition(table: _Table, references: list[ex.Expression], ranges: list[rang
 
 
 def _between(reference: ex.Expression, low: int, high: int, whole: range) -> list[ex.Expression]:
-    """`low <= reference <= high`, without the bounds that the range has anyway."""
+    """Return `low <= reference <= high`, without bounds that the range implies."""
     if _is_condition(reference):
         return [copied(reference) if low else ex.Negation(operand=copied(reference))]
     if low == high:

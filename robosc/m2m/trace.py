@@ -1,4 +1,4 @@
-"""What became of each element of a robot model, and where each element of an sct model comes from."""
+"""Links between the elements of a robot model and the elements of its sct model."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class Trace:
-    """The links of one transformation; an element that the supervisor does not need has no target."""
+    """Links of one transformation. An element that the supervisor does not need has no target."""
 
     instances: Instances
     cone: ConeOfInfluence
@@ -47,11 +47,11 @@ class Trace:
     origins: dict[ex.Located, ex.Located] = field(default_factory=dict)
 
     def event(self, port: PortInstance, kind: sct.EventKind) -> sct.Event:
-        """The event of that kind of a port; KeyError where its kind of communication has none."""
+        """Return the event of a kind of a port. Raises KeyError if its communication has no such event."""
         return self.events[port, kind.name]
 
     def event_of(self, transition: robosc.Transition, instance: Instance) -> sct.Event:
-        """What a transition of an instance reacts to (thesis table 5.1); without communication an event of its own."""
+        """Return the event that a transition reacts to (thesis table 5.1), or its own event."""
         if not isinstance(transition, robosc.ResultTransition):
             return self.own[instance, transition]
         port = self.instances.port(transition.communicationType, instance)

@@ -1,5 +1,5 @@
-"""The generators: models of a robot to texts.
+"""Generators: models of a robot to texts.
 
-`targets` lists what can be generated, `models` is what a generator reads. `supervisor` and `cif` are targets, `ros` is
-those that are ROS packages; `c` is what targets share that contain C. `xmi` writes the models themselves.
+`targets` lists the targets, `models` holds the input of a generator. `supervisor` and `cif` are targets; `ros` has the
+targets that are ROS packages; `c` is shared by targets that contain C. `xmi` writes the models themselves.
 """

@@ -1,4 +1,4 @@
-"""The models of one robot that a generator can read."""
+"""Models of one robot for a generator."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Models:
-    """The models of one robot: what the supervisor sees, the ROS side of it, and the model that both came from.
+    """The models of one robot: the supervisor's view, the ROS side, and the source of both.
 
-    `ros_types` are the definitions of ROS types that they were read with; None: those of the environment.
-    `folder` is where the texts go that are generated from them, where that is known.
+    `ros_types` are the ROS types that the models were read with; None: those of the environment. `folder` is the folder
+    of the generated texts, if it is known.
     """
 
     sct: sct.SupervisoryControlModel
@@ -31,19 +31,19 @@ class Models:
 
     @property
     def engine(self) -> engine.EngineModel:
-        """What a controller executes: made anew each time, but within `robosc.m2t.targets.together` once.
+        """Program of the controller, newly created on each access; within `robosc.m2t.targets.together`, created once.
 
-        Raises ValueError where the model has no supervisor, or one without a guard for a controllable event.
+        Raises ValueError if the model has no supervisor, or a supervisor without a guard for a controllable event.
         """
         return sct_to_engine.transform(self.sct)
 
 
 @dataclass(frozen=True)
 class TraceTest:
-    """What a package needs to be tested with traces: parameters for its node, and files for its folder `test`."""
+    """Test of a package with traces: parameters of its node, and files for its folder `test`."""
 
     parameters: Mapping[str, bool | int]
     files: Mapping[str, str]
-    #: How much of the robot its traces show, in words, and what they miss.
+    #: Share of the robot that the traces cover, in words, and the parts that they miss.
     coverage: str
     missed: Sequence[str]

@@ -1,6 +1,6 @@
-"""The targets: each is a part of `robosc.m2t` of its name; those that are ROS packages share `ros`.
+"""The targets. Each is a part of `robosc.m2t` of its name; ROS packages share `ros`.
 
-Packages of others add targets by entry points (`robosc.targets`).
+Other packages add targets by entry points (`robosc.targets`).
 """
 
 from __future__ import annotations
@@ -22,66 +22,69 @@ if TYPE_CHECKING:
 
 
 class Generator(Protocol):
-    """The interface of a target's module."""
+    """Interface of a target's module."""
 
     def preconditions(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
-        """Return the findings that keep the target from these models, or warn of them."""
+        """Return errors that make the target impossible for these models, and warnings."""
 
     def generate(self, models: Models, configuration: Configuration) -> dict[str, str]:
-        """Files: POSIX path in the target's folder to text. The models have a supervisor; the preconditions hold."""
+        """Return files: POSIX path in the target's folder to text.
+
+        Preconditions: the models have a supervisor, and `preconditions` reports no error.
+        """
 
 
 class Options(TypedDict, total=False):
     """Options of some generators."""
 
-    #: What a package of theirs is tested with.
+    #: Tests for a generated package.
     tests: TraceTest
-    #: The package, or the target of CMake, of the user's own that their code becomes part of.
+    #: Package, or CMake target, of the user that includes the generated code.
     into: str
 
 
 class OptionalGenerator(Protocol):
-    """The interface of the module of a target with options."""
+    """Interface of the module of a target with options."""
 
     def generate(self, models: Models, configuration: Configuration, **options: Unpack[Options]) -> dict[str, str]:
-        """The files that it generates without options, but as these ask for."""
+        """Return the same files as without options, changed by the options."""
 
 
 class PackageGenerator(Protocol):
-    """The interface of the module of a target that is a ROS package."""
+    """Interface of the module of a target that is a ROS package."""
 
     def interfaces(self, models: Models, configuration: Configuration) -> dict[str, str]:
-        """The package with the types of its own, if it needs any: paths begin with its name."""
+        """Return the package with its own types, if it needs one. Paths start with the package's name."""
 
 
 @dataclass(frozen=True)
 class Target:
-    """A target: what it is, what it reads, and where its files go."""
+    """A target: its description, its input, and the folder of its files."""
 
     name: str
     description: str
-    #: Its folder below the output folder; a ROS package has a folder of its own in there.
+    #: Folder below the output folder. A ROS package has its own folder inside it.
     _folder: str = ""
-    #: What kind of ROS package it is, if it is one, and for which ROS, 1 or 2.
+    #: Kind of ROS package, if it is one, and its ROS version, 1 or 2.
     package: Literal["controller", "layer"] | None = None
     ros: int | None = None
-    #: The setting in the configuration's `output` that names a folder for a copy.
+    #: Setting in the configuration's `output` that names a folder for a copy.
     location: str | None = None
 
     @property
     def can_be_included(self) -> bool:
-        """Whether it is code that can become part of a package, or of a project of CMake, of the user's own."""
+        """Whether the code can become part of a user's package or CMake project."""
         return bool(self._folder)
 
     @property
     def needs_graph(self) -> bool:
-        """Whether it reads the ROS graph beside the sct model."""
+        """Whether it reads the ROS graph as well as the sct model."""
         return self.package is not None
 
     def folder(self, models: Models, configuration: Configuration) -> str:
-        """Where its files go below the output folder: POSIX path, empty for that folder itself.
+        """Return the folder of its files below the output folder: POSIX path, empty for the output folder itself.
 
-        ROS packages stand beside those of other robots in one folder, so that this can be a workspace's `src`.
+        ROS packages of several robots share one folder, which can be a workspace's `src`.
         """
         if self.package is None:
             return self._folder
@@ -89,14 +92,14 @@ class Target:
         return f"{self._folder}/{named(models.sct)}"
 
     def beside(self, models: Models, configuration: Configuration) -> dict[str, str]:
-        """The texts beside that folder, by POSIX path below the output folder."""
+        """Return the files outside of the target's folder, by POSIX path below the output folder."""
         if self.package is None:
             return {}
         made = cast("PackageGenerator", self.generator()).interfaces(models, configuration)
         return {f"{self._folder}/{path}": text for path, text in made.items()}
 
     def findings(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
-        """Return the findings that keep the target from these models and settings, and warnings."""
+        """Return errors that make the target impossible for these models and settings, and warnings."""
         found = self.generator().preconditions(models, configuration)
         graph = models.rosgraph
         if not self.needs_graph or graph is None:
@@ -108,7 +111,7 @@ class Target:
 
     @property
     def tested_ros(self) -> int | None:
-        """The ROS, 1 or 2, on which its packages can be tested with traces; None where they can't."""
+        """ROS version, 1 or 2, in which traces can test its packages. None if they cannot."""
         return self.ros if self.package == "controller" else None
 
     def files(
@@ -121,8 +124,8 @@ class Target:
     ) -> dict[str, str]:
         """Generate the texts, with these tests.
 
-        `into` names what of the user's own the code becomes part of, where it can be included: a package, or a target
-        of CMake. Then there is a `fragment.cmake`, and neither `CMakeLists.txt` nor `package.xml`.
+        `into` names the user's package or CMake target that includes the code, if that is possible. The result then has
+        a `fragment.cmake`, and neither `CMakeLists.txt` nor `package.xml`.
         """
         options: Options = {}
         if tests is not None:
@@ -132,7 +135,7 @@ class Target:
         return cast("OptionalGenerator", self.generator()).generate(models, configuration, **options)
 
     def generator(self) -> Generator:
-        """The generator: a module of its name, or a target of `robosc.m2t.ros`; loaded on first use."""
+        """Return the generator: a module of its name, or a target of `robosc.m2t.ros`. It is loaded on first use."""
         if self.package is None:
             return cast("Generator", import_module(f"robosc.m2t.{self.name}"))
         return cast("Generator", import_module("robosc.m2t.ros").TARGETS[self.name])
@@ -160,18 +163,18 @@ TARGETS = {
 
 @dataclass(frozen=True)
 class ExtensionTarget(Target):
-    """A target of another package: a module with `preconditions` and `generate`, and perhaps `needs_graph = True`."""
+    """A target of another package: a module with `preconditions`, `generate`, and optionally `needs_graph`."""
 
     extension: Extension | None = None
 
     @property
     def can_be_included(self) -> bool:
-        """Not called for this target."""
+        """Whether the code can be included: never, since plug-ins do not support it."""
         return False
 
     @property
     def needs_graph(self) -> bool:
-        """Whether the module says so."""
+        """Whether the module has `needs_graph = True`."""
         return bool(getattr(self._module, "needs_graph", False))
 
     @property
@@ -180,14 +183,14 @@ class ExtensionTarget(Target):
         return self.extension.load("preconditions", "generate")
 
     def generator(self) -> Generator:
-        """The module, whose faults are told as such."""
+        """Return the module. Its errors are reported as those of the extension."""
         assert self.extension is not None
         return _Guarded(self.extension, self._module)
 
 
 @dataclass(frozen=True)
 class _Guarded:
-    """The module of an extension: what it raises, or gives back against the contract, is a finding."""
+    """The module of an extension. Its exceptions and its results against the contract become findings."""
 
     extension: Extension
     module: Any
@@ -207,14 +210,14 @@ class _Guarded:
 
 
 def targets() -> dict[str, Target]:
-    """All targets by name: those of the tool, and those of other packages that are installed."""
+    """Return all targets by name: those of the tool, and those of other installed packages."""
     others = extensions("robosc.targets").values()
     made = (ExtensionTarget(other.name, other.description, other.name, extension=other) for other in others)
     return TARGETS | {target.name: target for target in made if target.name not in TARGETS}
 
 
 def together() -> AbstractContextManager[None]:
-    """While it lasts, what several targets have in common is made once; nobody changes the models meanwhile."""
+    """Cache the results that several targets share. Models must not change in this context."""
     from robosc.m2m.remembering import remembered
 
     return remembered()

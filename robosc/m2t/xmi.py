@@ -1,4 +1,4 @@
-"""The models themselves, as XMI files that refer to each other by relative hrefs."""
+"""Target `xmi`: the models as XMI files that refer to each other by relative hrefs."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 
 
 def preconditions(_models: Models, _configuration: Configuration) -> list[Diagnostic]:
-    """None: every model can be saved."""
+    """Return no findings: every model can be saved."""
     return []
 
 
 def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
-    """`<robot>.sct.xmi`, where it has a supervisor `.engine.xmi`, and of the models that there are the others.
+    """Return the available models as files, such as `<robot>.sct.xmi`.
 
-    These are `.rosgraph.xmi`, `.robosc.xmi`, `<library>.robosc.xmi`, also of the predefined library where the model
-    names something of it. A library that is called like the robot gets an underscore. Raises ModelError for what XML
-    can't hold.
+    With a supervisor, this includes `.engine.xmi`. The others are `.rosgraph.xmi`, `.robosc.xmi` and
+    `<library>.robosc.xmi`, also of the predefined library if the model uses it. A library with the robot's name gets an
+    underscore. Raises ModelError for characters that XML cannot hold.
     """
     name = models.sct.name
     roots: dict[str, Any] = {f"{name}.sct.xmi": models.sct}
@@ -47,7 +47,7 @@ def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
 
 
 def _predefined(base: robosc.Base) -> Iterator[robosc.Library]:
-    """The library that every model knows, once for each use of it in a text."""
+    """Return the predefined library, once for each use in a text."""
     for _, element in tree(base):
         enum: robosc.ComplexDataType | None = None
         match element:

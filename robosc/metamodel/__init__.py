@@ -1,5 +1,5 @@
-"""The metamodels as Python: one module a package, one class an EClass.
+"""The metamodels as Python: one module for each package, one class for each EClass.
 
-`sct.Plant(name="message_stop")` makes an object; features are attributes; `isinstance` and `match` follow the
-inheritance of the metamodel. This is the one place that knows pyecore.
+`sct.Plant(name="message_stop")` creates an object. Features are attributes. `isinstance` and `match` follow the
+inheritance of the metamodel. Only this package depends on pyecore.
 """

@@ -1,4 +1,4 @@
-"""Loads the .ecore files once and hands out their classes as Python classes."""
+"""Loads the .ecore files once and provides their classes as Python classes."""
 
 import re
 from functools import cache
@@ -16,18 +16,18 @@ PACKAGES = ("expression", "robosc", "sct", "rosgraph", "engine")
 
 
 class _Undocumented(URI):  # type: ignore[misc]
-    """A metamodel's file without its documentation: two thirds of its elements, and a program does not read it."""
+    """A metamodel's file without its documentation, which is two thirds of its elements and not needed by programs."""
 
     def create_instream(self) -> BytesIO:
         return BytesIO(re.sub(b"<eAnnotations .*?</eAnnotations>", b"", Path(self.plain).read_bytes(), flags=re.DOTALL))
 
     def close_stream(self) -> None:
-        """Nothing is open."""
+        """Do nothing: no stream is open."""
 
 
 @cache
 def packages(*, documented: bool = False) -> dict[str, EPackage]:
-    """All metamodels by name, their references to each other resolved; documented ones have no instances."""
+    """Return all metamodels by name, with resolved references. Documented metamodels have no instances."""
     resources = ResourceSet()
     kind = URI if documented else _Undocumented
     loaded = {
@@ -37,7 +37,7 @@ def packages(*, documented: bool = False) -> dict[str, EPackage]:
     for package in loaded.values():
         for classifier in package.eClassifiers:
             if isinstance(classifier, EClass):
-                # A Python class follows only the proxies that were resolved before it is made.
+                # A Python class follows only proxies that are resolved before its creation.
                 for parent in classifier.eSuperTypes:
                     _ = parent.name
                 for feature in classifier.eStructuralFeatures:
@@ -46,7 +46,7 @@ def packages(*, documented: bool = False) -> dict[str, EPackage]:
 
 
 def classes(package: str) -> dict[str, Any]:
-    """The classes of one metamodel as Python classes, and its enumerations, by name."""
+    """Return the Python classes and the enumerations of one metamodel by name."""
     return {
         classifier.name: _python_class(classifier) if isinstance(classifier, EClass) else classifier
         for classifier in packages()[package].eClassifiers
@@ -55,7 +55,7 @@ def classes(package: str) -> dict[str, Any]:
 
 def _python_class(eclass: EClass) -> Any:
     made = eclass.python_class
-    # Nobody listens to models, and to find out so at every change pyecore would climb to the root, by recursion.
+    # Models have no observers. To detect this at every change, pyecore would climb to the root recursively.
     made.notify = _nobody_listens
     return made
 

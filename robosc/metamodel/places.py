@@ -1,4 +1,4 @@
-"""Where the elements of a model stand in the texts that they come from."""
+"""Places of a model's elements in their source texts."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ _PLACE = re.compile(r"(?:(?P<file>[\s\S]+):)?(\d{1,9}):(\d{1,9})-(\d{1,9}):(\d{1
 
 @dataclass(unsafe_hash=True)
 class SourceFile:
-    """A text that elements come from.
+    """A source text of elements.
 
-    `name` is relative to the folder of the model, so the same on every machine, and no other file of the model has it.
-    `path` is the file as the user of this run would write it, `parsed` the `robosc.language.File` of its text, None
-    for a model that was loaded; models save neither.
+    `name` is relative to the folder of the model, so that it is the same on every machine. It is unique in the model.
+    `path` is the file as the user of this run would write it. `parsed` is the `robosc.language.File` of its text, None
+    for a loaded model. Saved models contain neither of them.
     """
 
     name: str
@@ -28,27 +28,27 @@ class SourceFile:
     parsed: Any = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        """The name is the path where no other is known."""
+        """Use the name as path if no other is known."""
         self.path = self.path or self.name
 
 
 @dataclass(frozen=True)
 class Place:
-    """A span of a file; None where a saved model does not say which file it comes from."""
+    """A span of a file. The file is None if a saved model does not name it."""
 
     file: SourceFile | None
     span: Span
 
     def __str__(self) -> str:
-        """`file:line:column-line:column`, as models save it."""
+        """Return `file:line:column-line:column`, as in saved models."""
         span = f"{self.span.line}:{self.span.column}-{self.span.end_line}:{self.span.end_column}"
         return f"{self.file.name}:{span}" if self.file else span
 
     @classmethod
     def parse(cls, text: str, files: MutableMapping[str, SourceFile] | None = None, file: str = "") -> Place | None:
-        """The place that a text stands for, in `file` where it names none; None where it stands for none.
+        """Return the place that a text describes, by default in `file`. None if it describes none.
 
-        `files` are those known by their names; a new one is added.
+        `files` are the known files by name. A new file is added to it.
         """
         found = _PLACE.fullmatch(text)
         if found is None:
@@ -60,9 +60,10 @@ class Place:
 
 
 def place(element: Any) -> tuple[str, Span]:
-    """The file, as the user would write it, and the span of an element, or of the nearest around it with a `source`.
+    """Return the file, as the user would write it, and the span of an element.
 
-    Without any the file is what the root says of itself, or its name, and the span its first character.
+    An element without a `source` has the place of its nearest container with one. Without any, the file is that of the
+    root, or its name, and the span is the first character.
     """
     found: Place | None = None
     root = around = element

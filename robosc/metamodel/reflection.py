@@ -1,4 +1,4 @@
-"""What the metamodels declare and what models contain, always in the order of the .ecore text."""
+"""Features of the metamodels and contents of models, always in the order of the .ecore text."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
@@ -11,7 +11,7 @@ from robosc.metamodel._ecore import packages
 
 @cache
 def features(metaclass: EClass) -> Mapping[str, Any]:
-    """The attributes and references of a class by name, inherited ones first."""
+    """Return the attributes and references of a class by name, inherited ones first."""
     found: dict[str, Any] = {}
     for parent in metaclass.eSuperTypes:
         found |= features(parent)
@@ -19,19 +19,19 @@ def features(metaclass: EClass) -> Mapping[str, Any]:
 
 
 def is_attribute(feature: Any) -> bool:
-    """Whether the feature holds plain values; if not it is a reference."""
+    """Return whether the feature is an attribute. If not, it is a reference."""
     return isinstance(feature, EAttribute)
 
 
 @cache
 def _containments(metaclass: EClass) -> Sequence[tuple[str, bool]]:
-    """The names of the references of a class that contain, each with whether there may be many."""
+    """Return the names of the containment references of a class, each with whether it has many values."""
     found = features(metaclass).items()
     return [(name, feature.many) for name, feature in found if not is_attribute(feature) and feature.containment]
 
 
 def contents(element: Any) -> Iterator[tuple[str, Any]]:
-    """The elements directly inside an element, each with its step in a fragment path (`@plants.0`, `@guard`)."""
+    """Iterate over the elements directly inside an element, each with its fragment step (`@plants.0`, `@guard`)."""
     for name, many in _containments(element.eClass):
         value = getattr(element, name)
         if many:
@@ -41,9 +41,9 @@ def contents(element: Any) -> Iterator[tuple[str, Any]]:
 
 
 def tree(root: Any) -> Iterator[tuple[str, Any]]:
-    """An element and all below it, each before what it contains, with its step in a fragment path, empty for the root.
+    """Iterate over an element and all elements below it in preorder, each with its fragment step, "" for the root.
 
-    Takes time in proportion to the number of elements, however deep they are inside each other.
+    Takes linear time at any depth.
     """
     pending = [("", root)]
     while pending:
@@ -53,15 +53,15 @@ def tree(root: Any) -> Iterator[tuple[str, Any]]:
 
 
 def literals(enumeration: Any) -> list[str]:
-    """The names of the values of an enumeration."""
+    """Return the names of an enumeration's values."""
     return [literal.name for literal in enumeration.eLiterals]
 
 
 def metamodel(name: str) -> Any:
-    """The package that an .ecore file declares, with its documentation. Raises KeyError where there is no such file."""
+    """Return the documented package of an .ecore file. Raises KeyError if there is no such file."""
     return packages(documented=True)[name]
 
 
 def documentation(element: Any) -> str:
-    """What the .ecore file says of a package, class or feature."""
+    """Return the documentation of a package, class or feature in the .ecore file."""
     return str(element.eAnnotations[0].details["documentation"])

@@ -1,4 +1,4 @@
-"""The classes of `metamodel/sct.ecore`; `sct.pyi`, generated from it, shows them to type checkers."""
+"""Classes of `metamodel/sct.ecore`. `sct.pyi`, generated from it, declares them for type checkers."""
 
 from robosc.metamodel._ecore import classes as _classes
 

@@ -1,8 +1,8 @@
-"""CIF's operators and types, as far as synthesis takes them, by CIF's language reference.
+"""CIF's operators and types, as far as synthesis supports them. Source: CIF's language reference.
 
-A type is BOOLEAN, an enumeration, or for integers the range of the values that an expression may have. Both readers of
-CIF stand on this, that of specifications and that of what is generated; the generator does not, so that what it takes
-CIF to mean is checked.
+A type is BOOLEAN, an enumeration, or, for integers, the range of an expression's possible values. Both readers of CIF
+use this module: the reader of specifications and the reader of generated CIF. The generator does not use it. The
+readers therefore check the generator's view of CIF independently.
 """
 
 from __future__ import annotations
@@ -16,11 +16,12 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 BOOLEAN: Final = "bool"
-#: CIF's integers have 32 bits.
+#: Largest integer of CIF, which has 32 bits.
 LARGEST = 2**31 - 1
 Type: TypeAlias = str | range | ex.Enumeration
 
-#: How tightly each operator binds, and what it makes. All comparisons bind alike; an implication is no chain.
+#: Precedence of each operator (higher binds tighter) and the class of its expression. All comparisons have the same
+#: precedence. An implication does not chain.
 OPERATORS: Mapping[str, tuple[int, type[ex.BinaryExpression]]] = {
     "=>": (1, ex.Implication),
     "<=>": (1, ex.Equation),
@@ -38,13 +39,13 @@ OPERATORS: Mapping[str, tuple[int, type[ex.BinaryExpression]]] = {
     "div": (6, sct.Quotient),
     "mod": (6, sct.Quotient),
 }
-#: Operators that no expression has that synthesis takes.
+#: Operators of CIF that synthesis does not support, with their precedence.
 FOREIGN = {"/": 6, "in": 4, "sub": 4}
 _LOGICAL = ("=>", "<=>", "or", "and")
 
 
 def shown(kind: Type) -> str:
-    """A type as CIF writes it."""
+    """Return a type in CIF's notation."""
     match kind:
         case range():
             return f"int[{kind.start}..{kind.stop - 1}]"
@@ -54,14 +55,17 @@ def shown(kind: Type) -> str:
 
 
 def compatible(left: Type, right: Type) -> bool:
-    """Whether values of the types can be compared, and be alternatives of each other: ranges don't matter for that."""
+    """Return whether values of two types can be compared, or be alternatives of one expression. Ranges are ignored."""
     if isinstance(left, ex.Enumeration) and isinstance(right, ex.Enumeration):
         return [literal.name for literal in left.literals] == [literal.name for literal in right.literals]
     return isinstance(left, range) and isinstance(right, range) if isinstance(left, range) else left == right
 
 
 def combined(operator: str, left: Type, right: Type) -> Type:
-    """The type of a binary expression. Raises TypeError, saying why there is none."""
+    """Return the type of a binary expression.
+
+    Raises TypeError, with the cause, if the operator does not apply to the operands.
+    """
     if operator in _LOGICAL:
         fits = left == right == BOOLEAN
     elif operator in ("=", "!="):
@@ -86,7 +90,7 @@ def combined(operator: str, left: Type, right: Type) -> Type:
 
 
 def bounded(operator: str, made: range) -> range:
-    """The values of an operation. Raises TypeError where some do not fit CIF's integers."""
+    """Return the range of an operation's values. Raises TypeError if it exceeds CIF's integers."""
     if made.start < -LARGEST - 1 or made.stop - 1 > LARGEST:
         raise TypeError(f"`{operator}` could overflow: its values are {made.start} to {made.stop - 1}")
     return made
@@ -102,7 +106,7 @@ def _divided(operator: str, left: range, right: range) -> range:
 
 
 def joined(left: Type, right: Type) -> Type:
-    """The type of something that is one or the other. Raises TypeError where they are not compatible."""
+    """Return the type that holds the values of both types. Raises TypeError if they are not compatible."""
     if not compatible(left, right):
         raise TypeError(f"the alternatives are {shown(left)} and {shown(right)}")
     if isinstance(left, range) and isinstance(right, range):
@@ -111,14 +115,14 @@ def joined(left: Type, right: Type) -> Type:
 
 
 def overlap(variable: Type, value: Type) -> bool:
-    """Whether a variable can be assigned some of the values."""
+    """Return whether at least one of the values can be assigned to the variable."""
     if isinstance(variable, range) and isinstance(value, range):
         return variable.start < value.stop and value.start < variable.stop
     return compatible(variable, value)
 
 
 def contains(variable: Type, value: Type) -> bool:
-    """Whether a variable can have all of the values."""
+    """Return whether all of the values can be assigned to the variable."""
     if isinstance(variable, range) and isinstance(value, range):
         return variable.start <= value.start and value.stop <= variable.stop
     return compatible(variable, value)

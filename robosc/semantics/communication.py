@@ -1,4 +1,4 @@
-"""The events of messages, services and actions, and the data that each of them carries: one table for all packages."""
+"""Events of messages, services and actions, with the data of each event: one table for all packages."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ if TYPE_CHECKING:
 class PortEvent(NamedTuple):
     """An event of a kind of communication.
 
-    `name` is what transitions call it (thesis table 5.1); empty: no transition can name it. Its data stands in a
-    `section` of the ROS type, and the `feature` of the communication declares its type; None and empty: it has no data.
+    Transitions use its `name` (thesis table 5.1). If the name is empty, no transition can refer to the event. Its data
+    is in a `section` of the ROS type; the `feature` of the communication declares the data's type. An event without
+    data has the section None and an empty feature.
     """
 
     kind: sct.EventKind
@@ -25,18 +26,18 @@ class PortEvent(NamedTuple):
 
     @property
     def is_sent(self) -> bool:
-        """Whether the controller sends the data, or a component gets it."""
+        """Whether the controller sends the data. If not, a component receives it."""
         return self.kind == sct.EventKind.trigger
 
 
 _RESET = PortEvent(sct.EventKind.reset, "")
 _CANCEL = PortEvent(sct.EventKind.cancel, "cancel")
 _ERROR = PortEvent(sct.EventKind.error, "error")
-#: The ends of a goal that has not succeeded come with its result, or with one of ROS's defaults.
+#: A goal that ends without success carries its result, or one of ROS's default results.
 _ABORTED = PortEvent(sct.EventKind.error, "error", Section.RESULT, "responseType")
 _CANCELED = PortEvent(sct.EventKind.canceled, "canceled", Section.RESULT, "responseType")
 
-#: The events of each kind of communication, in the order of its plant; of a message only one of the two happens.
+#: Events of each kind of communication, in the order of its plant. A message has only one of its two events.
 EVENTS: Mapping[type[robosc.CommunicationType], tuple[PortEvent, ...]] = {
     robosc.Message: (
         PortEvent(sct.EventKind.trigger, "request", Section.MESSAGE, "type"),
@@ -58,17 +59,17 @@ EVENTS: Mapping[type[robosc.CommunicationType], tuple[PortEvent, ...]] = {
         _CANCELED,
     ),
 }
-#: The locations of the plants of services and actions (thesis, listings 5.2 and 5.3); that of a message is READY.
+#: Locations of the plants of services and actions (thesis, listings 5.2 and 5.3). A message's location is READY.
 IDLE, WAITING, EXECUTING, READY, ERROR = "idle", "wait_for_response", "executing", "ready", "error"
-#: The controller has asked the server to cancel the goal, which has not ended yet.
+#: The controller asked the server to cancel the goal, and the goal has not ended yet.
 CANCELING = "canceling"
-#: The locations in which a service or action is running: from its request until its end is known.
+#: Locations in which a service or action is running: from its request until its end is known.
 RUNNING = (WAITING, EXECUTING, CANCELING)
-#: The word behind a service or action that reads whether it is running.
+#: Word after the name of a service or action that reads whether it is running.
 RUNNING_WORD = "running"
-#: In the order in which the language lists them.
+#: Names of events, in the order in which the language lists them.
 _NAMES = ("request", "response", "error", "feedback", "cancel", "canceled")
-#: The kinds of the events that the controller decides on: all but what comes from the robot.
+#: Kinds of events that the controller decides on: all but events from the robot.
 CONTROLLABLE = (
     sct.EventKind.trigger,
     sct.EventKind.reset,
@@ -78,17 +79,17 @@ CONTROLLABLE = (
 )
 
 
-#: Quality of service where the configuration says nothing: how many messages wait in a queue.
+#: Default length of a message queue, if the configuration does not set one.
 QUEUE_DEPTH = 10
 
 
 def is_sensor_data(package: str) -> bool:
-    """Whether ROS 2 receives messages of a package by its quality of service for sensors: best effort, the newest."""
+    """Return whether ROS 2 receives a package's messages with the sensor data QoS: best effort, newest message."""
     return package == "sensor_msgs"
 
 
 def events(communication: robosc.CommunicationType | None) -> tuple[PortEvent, ...]:
-    """The events of a communication; of a message the one that its direction means."""
+    """Return the events of a communication. A message has one event, selected by its direction."""
     rows = EVENTS.get(type(communication), ())  # type: ignore[arg-type]
     if isinstance(communication, robosc.Message):
         return rows[:1] if communication.direction == robosc.MessageDirection.incoming else rows[1:]
@@ -96,32 +97,35 @@ def events(communication: robosc.CommunicationType | None) -> tuple[PortEvent, .
 
 
 def is_error(event: PortEvent | None) -> bool:
-    """Whether an event is the error of a service or an action, which has a reason."""
+    """Return whether an event is the error of a service or an action, which has a reason."""
     return event is not None and event.kind == sct.EventKind.error
 
 
 def happens_anyway(event: PortEvent | sct.Event) -> bool:
-    """Whether an event happens whether its data can be read or not."""
+    """Return whether an event happens even if its data cannot be read."""
     return event.kind in (sct.EventKind.error, sct.EventKind.canceled)
 
 
 def event_names(communication: robosc.CommunicationType | None) -> list[str]:
-    """The names of the events that a transition can react to."""
+    """Return the names of the events that a transition can react to."""
     return sorted((event.name for event in events(communication) if event.name), key=_NAMES.index)
 
 
 def event(communication: robosc.CommunicationType | None, name: robosc.ResultType | None) -> PortEvent | None:
-    """The event that a transition names; None where the communication has no such event."""
+    """Return the event that a transition names. None if the communication has no such event."""
     return next((row for row in events(communication) if row.name == str(name)), None)
 
 
 def event_of(reference: robosc.CommunicationReference | None, name: robosc.ResultType | None) -> PortEvent | None:
-    """The same for a reference in a text; None also where it is not resolved."""
+    """Return the event that a transition names, by a reference in a text. None also if the reference is unresolved."""
     return event(reference.communicationType if reference else None, name)
 
 
 def meant(reference: robosc.EventReference) -> PortEvent | None:
-    """The event that a requirement names; without a word for it the request, or what an outgoing message brings."""
+    """Return the event that a requirement names.
+
+    Without a word for the event, it is the request, or the arrival of an outgoing message.
+    """
     named = reference.communicationType
     communication = named.communicationType if named else None
     if isinstance(reference, robosc.NamedEvent):
@@ -130,14 +134,14 @@ def meant(reference: robosc.EventReference) -> PortEvent | None:
 
 
 def sent(communication: robosc.CommunicationType | None) -> PortEvent | None:
-    """The event with which data goes out of the controller; None where none goes out."""
+    """Return the event with which the controller sends data. None if it sends none."""
     return next((row for row in events(communication) if row.is_sent), None)
 
 
 def carried(communication: robosc.CommunicationType) -> list[tuple[PortEvent, robosc.DataType]]:
-    """The events that carry data, in the order of the text, each with the type that is declared for it.
+    """Return the events that carry data, in the order of the text, each with its declared type.
 
-    Of the ends of a goal, which all carry its result, the response.
+    Several ends of a goal carry its result. Only the response is included.
     """
     rows = sorted((row for row in events(communication) if row.section and not happens_anyway(row)), key=_section_index)
     types = ((row, data_type(communication, row)) for row in rows)
@@ -145,24 +149,24 @@ def carried(communication: robosc.CommunicationType) -> list[tuple[PortEvent, ro
 
 
 def data_type(communication: robosc.CommunicationType | None, row: PortEvent | None) -> robosc.DataType | None:
-    """The declared type of the data of an event; None where it has none."""
+    """Return the declared type of an event's data. None if the event has no data."""
     return getattr(communication, row.feature) if row is not None and row.feature else None
 
 
 def sent_type(communication: robosc.CommunicationType | None) -> robosc.DataType | None:
-    """The declared type of the data that goes out of the controller; None where none goes out."""
+    """Return the declared type of the data that the controller sends. None if it sends none."""
     return data_type(communication, sent(communication))
 
 
 def section_of(declared: robosc.DataType) -> Section:
-    """The section of the ROS type that a type in the text of a communication stands for; elsewhere a message."""
+    """Return the section of the ROS type that a type in a communication's text describes; elsewhere the message."""
     rows = EVENTS.get(type(declared.eContainer()), ())
     owner = declared.eContainer()
     sections = (row.section for row in rows if row.feature and getattr(owner, row.feature) is declared)
     return next(sections, None) or Section.MESSAGE
 
 
-#: The types of std_msgs that carry basic data without `links`.
+#: Types of std_msgs that carry basic data of communications without `links`.
 _BASIC = {
     robosc.BooleanDataType: "Bool",
     robosc.IntegerDataType: "Int16",
@@ -173,9 +177,9 @@ _BASIC = {
 
 
 def ros_type(communication: robosc.CommunicationType) -> tuple[str, str] | None:
-    """The package and the name of a communication's ROS type.
+    """Return the package and the name of a communication's ROS type.
 
-    That is the linked one, or the one of `std_msgs` or `std_srvs` for basic data; None where there is none.
+    This is the linked type, or the type of `std_msgs` or `std_srvs` for basic data. None if there is no such type.
     """
     linked = communication.interface
     if linked is not None:
@@ -187,7 +191,7 @@ def ros_type(communication: robosc.CommunicationType) -> tuple[str, str] | None:
 
 
 def basis(declared: robosc.DataType | None) -> robosc.DataType | None:
-    """The type that carries data of a type: that of an enum is the type that it is made from."""
+    """Return the type that carries data of a type. An enum is carried by the type it is defined on."""
     if isinstance(declared, robosc.ComplexDataTypeReference) and isinstance(declared.type, robosc.EnumDataType):
         return basis(declared.type.type)
     return declared

@@ -1,4 +1,4 @@
-"""What belongs to each component of a robot, as a node reports on it: its variables, commands, topics and servers."""
+"""Parts of each component of a robot for a node's reports: variables, commands, topics and clients."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ if TYPE_CHECKING:
 
 _Element = TypeVar("_Element")
 
-#: What is told in the place of the state of a component that has none.
+#: Text in place of the state of a component without states.
 STATELESS = "has no states"
 
 
 @dataclass(frozen=True)
 class Parts:
-    """A component: the variables that the supervisor and the node keep for it, what it is told, what tells of it.
+    """A component with its variables, its commands, and the interfaces that report on it.
 
-    One without behaviour has no plant, and no variables.
+    A component without behaviour has no plant and no variables.
     """
 
     name: str
@@ -35,7 +35,7 @@ class Parts:
 
 
 def components(graph: rosgraph.RosGraph) -> list[Parts]:
-    """The components of a robot: those with behaviour in the order of the model, then those that only communicate."""
+    """Return the components of a robot: first those with behaviour, in the order of the model, then all others."""
     plants: dict[str, sct.Plant | None] = {
         plant.origin or plant.name: plant for plant in graph.model.plants if plant.kind == sct.PlantKind.behaviour
     }
@@ -63,12 +63,12 @@ def components(graph: rosgraph.RosGraph) -> list[Parts]:
 
 
 def request(sending: rosgraph.Sending) -> str:
-    """What a model calls the event of a command: `request to move`."""
+    """Return the model's name for the event of a command: `request to move`."""
     return f"request to {sending.name}"
 
 
 def _grouped(owned: Iterable[tuple[str, _Element]]) -> dict[str, list[_Element]]:
-    """Elements by their owner, each in the order given."""
+    """Group elements by their owner. Each group keeps the order of the elements."""
     found: dict[str, list[_Element]] = {}
     for owner, element in owned:
         found.setdefault(owner, []).append(element)
@@ -76,5 +76,5 @@ def _grouped(owned: Iterable[tuple[str, _Element]]) -> dict[str, list[_Element]]
 
 
 def _owner(event: sct.Event) -> str:
-    """The component that a communication is of."""
+    """Return the component of a communication."""
     return (plant_of(event).origin or "").rpartition(".")[0]

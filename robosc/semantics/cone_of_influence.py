@@ -1,4 +1,4 @@
-"""Data elimination: which variables and which incoming data the supervisor needs (thesis 5.2.4, made transitive)."""
+"""Data elimination: variables and incoming data that the supervisor needs (thesis 5.2.4, made transitive)."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
     from robosc.semantics.instances import Instance, Instances, InstanceVariable
     from robosc.semantics.typing import Type
 
-#: A comparison of doubles is tabulated over the integers that it is computed from, up to so many valuations: a larger
-#: table would be larger than any model that it is part of.
+#: Maximum number of valuations in a table of a comparison of doubles. The table ranges over the integers that the
+#: comparison depends on. A larger table would exceed any model that contains it.
 LARGEST_TABLE = 1 << 16
 
 
 @dataclass(frozen=True)
 class Assigned:
-    """An assignment where it stands: in which instance, in which transition, to which variable (None: to none).
+    """An assignment in its context: the instance, the transition, and the variable (None if it is unresolved).
 
-    `value` is what it assigns, written out.
+    `value` is the expanded expression that it assigns.
     """
 
     instance: Instance
@@ -41,9 +41,9 @@ class Assigned:
 
 @dataclass(frozen=True)
 class Reason:
-    """Why something is needed: what reads it, in the text of which instance (None: the robot's), to compute what.
+    """The place that makes a variable or an input necessary: the access, its instance (None: the robot), its use.
 
-    `variable` is None where the supervisor itself evaluates what reads it.
+    `variable` is the variable that is computed from the access. It is None if the supervisor evaluates the expression.
     """
 
     access: robosc.Access | robosc.ErrorReason
@@ -53,9 +53,9 @@ class Reason:
 
 @dataclass(frozen=True)
 class Reading:
-    """A part of a whole expression that reads the data of an event, and the input that it is; None: it can't be one.
+    """A part of an expression that reads the data of an event, with its input; None if it cannot be an input.
 
-    `is_readable`: it is no part, and the input is whether the whole can be computed.
+    `is_readable`: the entry stands for no part. Its input is whether the whole expression can be computed.
     """
 
     whole: ex.Expression
@@ -68,9 +68,9 @@ class Reading:
 
 @dataclass(frozen=True)
 class ConeOfInfluence:
-    """What the supervisor needs, each with the first reason, in the order in which it was found.
+    """Variables and data that the supervisor needs, each with its first reason, in the order of discovery.
 
-    `readings` are those of data, `computations` the assignments that it performs.
+    `readings` are the reads of data, `computations` the assignments that the supervisor performs.
     """
 
     variables: dict[InstanceVariable, Reason]
@@ -79,7 +79,7 @@ class ConeOfInfluence:
 
     @property
     def data(self) -> dict[Told, Reading]:
-        """What it is told, each with where it is read first."""
+        """Inputs of the supervisor, each with its first reading."""
         found: dict[Told, Reading] = {}
         for reading in self.readings:
             if reading.told is not None:
@@ -88,7 +88,7 @@ class ConeOfInfluence:
 
 
 def cone_of_influence(instances: Instances) -> ConeOfInfluence:
-    """What guards, requirements and conditions of provided data read, and what that was computed from."""
+    """Return the variables and data that guards, requirements and conditions of provided data depend on."""
     assignments: dict[InstanceVariable, list[Assigned]] = {}
     for assigned in all_assignments(instances):
         if assigned.variable is not None:
@@ -118,9 +118,10 @@ def cone_of_influence(instances: Instances) -> ConeOfInfluence:
 
 @dataclass(frozen=True)
 class Evaluated:
-    """An expression that the supervisor itself evaluates, written out, where it stands.
+    """An expanded expression that the supervisor itself evaluates, with its place.
 
-    `within` is the instance whose text it is, None: the robot's, and `transition` the one that it guards.
+    `within` is the instance whose text contains it, or None for the robot. `transition` is the transition that it
+    guards.
     """
 
     expression: ex.Expression
@@ -129,12 +130,12 @@ class Evaluated:
 
 
 def guard_of(transition: robosc.Transition) -> ex.Expression | None:
-    """What must hold for a transition to be taken; None where nothing must."""
+    """Return the guard of a transition. None if it has no guard."""
     return transition.guard if isinstance(transition, robosc.GuardedTransition) else None
 
 
 def conditions(instances: Instances) -> Iterator[Evaluated]:
-    """Every guard and condition."""
+    """Iterate over all guards and conditions."""
     for instance in instances:
         for transition, _ in instance.transitions:
             guard = guard_of(transition)
@@ -148,7 +149,7 @@ def conditions(instances: Instances) -> Iterator[Evaluated]:
 def _stated(
     instances: Instances,
 ) -> Iterator[tuple[ex.Expression | None, Instance | None, robosc.RequirementTransition | None]]:
-    """Conditions of requirements, properties and statements that provide data."""
+    """Iterate over the conditions of requirements, properties and statements that provide data."""
     for automaton in instances.statements(robosc.AutomatonRequirement):
         transitions = (transition for state in automaton.element.states for transition in state.transitions)
         yield from ((transition.guard, automaton.within, transition) for transition in transitions)
@@ -157,7 +158,10 @@ def _stated(
 
 
 def _remembered(instances: Instances) -> Iterator[tuple[ex.Expression | None, Instance | None]]:
-    """Conditions over what the robot remembers."""
+    """Iterate over the conditions of properties, requirements, provided data and invariants.
+
+    They read only the robot's stored state, not the data of an event.
+    """
     for claimed in instances.statements(robosc.Property):
         yield claimed.element.condition, claimed.within
         if isinstance(claimed.element, robosc.ReachabilityProperty):
@@ -171,7 +175,7 @@ def _remembered(instances: Instances) -> Iterator[tuple[ex.Expression | None, In
 
 
 def all_assignments(instances: Instances) -> Iterator[Assigned]:
-    """Every assignment of every instance, in the order of the text."""
+    """Iterate over the assignments of all instances, in the order of the text."""
     for instance in instances:
         for transition, _ in instance.transitions:
             for assignment in transition.assignments:
@@ -182,7 +186,7 @@ def all_assignments(instances: Instances) -> Iterator[Assigned]:
 
 
 def accesses(expression: ex.Expression | None) -> Iterator[robosc.Access]:
-    """Every access in an expression, from left to right."""
+    """Iterate over the accesses in an expression, from left to right."""
     return (part for part in parts(expression) if isinstance(part, robosc.Access))
 
 
@@ -193,9 +197,9 @@ def read_data(
     transition: robosc.Transition | robosc.RequirementTransition | None,
     variable: InstanceVariable | None = None,
 ) -> Iterator[Reading]:
-    """What a written out expression reads of the data of its transition's event.
+    """Iterate over the reads of event data in an expanded expression of a transition.
 
-    `variable` is what it is assigned to.
+    `variable` is the variable that the expression is assigned to.
     """
     reference, event = _event(transition)
     port = None if reference is None else instances.port(reference, within)
@@ -214,7 +218,7 @@ def read_data(
 def _event(
     transition: robosc.Transition | robosc.RequirementTransition | None,
 ) -> tuple[robosc.CommunicationReference | None, PortEvent | None]:
-    """The communication and the event of a transition; None where it has none."""
+    """Return the communication and the event of a transition. None if it has none."""
     match transition:
         case robosc.ResultTransition():
             return transition.communicationType, event_of(transition.communicationType, transition.resultType)
@@ -224,12 +228,12 @@ def _event(
 
 
 def _reads_event(part: ex.Expression) -> TypeGuard[robosc.Access | robosc.ErrorReason]:
-    """Whether a part is `value` or `error`."""
+    """Return whether a part is `value` or `error`."""
     return isinstance(part, robosc.ErrorReason) or (isinstance(part, robosc.Access) and part.value)
 
 
 def _bounds(declared: robosc.DataType) -> tuple[int, int] | None:
-    """The range of an integer that has one."""
+    """Return the bounds of an integer with a range. None for other types."""
     if not isinstance(declared, robosc.IntegerDataType) or declared.minimum is None or declared.maximum is None:
         return None
     return declared.minimum, declared.maximum

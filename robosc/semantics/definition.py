@@ -18,12 +18,15 @@ if TYPE_CHECKING:
 
 _Value = TypeVar("_Value")
 
-#: A report on `~/state` tells the last so many events. Where simulated time stands still there is none for long.
+#: Maximum number of recent events in a report on `~/state`. While simulated time is stopped, no report is due for long.
 TRANSITIONS_KEPT = 5000
 
 
 def definition(graph: rosgraph.RosGraph) -> dict[str, Any]:
-    """The definition as JSON data: components with states, variables and transitions, communication, requirements."""
+    """Return the definition as JSON data: components, communication, requirements.
+
+    A component has states, variables and transitions.
+    """
     plants = graph.model.plants
     kept = reported(graph)
     assigning = {(reaction.event, location) for reaction in graph.reactions for location in reaction.locations}
@@ -54,7 +57,7 @@ def definition(graph: rosgraph.RosGraph) -> dict[str, Any]:
 
 
 def definition_text(graph: rosgraph.RosGraph) -> str:
-    """The definition as JSON in ASCII, a line for each element of its lists."""
+    """Return the definition as JSON in ASCII, with one line for each element of its lists."""
     members = (f"{json.dumps(name)}: {_lines(value)}" for name, value in definition(graph).items())
     return "{" + ",\n".join(members) + "}"
 
@@ -66,7 +69,7 @@ def _lines(value: Any) -> str:
 
 
 def reported(graph: rosgraph.RosGraph) -> dict[str | None, list[rosgraph.NodeVariable]]:
-    """The variables that reports show, by component: no arrays and objects, which may be large."""
+    """Return the variables that reports show, by component. Arrays and objects are excluded: they may be large."""
     found: dict[str | None, list[rosgraph.NodeVariable]] = {}
     for variable in graph.variables:
         if not is_structured(variable.type):
@@ -116,9 +119,9 @@ def _type(kind: ex.Type) -> dict[str, Any]:
 def named_state(
     model: sct.SupervisoryControlModel, value: Callable[[sct.Plant | sct.DiscreteVariable], _Value]
 ) -> dict[str, _Value]:
-    """The state as users read it: every plant's location by its name, then its variables as `Component.variable`.
+    """Return the state as users read it: each plant's location by its name, then variables as `Component.variable`.
 
-    `value` gives the name of a plant's location, or the value of a variable.
+    `value` returns the name of a plant's location, or the value of a variable.
     """
     state: dict[str, _Value] = {}
     for plant in model.plants:

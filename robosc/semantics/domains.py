@@ -1,4 +1,4 @@
-"""Which values a type has, as an interval of whole numbers, and the integers of a machine that hold them."""
+"""Values of types as intervals of integers, and the machine integers that hold them."""
 
 from __future__ import annotations
 
@@ -10,31 +10,31 @@ from robosc.metamodel import expression as ex
 
 
 class Interval(NamedTuple):
-    """Values between two bounds, both included. False and true count as 0 and 1, literals as their positions."""
+    """Integers between two bounds, both included. False and true count as 0 and 1, literals as their positions."""
 
     low: int
     high: int
 
     @property
     def size(self) -> int:
-        """How many values there are; `len` of a range ends at 2^63."""
+        """Number of values. `len` of a range would be limited to 2^63."""
         return self.high - self.low + 1
 
     @property
     def single(self) -> int | None:
-        """The only value, where there is only one."""
+        """The only value of the interval. None if there are several."""
         return self.low if self.low == self.high else None
 
     def holds(self, other: Interval) -> bool:
-        """Whether every value of the other interval is in this one."""
+        """Return whether every value of the other interval is in this one."""
         return self.low <= other.low and other.high <= self.high
 
     def union(self, other: Interval) -> Interval:
-        """The smallest interval with the values of both."""
+        """Return the smallest interval that contains both intervals."""
         return Interval(min(self.low, other.low), max(self.high, other.high))
 
     def clamp(self, value: int) -> int:
-        """The nearest value of the interval."""
+        """Return the value of the interval that is nearest to `value`."""
         return min(max(value, self.low), self.high)
 
 
@@ -42,7 +42,7 @@ BOOLEAN = Interval(0, 1)
 
 
 def domain(declared: sct.Plant | ex.Type) -> Interval:
-    """The values of a type of an sct or engine model, or the positions of a plant's locations.
+    """Return the values of a type of an sct or engine model, or the positions of a plant's locations.
 
     Raises TypeError for a type without bounds: doubles, strings, integers without range.
     """
@@ -64,7 +64,7 @@ def domain(declared: sct.Plant | ex.Type) -> Interval:
 
 
 def truth(can_be_false: bool, can_be_true: bool) -> Interval:
-    """The values of a condition, at least one of which it has."""
+    """Return the values of a condition. At least one of the arguments is true."""
     return Interval(0 if can_be_false else 1, 1 if can_be_true else 0)
 
 
@@ -76,7 +76,7 @@ class Width(NamedTuple):
 
     @property
     def values(self) -> Interval:
-        """What it holds."""
+        """Values that the type can hold."""
         half = 1 << (self.bits - 1)
         return Interval(-half, half - 1) if self.signed else Interval(0, 2 * half - 1)
 
@@ -85,9 +85,9 @@ _WIDTHS = [Width(8, signed=False)] + [Width(bits, signed) for bits in (8, 16, 32
 
 
 def storage(values: Interval) -> Width:
-    """The smallest type that stores the values; of two the signed one, but of those of 8 bits.
+    """Return the smallest type that stores the values. Signed types are preferred, except for 8 bits.
 
-    Raises OverflowError where not even 64 bits with a sign do.
+    Raises OverflowError if the values exceed 64 signed bits.
     """
     for width in _WIDTHS[:-1]:
         if width.values.holds(values):
@@ -96,8 +96,8 @@ def storage(values: Interval) -> Width:
 
 
 def working_width(values: Interval, least: int = 16) -> Width:
-    """The signed type in which an operator computes whose operands and result have these values.
+    """Return the signed type in which to compute an operator whose operands and result have these values.
 
-    It has at least `least` bits, and at most as many as are needed, even if no machine has them.
+    The type has at least `least` bits and no more than needed. It may be wider than the integers of any machine.
     """
     return next(width for power in count() if (width := Width(least << power, signed=True)).values.holds(values))

@@ -1,4 +1,4 @@
-"""How long `after` waits, in milliseconds."""
+"""Durations of `after` in milliseconds."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ if TYPE_CHECKING:
     from robosc.metamodel import sct
     from robosc.semantics.instances import Instance
 
-#: The shortest and the longest time; times on a clock of 32 bits can be told apart up to some hours more.
+#: Shortest and longest duration in milliseconds. A 32-bit clock distinguishes times that are a few hours further apart.
 SHORTEST, LONGEST = 1, 24 * 24 * 3600 * 1000
-#: How many milliseconds a unit is.
+#: Milliseconds of each unit.
 UNITS = {robosc.TimeUnit.ms: 1, robosc.TimeUnit.s: 1000, robosc.TimeUnit.min: 60_000}
 
 
 def set_on_robot(duration: ex.Expression | None) -> robosc.Access | None:
-    """The access to the parameter that a duration is; None where it is a constant expression."""
+    """Return the access to the parameter that sets a duration. None if the duration is a constant expression."""
     if isinstance(duration, robosc.Access) and isinstance(duration.item, robosc.Parameter):
         return duration
     return None
 
 
 def bounds(parameter: robosc.Parameter, within: Instance | None) -> tuple[float | None, float | None]:
-    """The least and the largest value of a number that is set on the robot; None where its text does not say."""
+    """Return the lowest and highest value of a numeric parameter. None for bounds that the text does not give."""
     declared = parameter.type if within is None else within.data_type(parameter.type)
     if isinstance(declared, robosc.IntegerDataType):
         return declared.minimum, declared.maximum
@@ -37,14 +37,17 @@ def bounds(parameter: robosc.Parameter, within: Instance | None) -> tuple[float 
 
 
 def set_milliseconds(value: float, unit: int) -> int:
-    """A parameter's value in units of so many milliseconds, rounded as `duration_ms` of the generated nodes does."""
+    """Return a parameter's value in milliseconds; `unit` is the number of milliseconds of its unit.
+
+    Rounds in the same way as `duration_ms` of the generated nodes.
+    """
     return floor(value * unit + 0.5)
 
 
 def milliseconds(transition: robosc.TimedTransition, within: Instance | None) -> int | None:
-    """The duration in the text of an instance, rounded to a whole number; None where it is no constant number.
+    """Return the duration in milliseconds, rounded, in the text of an instance. None if it is no constant number.
 
-    What rounds to less than the shortest time, or is more than the longest, is given as it is.
+    Does not limit the result: it may be below the shortest or above the longest duration.
     """
     value = constant_value(transition.duration, within)
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -55,13 +58,13 @@ def milliseconds(transition: robosc.TimedTransition, within: Instance | None) ->
 
 
 def duration_text(duration: sct.Duration) -> str:
-    """What is set on the robot, such as `Base.pause s`."""
+    """Return the parameter and unit of a duration that is set on the robot, such as `Base.pause s`."""
     unit = next(unit.name for unit, factor in UNITS.items() if factor == duration.unit)
     return f"{duration.parameter} {unit}"
 
 
 def timer_text(timer: sct.Timer) -> str:
-    """A timer in words, such as `3 s`, `pause s` or `500 ms without Lidar.scan`."""
+    """Return a timer in words, such as `3 s`, `pause s` or `500 ms without Lidar.scan`."""
     if timer.duration is not None:
         length = duration_text(timer.duration)
     else:

@@ -1,4 +1,4 @@
-"""The value of an expression, computed as every generated program computes it."""
+"""Evaluation of expressions, with the same results as every generated program."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ _LITERALS = (ex.BooleanLiteral, ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLi
 def evaluate(
     expression: ex.Expression, read: Callable[[ex.Expression], Value], fit: Callable[[int], int] | None = None
 ) -> Value:
-    """The value of a well-typed expression; `read` gives the value of every reference in it.
+    """Return the value of a well-typed expression; `read` returns the value of each reference in it.
 
-    Doubles follow IEEE 754, division by zero included; every comparison with NaN is false. `and`, `or` and `=>` go no
-    further to the right than needed. `fit` says what becomes of a computed integer; by default it stays, however large.
+    Doubles follow IEEE 754, division by zero included; every comparison with NaN is false. `and`, `or` and `=>` skip
+    the right operand if the left one decides. `fit` maps each computed integer; by default integers are unbounded.
     """
     return Program[Value](expression, lambda reference: partial(read, reference), fit)()
 
 
 class Program(Generic[_Result]):
-    """An expression as instructions for a stack of values, made once and run many times; nothing in it recurses.
+    """An expression compiled to instructions of a stack machine: compiled once, run many times, without recursion.
 
-    Calling it gives the value; the arguments of the call go to all that reads.
+    A call of the program returns the value. The arguments of the call are passed to all readers.
     """
 
     def __init__(
@@ -43,7 +43,10 @@ class Program(Generic[_Result]):
         reader: Callable[[ex.Expression], Callable[..., Any]],
         fit: Callable[[int], int] | None = None,
     ) -> None:
-        """`reader` gives for each reference the function that reads it; `fit` is as for `evaluate`."""
+        """Compile an expression.
+
+        `reader` returns the function that reads a reference; `fit` is as for `evaluate`.
+        """
         self._reader = reader
         self._fit = fit
         self._code: list[tuple[int, Any]] = []
@@ -58,7 +61,7 @@ class Program(Generic[_Result]):
                 pending += reversed(self._steps(step))
 
     def __call__(self, *source: Any) -> _Result:
-        """Runs the instructions."""
+        """Run the instructions."""
         stack: list[Any] = []
         code, position = self._code, 0
         loops = _Loops()
@@ -87,7 +90,7 @@ class Program(Generic[_Result]):
         return stack[0]  # type: ignore[no-any-return]
 
     def _steps(self, expression: ex.Expression) -> list[Any]:
-        """The instructions for an expression, with its operands and labels among them."""
+        """Return the instructions for an expression, with its operands and labels among them."""
         if isinstance(expression, _LITERALS):
             return [(_CONSTANT, expression.value)]
         end = _Label()
@@ -118,7 +121,10 @@ class Program(Generic[_Result]):
         return [*given, (_UNARY if len(given) == 1 else _BINARY, compute)]
 
     def _read(self, reference: ex.Expression) -> list[Any]:
-        """A reference, behind the element of an array that it reads, if it does, and its indices."""
+        """Return the instructions for a reference.
+
+        The element of an array that it reads, if any, and its indices are computed first.
+        """
         access = reference.argument if isinstance(reference, rosgraph.ConversionCall) else reference
         reader = self._reader(reference)
         bound = access.quantifier if isinstance(access, rosgraph.WireAccess) else None
@@ -127,7 +133,8 @@ class Program(Generic[_Result]):
         return [*given, (_REACH, (len(given), reader))] if given else [(_READ, reader)]
 
 
-#: The value for no elements, and the value of the body that decides; where none does, those that hold are counted.
+#: For each quantifier: its value for no elements, and the value of the body that ends the loop. If no value ends it,
+#: the loop counts the elements for which the body is true.
 _QUANTIFIERS: dict[str, tuple[bool | int, bool | None]] = {
     "all": (True, False),
     "any": (False, True),
@@ -136,14 +143,14 @@ _QUANTIFIERS: dict[str, tuple[bool | int, bool | None]] = {
 
 
 class _Loops:
-    """Conditions on elements of arrays while they are computed: what is left of each array, and the element at hand."""
+    """Loops over arrays during a run: the remaining elements of each array, and the current element."""
 
     def __init__(self) -> None:
         self._arrays: dict[Any, Any] = {}
         self._elements: dict[Any, Any] = {}
 
     def step(self, kind: int, argument: Any, stack: list[Any], position: int, source: Sequence[Any]) -> int:
-        """Runs an instruction; where the next one stands."""
+        """Run one instruction and return the position of the next one."""
         if kind in {_CALL, _REACH}:
             count, function = argument
             behind = source if kind == _REACH else ()
@@ -168,14 +175,14 @@ class _Loops:
 
 
 class _Label:
-    """A place in a program to which an instruction jumps."""
+    """Target of a jump in a program."""
 
     position = 0
 
 
-#: The instructions: what each does with its argument and the values on the stack.
+#: Kinds of instructions. Each uses its argument and the values on the stack.
 _READ, _CONSTANT, _UNARY, _BINARY, _DECIDE, _UNLESS, _JUMP, _CALL, _REACH, _BOUND, _EACH, _NEXT, _TALLY = range(13)
-#: Behind the last element.
+#: Marks the end of an array.
 _NOTHING = object()
 
 
@@ -192,16 +199,16 @@ def _fitted(fit: Callable[[int], int], compute: Callable[..., Any], *values: Any
 
 
 def saturate(value: int, minimum: int | None, maximum: int | None) -> int:
-    """The value, or the nearest bound where it is outside the range; an absent bound does not bound."""
+    """Return the value, or the nearest bound if it is outside the range. A bound of None does not limit it."""
     if minimum is not None:
         value = max(value, minimum)
     return value if maximum is None else min(value, maximum)
 
 
 def literal(value: Value) -> ex.Expression:
-    """The expression that stands for a value, with a minus sign where it is negative.
+    """Return the expression of a value. A negative number gets a minus sign.
 
-    What no literal stands for is a division by zero, as it was in the text.
+    A double without a literal (infinity, NaN) becomes a division by zero, as in the text.
     """
     if isinstance(value, bool):
         return ex.BooleanLiteral(value=value)

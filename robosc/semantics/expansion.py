@@ -1,4 +1,4 @@
-"""Expressions without names for expressions: constants, conditions, functions, parameters, quantifiers written out."""
+"""Expansion of expressions: replaces names, function calls and quantifiers by their definitions."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ if TYPE_CHECKING:
 
     from robosc.semantics.instances import Instance, Instances
 
-    #: What parameters of a function, a template or an enum stand for.
+    #: Expressions for the parameters of a function, a template or an enum.
     Arguments: TypeAlias = Mapping[robosc.FormalParameter, ex.Expression]
 
-#: An expression is written out up to so many elements: a few names for sums of names are enough for any number.
+#: Maximum number of elements of an expanded expression. A few names for sums of names would exceed any limit.
 LARGEST = 20_000
-#: The largest integer that a constant expression computes with. Integers of a robot have 64 bits.
+#: Largest integer that a constant expression computes with. Integers of a robot have 64 bits.
 CLAMP = 1 << 128
 _NAMED = (robosc.Constant, robosc.Condition, robosc.FormalParameter)
 _OPERATORS = {"all": ex.Conjunction, "any": ex.Disjunction, "count": ex.Addition}
 
 
 class _Environment(NamedTuple):
-    """What names mean where a part of an expression stands.
+    """Meaning of names at the place of a part of an expression.
 
-    `within` is the instance whose text it is, and `moved` whether it is written out elsewhere, so that its own names
-    need their component. `templates` are those that a quantifier has a component for. `opened` are the definitions
-    that it is written out for, so that a circle of them ends.
+    `within` is the instance whose text contains the part. `moved`: the part is expanded in another text, so that its
+    own names need their component. `templates` maps each template that a quantifier iterates over to the current
+    component. `opened` holds the definitions that are being expanded; it stops circular expansion.
     """
 
     within: Instance | None
@@ -44,7 +44,7 @@ class _Environment(NamedTuple):
 
 
 class _Size(NamedTuple):
-    """The number of elements of an expression without its parameters, and how often each parameter is in it.
+    """The number of elements of an expression without its parameters, and the number of uses of each parameter.
 
     All numbers are at most `LARGEST` + 1.
     """
@@ -59,19 +59,19 @@ class _Size(NamedTuple):
         return _Size(_bounded(self.own + other.own), parameters)
 
     def times(self, number: int) -> _Size:
-        """The size of so many copies."""
+        """Return the size of `number` copies."""
         counts = {parameter: _bounded(count * number) for parameter, count in self.parameters.items()}
         return _Size(_bounded(self.own * number), counts)
 
     def with_arguments(self, arguments: Mapping[robosc.FormalParameter, _Size]) -> _Size:
-        """The size of the expression with arguments in place of parameters."""
+        """Return the size of the expression with arguments in place of parameters."""
         size = _Size(self.own, {})
         for parameter, number in self.parameters.items():
             size += arguments.get(parameter, _Size(1, {})).times(number)
         return size
 
     def of(self, arguments: Mapping[robosc.FormalParameter, _Size]) -> int:
-        """The number of elements, each parameter without argument one of them."""
+        """Return the number of elements. A parameter without an argument counts as one element."""
         return self.with_arguments(arguments).own
 
 
@@ -80,33 +80,33 @@ def _bounded(number: int) -> int:
 
 
 def _is_long(named: robosc.Constant | robosc.Condition) -> bool:
-    """Whether a name stands for more than one literal number."""
+    """Return whether a name stands for more than one literal number."""
     if named.value is None:
         return False
     return isinstance(named, robosc.Condition) or isinstance(named.type, robosc.StringDataType)
 
 
 class Expansion:
-    """Writes the expressions of a robot's instances out. Where there is nothing to write out they stay what they are.
+    """Expands the expressions of a robot's instances. Returns an expression itself if it needs no expansion.
 
-    Definitions that use each other in a circle stay names. So do all names of an expression that would have more than
-    `LARGEST` elements: `too_large` has these expressions.
+    Definitions in a circle stay names. All names stay if an expression would have more than `LARGEST` elements;
+    `too_large` holds these expressions.
     """
 
     def __init__(self, instances: Instances | None) -> None:
         self._instances = instances
         self._known: dict[tuple[ex.Expression, Instance | None, bool], ex.Expression] = {}
         self._sizes: dict[Any, _Size] = {}
-        #: The literals of constants that are written out already.
+        #: Literals of constants that are expanded already.
         self._constants: dict[tuple[robosc.NamedExpression, Instance | None], ex.Expression] = {}
         self._elements: dict[ex.Located, ex.Located] = {}
         self.too_large: dict[ex.Expression, None] = {}
 
     def __call__(self, expression: ex.Expression, within: Instance | None, *, readable: bool = False) -> ex.Expression:
-        """The expression in the text of an instance, None: in that of the robot itself, as the supervisor computes it.
+        """Return the expression in the text of an instance (None: of the robot), as the supervisor computes it.
 
-        `readable`: as people read it, with names of constants, conditions and functions as they are. The same
-        expression is given for the same arguments.
+        `readable`: return the form for people, which keeps the names of constants, conditions and functions. Equal
+        arguments give the same object.
         """
         key = (expression, within, readable)
         if key not in self._known:
@@ -119,31 +119,31 @@ class Expansion:
         return self._known[key]
 
     def is_too_large(self, expression: ex.Expression) -> bool:
-        """Whether an expression would have more than `LARGEST` elements when it is written out; notes it then."""
+        """Return whether the expanded expression has more than `LARGEST` elements. If so, add it to `too_large`."""
         if self._size(expression) <= LARGEST:
             return False
         self.too_large[expression] = None
         return True
 
     def constant(self, expression: ex.Expression, within: Instance | None) -> ex.Expression:
-        """A constant expression as a literal; as it is, names written out, where it has no value."""
+        """Return a constant expression as a literal. If it has no value, return it expanded."""
         return _folded(self(expression, within))
 
     def argued(self, expression: ex.Expression, arguments: Arguments) -> ex.Expression:
-        """An expression outside of components, with values for parameters, such as the condition of an enum's rule."""
+        """Expand an expression outside of components, such as the condition of an enum's rule, with these arguments."""
         self._readable = False
         start = _Environment(None, arguments, {})
         affected = self._size(expression) <= LARGEST and any(_is_affected(part) for _, part in tree(expression))
         return walk(self._step, (expression, start)) if affected else expression
 
     def _size(self, expression: ex.Expression) -> int:
-        """The number of elements and characters of an expression when it is written out, at most `LARGEST` + 1."""
+        """Return the number of elements and characters of the expanded expression, at most `LARGEST` + 1."""
         return walk(self._measured, expression, self._sizes).of({})
 
     def _measured(self, element: Any) -> Generator[Any, _Size, _Size]:
-        """The size of an expression, or of the value of a named one."""
+        """Compute the size of an expression, or of the value of a named one."""
         if isinstance(element, robosc.NamedExpression):
-            self._sizes[element] = _Size(1, {})  # A circle of definitions is not written out.
+            self._sizes[element] = _Size(1, {})  # A circle of definitions is not expanded.
             size = (yield element.value) if element.value is not None else _Size(1, {})
             self._sizes[element] = size
             return size
@@ -165,7 +165,7 @@ class Expansion:
         return sum(inside, start=size)
 
     def _step(self, node: tuple[Any, _Environment]) -> Generator[Any, Any, Any]:
-        """A copy of an element with its names written out; it is asked for copies of what it consists of."""
+        """Copy an element and expand its names; yields the parts to copy first."""
         element, environment = node
         match element:
             case robosc.Access(item=robosc.FormalParameter() as parameter) if parameter in environment.arguments:
@@ -204,7 +204,7 @@ class Expansion:
 
     def _call(self, call: robosc.Call, environment: _Environment) -> Generator[Any, Any, ex.Expression | None]:
         function = call.function
-        given: list[ex.Expression] = []  # A generator can't ask from within a comprehension.
+        given: list[ex.Expression] = []  # A generator cannot yield from within a comprehension.
         if function in environment.opened or function.value is None or len(call.arguments) != len(function.parameters):
             return None
         for argument in call.arguments:
@@ -239,7 +239,7 @@ class Expansion:
     def _copy(self, element: Any, environment: _Environment) -> Generator[Any, Any, Any]:
         made = type(element)()
         if isinstance(element, robosc.ArrayElement):
-            self._elements[element] = made  # what names it stands behind it
+            self._elements[element] = made  # References to the element come later.
         children = []
         for _, child in contents(element):
             children.append((yield (child, environment)))
@@ -270,21 +270,21 @@ class Expansion:
 
 
 def constant(expression: ex.Expression) -> ex.Expression:
-    """A constant expression outside of components as a literal; as it is, names written out, where it has no value."""
+    """Return a constant expression outside of components as a literal. If it has no value, return it expanded."""
     return _folded(Expansion(None)(expression, None))
 
 
 def constant_value(expression: ex.Expression | None, within: Instance | None = None) -> Value | None:
-    """The value of a constant expression in the text of an instance, None: wherever it stands.
+    """Return the value of a constant expression in the text of an instance (None: in any text).
 
-    None where it has no value: it reads what is not constant, or a parameter whose argument is not known. An enum's
-    value stands for itself.
+    None if it has no value because it reads something that is not constant, or a parameter with an unknown argument.
+    The value of an enum is its `EnumValue`.
     """
     return None if expression is None else _value(Expansion(None)(expression, within))
 
 
 def is_unreadable(expression: ex.Expression, within: Instance | None = None) -> bool | None:
-    """Whether a constant expression rounds what is no number, and so has no value; None where it is not constant."""
+    """Return whether a constant expression has no value because it rounds NaN. None if it is not constant."""
     try:
         evaluate(Expansion(None)(expression, within), _enum_value, _clamped)
     except UnreadableError:
@@ -311,12 +311,15 @@ def _value(expression: ex.Expression) -> Value | None:
 
 
 def _clamped(value: int) -> int:
-    """An integer far outside of 64 bits as the nearest one that is still too large: squares of squares fill memory."""
+    """Limit an integer far outside of 64 bits to `CLAMP`.
+
+    Such an integer is too large in any case, and repeated squares would fill memory.
+    """
     return saturate(value, -CLAMP, CLAMP)
 
 
 class _NoValueError(Exception):
-    """Something is read that is not constant."""
+    """Error of an expression that reads something that is not constant."""
 
 
 def _enum_value(reference: ex.Expression) -> Value:
@@ -332,5 +335,5 @@ def _is_affected(part: Any) -> bool:
 
 
 def _is_member(named: robosc.NamedExpression) -> bool:
-    """Whether a definition stands in a component."""
+    """Return whether a definition belongs to a component."""
     return isinstance(named.eContainer(), robosc.LocalComponent)

@@ -1,4 +1,4 @@
-"""What the supervisor is told of the data of an event: finite data as it is, of other data what is computed of it."""
+"""Inputs of the supervisor from the data of an event: finite data itself, and values computed from other data."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
     from robosc.semantics.instances import PortInstance
     from robosc.semantics.typing import Type
 
-#: What an expression over the data of an event may read besides: it is the same in all states.
+#: Items that an expression over event data may also read, because no state changes them.
 _FIXED = (robosc.EnumValue, robosc.Constant, robosc.Parameter, robosc.FormalParameter, robosc.ArrayElement)
 
 
 class _Reads(NamedTuple):
-    """What an expression reads: `data` of an event, or what the supervisor has no finite values of (`beyond`).
+    """Summary of an expression's reads: `data` of an event, or values without a finite domain (`beyond`).
 
-    `fixed`: it reads nothing that the robot's state changes. `elements`: it reads elements of an array of the data,
-    `reason`: why the service or action of an error has failed.
+    `fixed`: nothing else that it reads depends on the robot's state. `elements`: it reads elements of an array of the
+    data. `reason`: it reads why the service or action of an error failed.
     """
 
     data: bool
@@ -38,13 +38,13 @@ class _Reads(NamedTuple):
 
     @property
     def computed(self) -> bool:
-        """Whether only the node can compute it, and needs nothing but the data."""
+        """Whether only the node can compute it, from nothing but the data."""
         return self.data and self.fixed and self.beyond
 
 
 @dataclass(frozen=True)
 class Data:
-    """A part of what an event of a port carries: the properties on the way from the whole to it; none: the whole."""
+    """A part of the data of a port's event: the path of properties from the whole to it. Empty: the whole data."""
 
     port: PortInstance
     event: PortEvent
@@ -52,16 +52,16 @@ class Data:
 
     @property
     def type(self) -> robosc.DataType | None:
-        """Its declared type, the bounds of an integer known; None where that is not known."""
+        """The declared type, with the bounds of an integer computed. None if unknown."""
         declared = self.path[-1].type if self.path else data_type(self.port.communication, self.event)
         return None if declared is None else self.port.instance.data_type(declared)
 
 
 @dataclass(frozen=True)
 class Computed:
-    """What the node computes of data that has no finite domain, such as `value.range < 0.5`; equal texts are one.
+    """A value that the node computes from data without a finite domain, such as `value.range < 0.5`.
 
-    `bounds` are those of an integer, where anything gives it some.
+    Values with the same text are equal. `bounds` are the bounds of an integer, if any apply.
     """
 
     port: PortInstance
@@ -74,7 +74,7 @@ class Computed:
 
 @dataclass(frozen=True)
 class FailureReason:
-    """Why the service or action of an error has failed, a value of `enum`."""
+    """The reason for the failure of a service or action, as a value of `enum`."""
 
     port: PortInstance
     event: PortEvent
@@ -92,11 +92,14 @@ def inputs_in(
     *,
     is_condition: bool = True,
 ) -> Iterator[tuple[ex.Expression, Told | None]]:
-    """The parts of a written out expression that become inputs, from left to right; None: the part can't be one.
+    """Iterate over the parts of an expanded expression that become inputs, from left to right.
 
-    `bounds` are those of the variable that the expression is assigned to. An event that happens anyway has a condition
-    that reads elements of an array as one input, or several that are joined by `and`: it is false where one of the
-    elements is missing, and so is its negation. A value that reads some is one input as a whole.
+    The input of a part is None if it cannot be one. `bounds` are those of the variable that the expression is assigned
+    to.
+
+    For an event that happens even without readable data, array elements may be missing. A condition that reads such
+    elements is one input, or several joined by `and`: it is false if an element is missing, and so is its negation. A
+    value that reads such elements is one input as a whole.
     """
     types = Types(declared_type(data_type(port.communication, event)))
     reads: dict[ex.Expression, _Reads] = {}
@@ -104,7 +107,7 @@ def inputs_in(
     pending = [(expression, bounds)]
     while pending:
         part, limits = pending.pop()
-        # A condition and its negation are one input, and a reason is one by itself.
+        # A condition and its negation share one input. A reason is an input of its own.
         splits = isinstance(part, ex.Negation) or reads[part].reason
         if happens_anyway(event) and reads[part].elements and reads[part].data:
             splits = is_condition and isinstance(part, ex.Conjunction)
@@ -120,25 +123,25 @@ def inputs_in(
         elif isinstance(part, robosc.Access) and part.value:
             yield part, None if reads[part].beyond else Data(port, event, property_path(part) or ())
         else:
-            # The branches of a conditional are assigned where it is.
+            # The bounds of a conditional's variable apply to its branches.
             inside = operands(part)
             kept = [None, limits, limits] if isinstance(part, ex.Conditional) else [None] * len(inside)
             pending += reversed(list(zip(inside, kept, strict=True)))
 
 
 def readable(carried: Computed) -> Computed:
-    """The input that tells whether all elements are there of which something is computed: a value equals itself."""
+    """Return the input that is true if all array elements for a value exist: a value is equal to itself."""
     same = ex.Equation(left=copied(carried.expression), right=copied(carried.expression))
     return Computed(carried.port, carried.event, RoboscPrinter()(same), None, same, BOOLEAN)
 
 
 def may_be_missing(carried: Computed) -> bool:
-    """Whether an event that happens anyway may lack an element of an array that something is computed of."""
+    """Return whether an array element that the value needs may be missing, at an event that happens even then."""
     return happens_anyway(carried.event) and any(map(_is_partial, parts(carried.expression)))
 
 
 def _reads(part: ex.Expression, inside: Sequence[_Reads], port: PortInstance, event: PortEvent) -> _Reads:
-    """What an expression reads, from what its operands do; of an access these are the indices."""
+    """Summarize the reads of an expression from those of its operands. The operands of an access are its indices."""
     data, fixed = any(read.data for read in inside), all(read.fixed for read in inside)
     beyond, reason = any(read.beyond for read in inside), any(read.reason for read in inside)
     elements = any(read.elements for read in inside) or _is_partial(part)
@@ -154,7 +157,7 @@ def _reads(part: ex.Expression, inside: Sequence[_Reads], port: PortInstance, ev
 
 
 def _is_partial(part: ex.Expression) -> bool:
-    """Whether a part may have no value: it reads elements of an array by their numbers, or needs some."""
+    """Return whether a part may have no value: it reads an array element by index, or calls a partial function."""
     if isinstance(part, robosc.Access):
         return any(isinstance(segment, robosc.IndexSegment) for segment in part.segments)
     row = operator_of(part) if isinstance(part, ex.FunctionCall) else None
@@ -162,7 +165,7 @@ def _is_partial(part: ex.Expression) -> bool:
 
 
 def _is_finite(declared: robosc.DataType | None) -> bool:
-    """Whether data of the type is an input itself: of what is not known, too, as that is reported elsewhere."""
+    """Return whether data of the type is an input itself. Unknown types count too; other checks report them."""
     if isinstance(declared, robosc.IntegerDataType):
         return declared.minimum is not None and declared.maximum is not None
     found = declared_type(declared)
@@ -170,7 +173,7 @@ def _is_finite(declared: robosc.DataType | None) -> bool:
 
 
 def property_path(access: robosc.Access) -> tuple[robosc.ObjectProperty, ...] | None:
-    """The properties that an access to `value` follows; None where it reads an array or is not resolved."""
+    """Return the properties that an access to `value` follows. None if it indexes an array or is unresolved."""
     segments = list(access.segments)
     if not all(isinstance(segment, robosc.PropertySegment) and segment.property is not None for segment in segments):
         return None

@@ -1,4 +1,4 @@
-"""Instances of components: each component of a robot's own text, and one of a library's component for each import."""
+"""Instances of components: one for each component of a robot's text, and one for each import from a library."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _Element = TypeVar("_Element", bound="ex.Located")
 
 @dataclass(frozen=True, eq=False)
 class Instance:
-    """One component of a robot, or of a library looked at by itself.
+    """A component of a robot, or of a library that is analyzed by itself.
 
-    `definition` is the component whose text it is, in the robot or library `unit`; names in that text mean what they
-    mean there. `arguments` are the values of its parameters.
+    `definition` is the component whose text defines it, in the robot or library `unit`. Names in this text resolve in
+    `unit`. `arguments` are the values of its parameters.
     """
 
     component: robosc.Component
@@ -36,17 +36,17 @@ class Instance:
 
     @property
     def name(self) -> str:
-        """The component's name in the robot."""
+        """Name of the component in the robot."""
         return self.component.name
 
     @property
     def communications(self) -> list[robosc.CommunicationType]:
-        """Its messages, services and actions, in the order of the text."""
+        """Messages, services and actions, in the order of the text."""
         return [definition for definition in self.local.definitions if isinstance(definition, robosc.CommunicationType)]
 
     @property
     def automaton(self) -> robosc.Automaton | None:
-        """Its behaviour, if it has one."""
+        """Behaviour of the component, if it has one."""
         behaviours = (
             definition for definition in self.local.definitions if isinstance(definition, robosc.ComponentBehaviour)
         )
@@ -54,18 +54,18 @@ class Instance:
 
     @property
     def states(self) -> list[robosc.State]:
-        """The states of its behaviour, in the order of the text."""
+        """States of the behaviour, in the order of the text."""
         return [definition for definition in self._definitions if isinstance(definition, robosc.State)]
 
     @property
     def variables(self) -> list[InstanceVariable]:
-        """The variables of its behaviour, in the order of the text."""
+        """Variables of the behaviour, in the order of the text."""
         declared = (definition for definition in self._definitions if isinstance(definition, robosc.Variable))
         return [InstanceVariable(self, variable) for variable in declared]
 
     @property
     def transitions(self) -> list[tuple[robosc.Transition, robosc.State | None]]:
-        """The transitions of its behaviour in the order of the text, each with its state; None: every state has it."""
+        """Transitions of the behaviour in the order of the text, each with its state. None: every state has it."""
         found: list[tuple[robosc.Transition, robosc.State | None]] = []
         for definition in self._definitions:
             if isinstance(definition, robosc.State):
@@ -79,7 +79,7 @@ class Instance:
         return self.automaton.definitions if self.automaton else ()
 
     def topic(self, communication: robosc.CommunicationType) -> str:
-        """The ROS name of one of its communications: re-mapped, given, or the communication's own name."""
+        """Return the ROS name of a communication: remapped, given, or the communication's own name."""
         computed = communication.computedIdentifier
         if communication in self.topics or computed is None:
             return self.topics.get(communication) or communication.identifier or communication.name
@@ -87,7 +87,7 @@ class Instance:
         return topic if isinstance(topic, str) and topic else communication.name
 
     def data_type(self, declared: robosc.DataType) -> robosc.DataType:
-        """A type in its text; where the bounds of an integer depend on its arguments, with their values."""
+        """Return a type in the instance's text. Integer bounds that depend on arguments are computed."""
         if not isinstance(declared, robosc.IntegerDataType) or declared.lower is None or declared.minimum is not None:
             return declared
         if declared not in self._types:
@@ -98,9 +98,9 @@ class Instance:
         return self._types[declared]
 
 
-#: How often an event may happen at most, by a requirement that counts.
+#: Maximum count of an event in a requirement that counts.
 MOST = 1000
-#: The instance of each component that imports one; None where its import is broken.
+#: Instance of each component that imports one. None if its import is broken.
 Resolved: TypeAlias = "dict[robosc.Component, Instance | None]"
 
 
@@ -121,7 +121,7 @@ class InstanceVariable:
 
     @property
     def type(self) -> robosc.DataType:
-        """Its type, the bounds of an integer known."""
+        """Type of the variable, with the bounds of an integer computed."""
         return self.instance.data_type(self.variable.type)
 
 
@@ -134,26 +134,32 @@ class InstanceParameter:
 
     @property
     def name(self) -> str:
-        """How it is named on the robot: `speed`, or `Base.speed` in a component."""
+        """Name of the parameter on the robot: `speed`, or `Base.speed` in a component."""
         return self.parameter.name if self.instance is None else f"{self.instance.name}.{self.parameter.name}"
 
 
 @dataclass(frozen=True)
 class Statement(Generic[_Element]):
-    """A definition, such as a requirement, and the instance whose text it is; None: it stands outside of components."""
+    """A definition, such as a requirement, and the instance whose text contains it.
+
+    None: it is outside of components.
+    """
 
     element: _Element
     within: Instance | None
 
 
 class Instances:
-    """All instances of a base, in the order of its text, and what references in texts mean among them.
+    """All instances of a base, in the order of its text, and the targets of references among them.
 
-    References that linking could not resolve mean None.
+    The target of an unresolved reference is None.
     """
 
     def __init__(self, base: robosc.Base, resolved: Resolved | None = None) -> None:
-        """`resolved` caches the instances of imported components across several bases; it is added to."""
+        """Create the instances of a base.
+
+        `resolved` caches the instances of imported components across several bases. New instances are added to it.
+        """
         self.base = base
         self._of: dict[robosc.Component, Instance] = {}
         resolved = {} if resolved is None else resolved
@@ -168,26 +174,26 @@ class Instances:
         return iter(self._of.values())
 
     def ports(self) -> Iterator[PortInstance]:
-        """Every communication of every instance, in the order of the text."""
+        """Iterate over the communications of all instances, in the order of the text."""
         for instance in self:
             for communication in instance.communications:
                 yield PortInstance(instance, communication)
 
     def is_shared(self, communication: robosc.CommunicationType) -> bool:
-        """Whether another instance has a communication of the same name."""
+        """Return whether another instance has a communication of the same name."""
         return self._names[communication.name] > 1
 
     def provided(self, port: PortInstance) -> list[Statement[robosc.ProvideStatement]]:
-        """The statements on the data of a communication, in the order of the text.
+        """Return the statements on the data of a communication, in the order of the text.
 
-        Those outside of components take the place of those in them.
+        Statements outside of components override those inside.
         """
         found = self._provided.get(port, [])
         outside = [statement for statement in found if statement.within is None]
         return outside or found
 
     def statements(self, kind: type[_Element]) -> list[Statement[_Element]]:
-        """The requirements, or other definitions of a kind: outside of components, then in each instance."""
+        """Return the requirements, or other definitions of a kind: outside of components, then in each instance."""
         found: list[Statement[_Element]] = []
         texts: list[tuple[Iterable[Any], Instance | None]] = [(self.base.definitions, None)]
         texts += ((instance.local.definitions, instance) for instance in self)
@@ -196,24 +202,27 @@ class Instances:
         return found
 
     def of(self, component: robosc.Component) -> list[Instance]:
-        """The instances that are made of a component's text."""
+        """Return the instances that a component's text defines."""
         return [instance for instance in self if instance.definition is component]
 
     def instance(self, component: robosc.Component | None, within: Instance | None) -> Instance | None:
-        """The instance that a text means by a component; `within` is the instance whose behaviour the text is."""
+        """Return the instance that a text refers to by a component.
+
+        `within` is the instance whose behaviour the text is.
+        """
         if within is not None and (component is None or component is within.definition):
             return within
         return None if component is None else self._of.get(component)
 
     def port(self, reference: robosc.CommunicationReference | None, within: Instance | None) -> PortInstance | None:
-        """The communication that a reference means."""
+        """Return the communication that a reference refers to. None if it is unresolved."""
         instance = self.instance(reference.component, within) if reference else None
         if instance is None or reference is None or reference.communicationType is None:
             return None
         return PortInstance(instance, reference.communicationType)
 
     def variable(self, access: robosc.Access, within: Instance | None) -> InstanceVariable | None:
-        """The variable that an access reads; None where it reads something else."""
+        """Return the variable that an access reads. None if it reads something else."""
         instance = self.instance(access.component, within)
         if instance is None or not isinstance(access.item, robosc.Variable):
             return None
@@ -221,7 +230,7 @@ class Instances:
 
     @property
     def parameters(self) -> list[InstanceParameter]:
-        """What is set on the robot: by its own text, by that of its libraries, in each instance."""
+        """Parameters that are set on the robot: of its own text, of its libraries, and of each instance."""
         texts: list[tuple[Iterable[Any], Instance | None]] = [
             (base.definitions, None) for base in (self.base, *libraries(self.base))
         ]
@@ -234,14 +243,14 @@ class Instances:
         ]
 
     def parameter(self, access: robosc.Access, within: Instance | None) -> InstanceParameter:
-        """The parameter that an access reads."""
+        """Return the parameter that an access reads."""
         parameter = access.item
         assert isinstance(parameter, robosc.Parameter)
         is_member = isinstance(parameter.eContainer(), robosc.LocalComponent)
         return InstanceParameter(self.instance(access.component, within) if is_member else None, parameter)
 
     def assignments(self, transition: robosc.Transition, within: Instance) -> dict[InstanceVariable, robosc.Assignment]:
-        """What a transition of an instance assigns to which variable; of several to one variable the last counts."""
+        """Return the assignments of a transition by variable. The last assignment to a variable counts."""
         owned = (
             (self.variable(assignment.item, within), assignment)
             for assignment in transition.assignments
@@ -264,7 +273,7 @@ class Instances:
 
 
 def imported(base: robosc.Base) -> list[tuple[robosc.Component, robosc.Library]]:
-    """Each imported component with its library, in the order of the text; unresolved libraries are left out."""
+    """Return each imported component with its library, in the order of the text. Skips unresolved libraries."""
     return [
         (component, component.type.library)
         for component in base.definitions
@@ -277,9 +286,9 @@ def imported(base: robosc.Base) -> list[tuple[robosc.Component, robosc.Library]]
 def libraries(
     base: robosc.Base, imports: Callable[[robosc.Base], list[tuple[robosc.Component, robosc.Library]]] = imported
 ) -> list[robosc.Library]:
-    """Every library that a base's imports reach, each once, the near ones first, without the base itself.
+    """Return every library that a base imports, directly or indirectly, each once, the nearest first.
 
-    `imports` says what a base imports, for callers that know it already.
+    The base itself is not included. `imports` returns the imports of a base, for callers that have them already.
     """
     found: dict[robosc.Library, None] = {}
     queue: list[robosc.Base] = [base]
@@ -292,7 +301,7 @@ def libraries(
 
 
 def definition_of(component: robosc.Component) -> robosc.Component | None:
-    """The component whose text declares what a component consists of; None where an import on the way is broken."""
+    """Return the component whose text declares a component's members. None if an import on the way is broken."""
     seen = {component}
     while isinstance(component.type, robosc.InstantiatedComponent | robosc.ImportedComponent):
         component = component.type.definition
@@ -305,7 +314,7 @@ def definition_of(component: robosc.Component) -> robosc.Component | None:
 def bound_arguments(
     parameters: Sequence[robosc.FormalParameter], arguments: Sequence[robosc.Argument]
 ) -> dict[robosc.FormalParameter, ex.Expression]:
-    """The expression for each parameter: by name, by position, or its default; of two for one the first."""
+    """Return the expression of each parameter: by name, by position, or its default. The first of duplicates counts."""
     found: dict[robosc.FormalParameter, ex.Expression] = {}
     for position, argument in enumerate(arguments):
         parameter = argument.parameter or (parameters[position] if position < len(parameters) else None)
@@ -316,7 +325,7 @@ def bound_arguments(
 
 
 def _instantiate(component: robosc.Component, base: robosc.Base, resolved: Resolved) -> Instance | None:
-    """Follows `is` and imports to the component's definition; outer re-mappings win."""
+    """Follow `is` and imports to the component's definition. Outer remappings win."""
     if component.parameters:
         return None  # a template
     chain: list[tuple[robosc.Component, robosc.InstantiatedComponent | robosc.ImportedComponent]] = []

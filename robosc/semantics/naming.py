@@ -1,4 +1,4 @@
-"""Names in generated text: snake case, keywords escaped one-to-one, clashes resolved."""
+"""Names in generated text: snake case, escaped keywords, resolved clashes."""
 
 from __future__ import annotations
 
@@ -17,51 +17,51 @@ _GRAMMAR = locate("grammar/robosc.tx").read_text(encoding="utf-8")
 
 
 def _words(pattern: str) -> list[str]:
-    """The words that are the group of a pattern of the grammar."""
+    """Return the words in the group of a pattern of the grammar."""
     found = re.search(pattern, _GRAMMAR, re.MULTILINE)
     assert found
     return found[1].split("|")
 
 
-#: The words of RoboSC that a name in an expression has a `^` before.
+#: Keywords of RoboSC that need a `^` before them if they are used as a name in an expression.
 ROBOSC_KEYWORDS = frozenset(_words(r"^UnreservedName:\s*/\(\?!\(\?:([a-z|]+)\)"))
-#: The names of its functions.
+#: Names of RoboSC's functions.
 ROBOSC_FUNCTIONS = tuple(_words(r"^BuiltIn: /\(\?:([a-z0-9|]+)\)"))
-#: The words that begin a condition on the elements of an array, or on what was made of a template.
+#: Words that begin a condition on the elements of an array, or on the instances of a template.
 ROBOSC_QUANTIFIERS = tuple(_words(r"^Quantifier: /\(([a-z|]+)\)"))
 _WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
 def snake_case(name: str) -> str:
-    """The name in lower case, underscores between its words: `LineFollower` and `lineFollower` give `line_follower`.
+    """Return the name in lower case with underscores between its words.
 
-    Not one-to-one: `AB` and `ab` give the same.
+    `LineFollower` and `lineFollower` give `line_follower`. The mapping is not one-to-one: `AB` and `ab` give the same.
     """
     return _WORD.sub("_", name).lower()
 
 
 def controller_name(robot: ex.NamedElement) -> str:
-    """The name of a robot's package, node and executable: in snake case, ending in `_controller`."""
+    """Return the name of a robot's package, node and executable: in snake case, ending in `_controller`."""
     name = snake_case(robot.name)
     return name if name == "controller" or name.endswith("_controller") else f"{name}_controller"
 
 
 def layer_name(robot: ex.NamedElement) -> str:
-    """The same for the supervisory layer before a robot: ending in `_layer`."""
+    """Return the name of a robot's supervisory layer: in snake case, ending in `_layer`."""
     name = snake_case(robot.name)
     return name if name == "layer" or name.endswith("_layer") else f"{name}_layer"
 
 
 def below_layer(name: str) -> str:
-    """The name of a topic, service or action for the controller, below the layer's own name: `controller/scan`."""
+    """Return the controller's name of a topic, service or action below the layer's own name: `controller/scan`."""
     return f"controller/{name.removeprefix('/')}"
 
 
 def escape(name: str, keywords: Collection[str]) -> str:
-    """The name, with underscores behind it where a keyword differs from it in underscores at the end only.
+    """Return the name, with underscores appended if it equals a keyword up to underscores at the end.
 
-    No two names are escaped to the same, and none to a keyword: where `if` is a keyword, `if` gives `if_`, `if_`
-    gives `if__`. Everything else stays as it is.
+    The mapping is one-to-one and never returns a keyword: if `if` is a keyword, `if` gives `if_`, and `if_` gives
+    `if__`. Other names stay unchanged.
     """
     stem = name.rstrip("_")
     longest = max((len(keyword) for keyword in keywords if keyword.rstrip("_") == stem), default=None)
@@ -69,20 +69,20 @@ def escape(name: str, keywords: Collection[str]) -> str:
 
 
 def written(name: str) -> str:
-    """A name as a RoboSC text has it where a keyword could stand."""
+    """Return a name for a RoboSC text at a place where a keyword may stand."""
     return f"^{name}" if name in ROBOSC_KEYWORDS else name
 
 
 def enumeration(parts: Iterable[str]) -> str:
-    """`a, b or c`."""
+    """Return a list in words: `a, b or c`."""
     *others, last = parts
     return f"{', '.join(others)} or {last}" if others else last
 
 
 class Names:
-    """The names of one scope; one that is taken gets underscores.
+    """Names of one scope. Appends underscores to a name that is already taken.
 
-    A set of taken names is not copied, so that many scopes can stand beside each other within a large one.
+    A set of taken names is not copied, so that many small scopes can share one large outer scope.
     """
 
     def __init__(self, taken: Iterable[str] = ()) -> None:
@@ -90,9 +90,9 @@ class Names:
         self._taken: set[str] = set()
 
     def fresh(self, name: str) -> str:
-        """The name itself where it is free, else the name with as few underscores behind it as make it so.
+        """Return a name that is free: the name itself, or the name with the fewest underscores appended.
 
-        The same names in the same order give the same result. The name is taken from then on.
+        The result depends only on the names and their order. Marks the name as taken.
         """
         while name in self._taken or name in self._outer:
             name += "_"

@@ -1,8 +1,9 @@
-"""The operators of expressions, each fact about them once: who parses, prints, types or computes reads it here.
+"""Table of the operators of expressions, shared by parsing, printing, typing and computation.
 
-A new operator is a class of `metamodel/expression.ecore`, an alternative in the grammar, and a row below; a function is
-a word of the grammar and a row. What a row can't say stands elsewhere: the spelling in C++, and of what the supervisor
-computes, how it is written out by cases, or its encoding, C and CIF. `docs/architecture.md` says where.
+A new operator needs a class of `metamodel/expression.ecore`, an alternative in the grammar, and a row below. A new
+function needs a word of the grammar and a row. Some facts do not fit in a row: the spelling in C++, and, for operators
+that the supervisor computes, the expansion by cases or the encoding, C and CIF. `docs/architecture.md` lists their
+places.
 """
 
 from __future__ import annotations
@@ -21,22 +22,22 @@ from robosc.semantics.domains import Interval, truth
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-#: A value of the language; an enumeration's value stands for itself (its literal object).
+#: A value of the language. The value of an enumeration is its literal object.
 Value: TypeAlias = bool | int | float | str | object
 
 
 class Rule(Enum):
-    """What the operands must be, and what the value is."""
+    """Types of the operands and of the value."""
 
     #: Booleans; a boolean.
     LOGICAL = auto()
-    #: Two values of one type that is no object and no array; a boolean.
+    #: Two values of one type other than objects and arrays; a boolean.
     EQUALITY = auto()
     #: Numbers; a boolean.
     ORDERING = auto()
-    #: Numbers; a double where one of them is a double, else an integer.
+    #: Numbers; a double if one of them is a double, else an integer.
     ARITHMETIC = auto()
-    #: Numbers, each read as a double; a double.
+    #: Numbers, each converted to a double; a double.
     DOUBLE = auto()
     #: Integers; an integer.
     INTEGER = auto()
@@ -48,35 +49,35 @@ class Rule(Enum):
     ELEMENTS = auto()
 
 
-#: The operators with a boolean value.
+#: Rules of the operators with a boolean value.
 CONDITIONS = {Rule.LOGICAL, Rule.EQUALITY, Rule.ORDERING}
 
 
 class Associativity(Enum):
-    """How operators of one kind in a row group without parentheses, and which of these a printer writes."""
+    """Grouping of equal operators without parentheses, and the parentheses that a printer writes."""
 
-    #: To the left; a chain of one and the same operator needs no parentheses.
+    #: To the left. A chain of one operator needs no parentheses.
     CHAIN = auto()
-    #: To the left; a printer writes the parentheses all the same.
+    #: To the left. A printer writes the parentheses nevertheless.
     LEFT = auto()
     #: To the right.
     RIGHT = auto()
 
 
 class UnreadableError(Exception):
-    """There is no value: an element that an array does not have, or no number that could be rounded."""
+    """Error of an expression without a value: a missing element of an array, or rounding of NaN."""
 
 
 @dataclass(frozen=True)
 class Operator:
-    """One operator: its class in the metamodel, its text in RoboSC, and what it means.
+    """An operator: its class in the metamodel, its text in RoboSC, and its meaning.
 
-    `precedence` grows from the loosest to the tightest. `compute` gives the value for those of the operands, which
-    are of the right types: by IEEE 754 for doubles, integers however large. `interval` does the same for all values
-    between bounds (None: of a function, or no sct model has it). `decided` is the left operand's value at which the
-    right one is not looked at, if there is such: the value is then `compute(decided, anything)`.
-    `compute` raises UnreadableError where there is none, which `is_partial` says is possible.
-    A function has a number of `parameters`, and those of them that are `divisors` (from 0) must be positive constants.
+    `precedence` grows from the loosest to the tightest operator. `compute` returns the value for operands of the right
+    types; doubles follow IEEE 754, integers are unbounded. It raises UnreadableError if there is no value; this is
+    possible only if `is_partial`. `interval` returns the bounds of the value for operands between bounds. It is None
+    for functions and for operators that no sct model has. `decided` is the value of the left operand that makes the
+    right one irrelevant, if any: the value is then `compute(decided, anything)`. A function has a number of
+    `parameters`. Its parameters in `divisors` (counted from 0) must be positive constants.
     """
 
     metaclass: type[ex.Expression]
@@ -97,12 +98,12 @@ class Operator:
 
     @property
     def is_supervised(self) -> bool:
-        """Whether sct models have it, so that the supervisor computes it."""
+        """Whether sct models have the operator, so that the supervisor computes it."""
         return self.rule not in {Rule.DOUBLE, Rule.ROUNDING, Rule.SIZE, Rule.ELEMENTS}
 
 
 def as_double(number: Value) -> float:
-    """The number as a double; infinite where it is an integer too large to be one."""
+    """Return the number as a double. An integer that is too large becomes infinite."""
     assert isinstance(number, (int, float))
     try:
         return float(number)
@@ -111,7 +112,7 @@ def as_double(number: Value) -> float:
 
 
 def divide(left: float, right: float) -> float:
-    """The quotient as IEEE 754 has it: infinite or NaN where the divisor is zero."""
+    """Return the quotient by IEEE 754: infinite or NaN if the divisor is zero."""
     if right:
         return left / right
     if left == 0 or math.isnan(left) or math.isnan(right):
@@ -120,7 +121,10 @@ def divide(left: float, right: float) -> float:
 
 
 def modulo(value: int, divisor: int) -> int:
-    """The remainder, 0 to `divisor - 1` whatever the value's sign; 0 where the rule `argument` reports the divisor."""
+    """Return the remainder, 0 to `divisor - 1` for any sign of the value.
+
+    Returns 0 for divisors that the rule `argument` reports.
+    """
     return value % divisor if divisor > 0 else 0
 
 
@@ -139,7 +143,7 @@ def _nearest(value: float) -> int:
 
 
 def _finite(compute: Callable[[float], float]) -> Callable[[float], float]:
-    """A function that Python does not compute where IEEE 754 has NaN."""
+    """Return a function that returns NaN where Python raises ValueError."""
 
     def computed(value: Value) -> float:
         try:
@@ -213,7 +217,7 @@ def _either_in(left: Interval, right: Interval) -> Interval:
 
 _CHAIN, _RIGHT = Associativity.CHAIN, Associativity.RIGHT
 
-#: Loosest to tightest.
+#: Operators from the loosest to the tightest.
 OPERATORS = (
     Operator(
         ex.Implication,
@@ -281,10 +285,10 @@ def _function(name: str, rule: Rule, compute: Callable[..., Any], parameters: in
     return Operator(ex.FunctionCall, name, 9, rule, compute, None, parameters=parameters)
 
 
-#: What is rounded saturates at 32 bits.
+#: Bounds of rounded values, which saturate at 32 bits.
 _LEAST, _MOST = -(2**31), 2**31 - 1
 
-#: The functions, by their names.
+#: Functions by name.
 FUNCTIONS = {
     "mod": Operator(ex.FunctionCall, "mod", 9, Rule.INTEGER, modulo, None, parameters=2, divisors=frozenset({1}))
 } | {
@@ -304,14 +308,14 @@ FUNCTIONS = {
         _function("size", Rule.SIZE, len),
     )
 }
-#: Functions of the same names, of one array.
+#: Functions that share a name with the above and take one array.
 _OF_ARRAYS = {
     "min": _function("min", Rule.ELEMENTS, _first(operator.lt)),
     "max": _function("max", Rule.ELEMENTS, _first(operator.gt)),
 }
 
 BY_CLASS = {row.metaclass: row for row in OPERATORS} | {
-    # Only transformations make these; no text has them.
+    # Only transformations create these; they have no text.
     ex.DoubleConversion: Operator(ex.DoubleConversion, "", 9, Rule.DOUBLE, as_double, None),
     sct.Quotient: Operator(
         sct.Quotient,
@@ -325,7 +329,7 @@ BY_CLASS = {row.metaclass: row for row in OPERATORS} | {
 }
 PRECEDENCE = {row.metaclass: row.precedence for row in OPERATORS}
 SYMBOLS = {row.metaclass: row.symbol for row in OPERATORS} | {sct.Quotient: "div"}
-#: What has no operator outside binds tighter than any.
+#: Precedence of an expression without an outer operator: binds tighter than all operators.
 ATOM = 9
 
 
@@ -333,13 +337,16 @@ def _of(*rules: Rule) -> tuple[type[ex.Expression], ...]:
     return tuple(row.metaclass for row in OPERATORS if row.rule in rules)
 
 
-#: For `isinstance`: the operators by what they do.
+#: Classes of operators by kind, for `isinstance`.
 LOGICAL, EQUALITY, ORDERING, ARITHMETIC = map(_of, (Rule.LOGICAL, Rule.EQUALITY, Rule.ORDERING, Rule.ARITHMETIC))
 COMPARISONS = cast("tuple[type[ex.BinaryExpression], ...]", (*EQUALITY, *ORDERING))
 
 
 def operator_of(expression: ex.Expression | None) -> Operator | None:
-    """The row of an expression's outermost operator or function; None of literals, references and choices."""
+    """Return the row of an expression's outermost operator or function.
+
+    None for literals, references and conditionals.
+    """
     if isinstance(expression, ex.FunctionCall):
         own = _OF_ARRAYS.get(expression.function) if len(expression.arguments) == 1 else None
         return own or FUNCTIONS[expression.function]

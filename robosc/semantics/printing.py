@@ -1,4 +1,4 @@
-"""How expression trees become text: one printer that every target refines by its spellings."""
+"""Printing of expression trees: one printer that every target refines by its spelling."""
 
 from __future__ import annotations
 
@@ -19,46 +19,46 @@ from robosc.semantics.walks import fold, operands
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-#: Levels between which binding is the same everywhere, but a reader (or a compiler that warns) wants parentheses.
+#: Pairs of precedence levels that bind the same in all targets, but need parentheses for readers and compiler warnings.
 _LOOSE_PAIRS = {(2, 3), (1, 2), (1, 3), (4, 5)}
 
 
 class Printed(NamedTuple):
-    """The text of an expression, and how tightly its outermost operator binds; ATOM where it has none."""
+    """The text of an expression and the precedence of its outermost operator; ATOM if it has none."""
 
     text: str
     precedence: int = ATOM
 
     @property
     def tight(self) -> str:
-        """The text, in parentheses where it is not a single operand."""
+        """The text, in parentheses if it is not a single operand."""
         return self.text if self.precedence == ATOM else f"({self.text})"
 
 
 class Printer:
-    """Prints an expression with the parentheses that its tree needs, bottom-up: nothing recurses.
+    """Prints an expression with the parentheses that its tree needs. Works bottom-up, without recursion.
 
-    A target sets `symbols` (operator class to text) and overrides what it writes differently; each method gets the
-    expression and what its operands were printed as. An expression class without a text raises TypeError: a target's
-    preconditions must have refused it before.
+    A target sets `symbols` (operator class to text) and overrides methods for its own spelling. Each method gets the
+    expression and its printed operands. An expression class without a text raises TypeError: the target's preconditions
+    must reject it beforehand.
     """
 
     symbols: ClassVar[Mapping[type[ex.Expression], str]] = SYMBOLS
 
     def __call__(self, expression: ex.Expression) -> str:
-        """The text of the expression, without parentheses around it."""
+        """Return the text of the expression, without parentheses around it."""
         return self.printed(expression).text
 
     def printed(self, expression: ex.Expression) -> Printed:
-        """The text with its precedence."""
+        """Return the text with its precedence."""
         return fold(self.write, expression, self.inside)
 
     def inside(self, expression: ex.Expression) -> Sequence[ex.Expression]:
-        """The operands that are printed before the expression; a target that prints it by other means says so here."""
+        """Return the operands to print before the expression. A target may override this."""
         return operands(expression)
 
     def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
-        """The expression, its operands printed already."""
+        """Print an expression, given its printed operands."""
         if isinstance(expression, ex.BinaryExpression):
             return self.binary(expression, *given)
         if isinstance(expression, (ex.Negation, ex.UnaryMinus)):
@@ -70,7 +70,7 @@ class Printer:
         return Printed(self.atom(expression))
 
     def binary(self, expression: ex.BinaryExpression, left: Printed, right: Printed) -> Printed:
-        """A binary operator between its operands."""
+        """Print a binary operator between its operands."""
         row = operator_of(expression)
         assert row is not None
         chain, right_chain = row.associativity is Associativity.CHAIN, row.associativity is Associativity.RIGHT
@@ -79,28 +79,28 @@ class Printer:
         return Printed(self.between(type(expression), before, after), row.precedence)
 
     def between(self, kind: type[ex.BinaryExpression], left: str, right: str) -> str:
-        """A binary operator between the texts of its operands."""
+        """Return a binary operator between the texts of its operands."""
         return f"{left} {self.symbols[kind]} {right}"
 
     def unary(self, expression: ex.UnaryExpression, operand: Printed) -> Printed:
-        """An operator before its operand; two in a row are kept apart, so that `--x` is never printed."""
+        """Print an operator before its operand. Parentheses separate two in a row, so that it never prints `--x`."""
         return Printed(f"{self.symbols[type(expression)]}{operand.tight}", PRECEDENCE[type(expression)])
 
     def operand(self, outer: int, given: Printed, *, bare: bool = False) -> str:
-        """An operand of a binary operator, in parentheses where the tree or a reader needs them."""
+        """Return an operand of a binary operator, in parentheses if the tree or a reader needs them."""
         binds = given.precedence > outer and (outer, given.precedence) not in _LOOSE_PAIRS
         return given.text if binds or (bare and given.precedence == outer) else f"({given.text})"
 
     def call(self, expression: ex.FunctionCall, given: Sequence[Printed]) -> Printed:
-        """A function of its arguments."""
+        """Print a function call."""
         return Printed(f"{expression.function}({', '.join(text for text, _ in given)})")
 
     def choice(self, condition: Printed, then: Printed, otherwise: Printed) -> Printed:
-        """One value where the condition holds, else the other."""
+        """Print a conditional: one value if the condition holds, else the other."""
         return Printed(f"(if {condition.text} then {then.text} else {otherwise.text})")
 
     def atom(self, expression: ex.Expression) -> str:
-        """What has no operands: literals and references."""
+        """Return the text of an expression without operands: a literal or a reference."""
         match expression:
             case ex.BooleanLiteral():
                 return "true" if expression.value else "false"
@@ -110,10 +110,10 @@ class Printer:
 
 
 class RoboscPrinter(Printer):
-    """Prints a linked expression of a robot model as its author would write it, states and variables qualified."""
+    """Prints a linked expression of a robot model as in its text, with qualified states and variables."""
 
     def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
-        """A name with the steps into its data, a condition on the elements of an array, or what all printers know."""
+        """Print an access, a quantifier, an array or a call, or any expression that all printers know."""
         texts = [text for text, _ in given]
         match expression:
             case robosc.Access():
@@ -140,14 +140,14 @@ class RoboscPrinter(Printer):
         return super().write(expression, given)
 
     def owner(self, component: robosc.Component) -> str:
-        """What stands before the name of what a component has."""
+        """Return the prefix for the name of a component's member."""
         return f"{written(component.name)}."
 
     def atom(self, expression: ex.Expression) -> str:
-        """A literal."""
+        """Return the text of a literal."""
         match expression:
             case ex.DoubleLiteral():
-                digits = format(Decimal(repr(expression.value)), "f")  # RoboSC has no exponents
+                digits = format(Decimal(repr(expression.value)), "f")  # RoboSC has no exponents.
                 return digits if "." in digits else f"{digits}.0"
             case ex.StringLiteral():
                 return visible(json.dumps(expression.value, ensure_ascii=False))
@@ -155,7 +155,7 @@ class RoboscPrinter(Printer):
 
 
 def _name(found: ex.NamedElement | None) -> str:
-    """The name of what an expression refers to; what linking did not find is told elsewhere."""
+    """Return the name of a referenced element. Linking reports unresolved references."""
     return written(found.name) if found else "…"
 
 
@@ -168,10 +168,10 @@ def _step(segment: robosc.AccessSegment, indices: Iterator[str]) -> str:
 
 
 class SctPrinter(Printer):
-    """Prints an expression of an sct model for a person, in RoboSC's operators, each name with its plant before it."""
+    """Prints an expression of an sct model for people, in RoboSC's operators, with each name qualified by its plant."""
 
     def atom(self, expression: ex.Expression) -> str:
-        """A reference as `plant.name`, or a literal."""
+        """Return a reference as `plant.name`, or a literal."""
         match expression:
             case sct.LocationReference():
                 return f"{self.owner(expression.location.eContainer())}.{expression.location.name}"
@@ -184,32 +184,32 @@ class SctPrinter(Printer):
         return super().atom(expression)
 
     def owner(self, plant: sct.Plant) -> str:
-        """What the plant of a location or a variable is called."""
+        """Return the name of the plant of a location or a variable."""
         return plant.name
 
 
 class RobotPrinter(SctPrinter):
-    """Prints an expression of an sct model as the robot model does: states and variables with their component."""
+    """Prints an expression of an sct model in the robot model's terms: states and variables with their component."""
 
     def atom(self, expression: ex.Expression) -> str:
-        """What the node computes of data as the model writes it."""
+        """Return the text of a reference or literal. A value computed by the node is printed as in the model."""
         if isinstance(expression, sct.InputReference) and expression.input.text is not None:
             text = expression.input.text
             return text if text.isidentifier() else f"({text})"
         return super().atom(expression)
 
     def owner(self, plant: sct.Plant) -> str:
-        """The component."""
+        """Return the component of the plant."""
         return plant.origin or plant.name
 
 
 def conjunction(parts: Iterable[ex.Expression]) -> ex.Expression | None:
-    """The conjunction of all parts, in their order; None of none. The parts become its children."""
+    """Return the conjunction of all parts, in their order, or None without parts. The parts become its children."""
     return _chain(ex.Conjunction, parts)
 
 
 def disjunction(parts: Iterable[ex.Expression]) -> ex.Expression | None:
-    """The disjunction of all parts, in their order; None of none. The parts become its children."""
+    """Return the disjunction of all parts, in their order, or None without parts. The parts become its children."""
     return _chain(ex.Disjunction, parts)
 
 
@@ -220,9 +220,9 @@ def _chain(operator: type[ex.BinaryExpression], parts: Iterable[ex.Expression]) 
 
 
 def remark(requirement: sct.StatedRequirement) -> str:
-    """What a requirement with a text says, with its file.
+    """Return the text of a requirement, with its file.
 
-    Where in the file it stands is left out: what does not change the robot does not change its code.
+    The line is omitted: edits that do not change the robot must not change its code.
     """
     file = requirement.source.file if requirement.source else None
     where = f" ({PurePath(file.name).name})" if file else ""

@@ -1,4 +1,4 @@
-"""What the control loop does with each event of an sct model: one answer for the interpreter and the generated code."""
+"""Roles of an sct model's events in the control loop, shared by the interpreter and the generated code."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from robosc.semantics.edges import edges_of
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-#: The kinds of events that run by themselves.
+#: Kinds of events that the loop runs by itself.
 SILENT = (sct.EventKind.tau, sct.EventKind.reset)
 
 
 def plant_of(event: sct.Event) -> sct.Plant:
-    """The plant that declares an event."""
+    """Return the plant that declares an event."""
     plant = event.eContainer()
     assert isinstance(plant, sct.Plant)
     return plant
 
 
 def is_from_cif(model: sct.SupervisoryControlModel) -> bool:
-    """Whether a model was read from CIF.
+    """Return whether a model was read from CIF.
 
-    Its events stand for no communication, it may start in several states, or where it has no event at all, its text is
-    called so.
+    Its events stand for no communication, or it may start in several states. A model without events is recognized by
+    the name of its file.
     """
     if model.initialPredicates or (model.source and model.source.file and model.source.file.name.endswith(".cif")):
         return True
@@ -42,10 +42,10 @@ def is_from_cif(model: sct.SupervisoryControlModel) -> bool:
 
 
 def input_values(model: sct.SupervisoryControlModel) -> int:
-    """How many values the inputs of a robot have together: to CIF these are part of a state, at any time.
+    """Return the number of joint values of a robot's inputs. In CIF, inputs are part of every state.
 
-    1 for a model that was read from CIF: its inputs are variables. An input of CIF can be each literal of its
-    enumeration.
+    Returns 1 for a model that was read from CIF, because its inputs are variables. An input in CIF can have every
+    literal of its enumeration.
     """
     if is_from_cif(model):
         return 1
@@ -56,7 +56,7 @@ def input_values(model: sct.SupervisoryControlModel) -> int:
 
 
 def event_name(event: sct.Event) -> str:
-    """The event with its plant, such as `message_move.c_trigger`, or its absolute name in CIF; no two share it."""
+    """Return the unique name of an event: with its plant, such as `message_move.c_trigger`, or its CIF name."""
     plant = plant_of(event)
     if event.kind in (sct.EventKind.plain, sct.EventKind.input):
         return f"{plant.origin}.{event.name}" if plant.origin else event.name
@@ -64,19 +64,19 @@ def event_name(event: sct.Event) -> str:
 
 
 def provide_number(event: sct.Event) -> int:
-    """Which `provide` for its communication a data event chooses, from 1 in the order of the text; 0 for none."""
+    """Return the number of the `provide` statement that a data event selects, from 1 in text order. 0 for none."""
     return provide_numbers(plant_of(event))[event]
 
 
 def provide_numbers(plant: sct.Plant) -> dict[sct.Event, int]:
-    """The same for all events of a data plant."""
+    """Return the numbers of the `provide` statements for all events of a data plant; see `provide_number`."""
     nothing = {edge.event for edge in edges_of(plant) if edge.target.initial}
     return {event: 0 if event in nothing else number for number, event in enumerate(plant.events, start=1)}
 
 
 @dataclass(frozen=True)
 class Roles:
-    """The events of a model by role. Each tuple is in event-table order: plants as the model has them, then events."""
+    """Events of a model by role. Each tuple is in event-table order: by plant of the model, then by event."""
 
     model: sct.SupervisoryControlModel
 
@@ -87,28 +87,28 @@ class Roles:
 
     @cached_property
     def cancels(self) -> tuple[sct.Event, ...]:
-        """What the loop asks first in a round."""
+        """Cancel events. The loop tries them first in a round."""
         return self._of(sct.EventKind.cancel)
 
     @cached_property
     def triggers(self) -> tuple[sct.Event, ...]:
-        """What the loop asks then."""
+        """Trigger events. The loop tries them after the cancels."""
         return self._of(sct.EventKind.trigger)
 
     @cached_property
     def silent(self) -> tuple[sct.Event, ...]:
-        """What the loop runs by itself until none is enabled."""
+        """Silent events. The loop runs them by itself until none is enabled."""
         return self._of(*SILENT)
 
     @cached_property
     def data(self) -> tuple[tuple[sct.Event, ...], ...]:
-        """The events that choose what data goes out, plant by plant, most wanted first."""
+        """Events that select outgoing data, by plant, in order of priority."""
         chosen = ([event for event in plant.events if event.kind == sct.EventKind.data] for plant in self.model.plants)
         return tuple(tuple(events) for events in chosen if events)
 
     @cached_property
     def incoming(self) -> tuple[sct.Event, ...]:
-        """What comes from the robot, and all events of a model from CIF: the caller performs it."""
+        """Events from the robot. In a model from CIF, all events: the caller performs them."""
         return self._of(
             sct.EventKind.response,
             sct.EventKind.error,
@@ -120,35 +120,35 @@ class Roles:
 
     @cached_property
     def timeouts(self) -> tuple[sct.Event, ...]:
-        """What happens when a time is up."""
+        """Events of expired timers."""
         return self._of(sct.EventKind.timeout)
 
     @cached_property
     def sources(self) -> tuple[tuple[sct.Event, ...], ...]:
-        """What drives reactions: messages on one topic, what one service says, or one action; times of a component."""
+        """Groups of events that cause reactions: of a topic, a service, an action, or a component's timers."""
         return _by_source([*self.incoming, *self.timeouts])
 
     @cached_property
     def batches(self) -> tuple[tuple[sct.Event, ...], ...]:
-        """The events of each message from the robot, two or more: they happen with nothing in between."""
+        """Groups of two or more events of one message from the robot. They happen with no other event in between."""
         kind = sct.PlantKind.message
         return tuple(events for events in self.sources if len(events) > 1 and plant_of(events[0]).kind == kind)
 
     @cached_property
     def shared_topics(self) -> tuple[tuple[sct.Event, ...], ...]:
-        """Triggers of messages that go to one topic, two or more: at most one of them runs in a round."""
+        """Groups of two or more triggers for one topic. At most one trigger of a group runs in a round."""
         return tuple(events for events in _by_source(self.triggers) if len(events) > 1)
 
     @cached_property
     def once_per_tick(self) -> tuple[sct.Event, ...]:
-        """Triggers of services and actions: each runs at most once from the start of one tick to that of the next."""
+        """Triggers of services and actions. Each runs at most once between the starts of two ticks."""
         return tuple(
             event for event in self.triggers if plant_of(event).kind in (sct.PlantKind.service, sct.PlantKind.action)
         )
 
     @cached_property
     def data_plants(self) -> dict[sct.Event, sct.Plant]:
-        """The plant that chooses a trigger's data, for each trigger that has one: both have the same origin."""
+        """Plant that selects a trigger's data, for each trigger with such a plant. Both have the same origin."""
         plants = {
             plant.origin: plant for plant in self.model.plants if plant.kind == sct.PlantKind.data and plant.origin
         }
@@ -157,7 +157,7 @@ class Roles:
 
     @cached_property
     def settling_bound(self) -> int:
-        """How many silent events may run in a row: what verification proved, else 2 for each of them and 16."""
+        """Maximum number of silent events in a row. Default without verification: 16, plus 2 for each silent event."""
         proved = None if self.model.supervisor is None else self.model.supervisor.settlingBound
         return 2 * len(self.silent) + 16 if proved is None else min(proved, 0xFFFFFFFF)
 
@@ -166,7 +166,7 @@ class Roles:
 
 
 def _by_source(events: Iterable[sct.Event]) -> tuple[tuple[sct.Event, ...], ...]:
-    """Events of messages by their topic, with or without a slash before it; others by their plant."""
+    """Group events of messages by topic, with or without a leading slash, and other events by plant."""
     found: dict[str | sct.Plant, list[sct.Event]] = {}
     for event in events:
         plant = plant_of(event)

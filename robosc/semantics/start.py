@@ -1,7 +1,7 @@
-"""Where a run starts. A model from CIF may start in several states: the first is taken, in the order of its text.
+"""Initial state of a run. A model from CIF may have several; the first one in the order of its text is used.
 
-The first is that of the earliest location or the lowest value for each plant and variable in turn, of those states that
-all predicates on the start and the supervisor let it start in.
+States are compared by each plant and variable in turn: an earlier location or a lower value comes first. Only states
+that satisfy all initial predicates and the supervisor's initial condition count.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from robosc.semantics.evaluation import Program
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-#: What has a state; a plant stands for its location, which is given by its number.
+#: Element with a state. A plant stands for its location, which is identified by its number.
 _Element: TypeAlias = "sct.Plant | sct.DiscreteVariable"
 
 
 def first_state(model: sct.SupervisoryControlModel) -> dict[_Element, int]:
-    """The number of the location of each plant, and the value of each variable: of an enumeration its position.
+    """Return the number of each plant's location and the value of each variable. An enumeration's value is a position.
 
-    Raises ValueError where no state satisfies all predicates: then the model has no supervisor.
+    Raises ValueError if no state satisfies all predicates: the model then has no supervisor.
     """
     choices = {element: values for plant in model.plants for element, values in _choices(plant)}
     predicates = list(model.initialPredicates)
@@ -33,14 +33,14 @@ def first_state(model: sct.SupervisoryControlModel) -> dict[_Element, int]:
     start: dict[_Element, int] = {element: values[0] for element, values in choices.items()}
     order = list(choices)
     place = {element: number for number, element in enumerate(order)}
-    # Each predicate is asked as soon as all that it reads is chosen.
+    # Each predicate is checked as soon as all elements that it reads have values.
     asked: dict[int, list[Program[bool]]] = {}
     for predicate in predicates:
         last = max((place[element] for element in _read(predicate)), default=-1)
         asked.setdefault(last, []).append(Program(predicate, _reader(start)))
     if not all(program() for program in asked.get(-1, ())):
         raise ValueError("no state is initial")
-    # Only what predicates read has to be searched through.
+    # Only elements that predicates read need a search.
     searched = sorted({place[element] for predicate in predicates for element in _read(predicate)})
     left: list[Iterator[int]] = []
     while len(left) < len(searched):
@@ -55,7 +55,7 @@ def first_state(model: sct.SupervisoryControlModel) -> dict[_Element, int]:
 def _next(
     start: dict[_Element, int], element: _Element, values: Iterator[int], predicates: list[Program[bool]]
 ) -> bool:
-    """Takes the next value with which the predicates hold; false where there is none."""
+    """Set the next value for which the predicates hold. Return whether there is one."""
     for value in values:
         start[element] = value
         if all(predicate() for predicate in predicates):

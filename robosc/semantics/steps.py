@@ -1,4 +1,4 @@
-"""Steps in words: what comes from the robot in a line of a script or a scenario."""
+"""Steps in words: parser for events from the robot, in a line of a script or a scenario."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import Any
 from robosc.files.json_reading import JsonError, json_value
 
 _KINDS = ("request", "response", "error", "feedback", "canceled", "cancel")
-#: The first words of a step that is not a bare name.
+#: First words of a step that is not a bare name.
 FIRST_WORDS = (*_KINDS, "refuse")
 _KIND = rf"(?P<kind>{'|'.join(_KINDS)})"
 _NAME = r"(?P<name>\^?[A-Za-z_]\w*(?:\.\^?\w+)*)"
-#: An event in words, such as `response from scan`; a bare name means what it is there for.
+#: An event in words, such as `response from scan`. A bare name stands for the usual event of its communication.
 EVENT = rf"(?:{_KIND}\s+(?:to|from)\s+)?{_NAME}"
 _STEP = re.compile(EVENT + r"(?:\s+because\s+(?P<reason>\w+))?(?:\s+with\s+(?P<message>message\s+)?(?P<data>.+))?")
 _REFUSAL = re.compile(rf"refuse\s+cancel\s+of\s+{_NAME}")
@@ -21,7 +21,7 @@ _LITERAL = re.compile(r"(?!true$|false$|null$)[A-Za-z_]\w*")
 
 
 class StepError(ValueError):
-    """A step that can't be read: the message says why. `position`: where in its text, in code points from 0."""
+    """Error of an unreadable step. The message holds the cause, `position` the code point in the text (from 0)."""
 
     def __init__(self, message: str, position: int, hint: str | None) -> None:
         super().__init__(message)
@@ -31,11 +31,11 @@ class StepError(ValueError):
 
 @dataclass(frozen=True)
 class StepInWords:
-    """An event that comes from the robot. `event` is as `explain` takes it: `scan`, `dock.error` or `dock.canceled`.
+    """A step: an event that comes from the robot. `event` is in the syntax of `explain`: `scan` or `dock.error`.
 
-    `reason`: of an error, None where the text names none. `data` is that of the event as the event log has it, None
-    where the text has none; `is_message`: all fields of what ROS brings. `is_refusal`: it is no event, but the answer
-    of a server that does not cancel the goal whose end `event` would be.
+    `reason` is the reason of an error, or None if the text names none. `data` is the event's data in the form of the
+    event log, or None. `is_message`: the data has the fields of the ROS message. `is_refusal`: the step is no event but
+    a server's answer that it does not cancel the goal; `event` is then the cancellation that does not happen.
     """
 
     event: str
@@ -47,7 +47,10 @@ class StepInWords:
 
 
 def step_in_words(text: str) -> StepInWords | None:
-    """The step of a text without blanks around it; None where it is none. Raises StepError for its data."""
+    """Parse a step without surrounding blanks.
+
+    Return None if the text is no step. Raises StepError for invalid data.
+    """
     refusal = _REFUSAL.fullmatch(text)
     if refusal is not None:
         return StepInWords(f"{_plain(refusal)}.canceled", is_refusal=True)
@@ -61,12 +64,12 @@ def step_in_words(text: str) -> StepInWords | None:
 
 
 def event_in_words(found: re.Match[str]) -> str:
-    """The event that a match of EVENT names, as `explain` takes it."""
+    """Return the event of a match of EVENT, in the syntax of `explain`."""
     return f"{_plain(found)}.{found['kind']}" if found["kind"] else _plain(found)
 
 
 def data_in_words(text: str, position: int) -> Any:
-    """Data at the end of a text: JSON, or the name of a literal as it stands. Raises StepError."""
+    """Parse the data at the end of a text: JSON, or the name of a literal. Raises StepError."""
     data = text[position:]
     if _LITERAL.fullmatch(data):
         return data

@@ -1,8 +1,8 @@
-"""The type of any expression: thesis table 4.1, made strict by the language reference; in sct and rosgraph models, too.
+"""Types of expressions: thesis table 4.1, made strict by the language reference; also for sct and rosgraph models.
 
-Types are values: the basic ones are members of `BasicType`, arrays compare by their elements, objects and enums by
-their definition (nominally). What can't be known, such as the type of an unresolved name, is `UNKNOWN`, fits
-everywhere and draws no finding. An integer's range is no part of its type.
+Types are values. The basic types are members of `BasicType`. Arrays are equal if their elements are; objects and enums
+are equal if their definition is the same (nominal typing). An unknown type, such as that of an unresolved name, is
+`UNKNOWN`: it fits everywhere and causes no finding. The range of an integer is no part of its type.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class BasicType(StrEnum):
-    """The types without a definition, and the type of what can't be typed."""
+    """Types without a definition, and UNKNOWN."""
 
     BOOLEAN = "boolean"
     INTEGER = "integer"
@@ -36,7 +36,7 @@ class BasicType(StrEnum):
 
 @dataclass(frozen=True)
 class ArrayType:
-    """A list of values of one type."""
+    """An array of values of one type."""
 
     element: Type
 
@@ -46,7 +46,7 @@ class ArrayType:
 
 @dataclass(frozen=True, eq=False)
 class ObjectType:
-    """An object data type; where ROS defines it, the same in each place that names its ROS type."""
+    """An object data type. Objects that ROS defines are the same type if they name the same ROS type."""
 
     definition: rsc.ObjectDataType
 
@@ -65,7 +65,7 @@ class ObjectType:
 
     @property
     def written(self) -> str:
-        """How a model names it where the name could mean another object, too."""
+        """Unambiguous name of the object in a model."""
         unit: Any = self.definition.eContainer()
         if isinstance(unit, rsc.InterfaceTypeReference):
             return f"{unit.package}/{unit.rosType}"
@@ -77,7 +77,7 @@ class ObjectType:
 
 @dataclass(frozen=True)
 class EnumType:
-    """An enum data type, or the enumeration that became of it in an sct or rosgraph model."""
+    """An enum data type, or the enumeration that it becomes in an sct or rosgraph model."""
 
     definition: Any
 
@@ -109,7 +109,7 @@ _LITERAL: Mapping[type[ex.Expression], BasicType] = {
 
 
 def declared_type(data_type: rsc.DataType | ex.Type | None) -> Type:
-    """The type that a declaration names; UNKNOWN where it is missing or its name is unresolved."""
+    """Return the type that a declaration names. UNKNOWN if it is missing or its name is unresolved."""
     if isinstance(data_type, ex.EnumerationType):
         return EnumType(data_type.enumeration)
     if isinstance(data_type, rsc.Array):
@@ -125,10 +125,10 @@ def declared_type(data_type: rsc.DataType | ex.Type | None) -> Type:
 
 
 def event_data_type(communication: rsc.CommunicationType | None, result_type: rsc.ResultType | None) -> Type | None:
-    """The type of the data that an event of a communication carries to the component, which `value` reads.
+    """Return the type of the data that an event carries to the component, which `value` reads.
 
-    None for the events without data: requests, errors and cancels. UNKNOWN for an event that the communication does
-    not have (the rule `result-type`) and where the communication is unresolved.
+    None for events without data: requests, errors and cancels. UNKNOWN if the communication has no such event (rule
+    `result-type`) or is unresolved.
     """
     row = event(communication, result_type)
     if row is None:
@@ -137,18 +137,18 @@ def event_data_type(communication: rsc.CommunicationType | None, result_type: rs
 
 
 def provided_data_type(communication: rsc.CommunicationType | None) -> Type:
-    """The type of the data that goes out with a communication: a message's, or that of a request.
+    """Return the type of the data that a communication sends: of a message or a request.
 
-    UNKNOWN where nothing goes out (an outgoing message is the component's own, the rule `data-provisioning`) and where
-    the communication is unresolved.
+    UNKNOWN if it sends nothing (the component itself sends an outgoing message, rule `data-provisioning`) or is
+    unresolved.
     """
     return declared_type(sent_type(communication))
 
 
 def value_type(element: ex.Located) -> Type | None:
-    """What `value` stands for at a place in the model; None where there is no `value`.
+    """Return the type of `value` at a place in the model. None if there is no `value`.
 
-    Inside an enum it is the enum's source, inside a transition the data of its event.
+    Inside an enum, `value` is the enum's source; inside a transition, it is the data of its event.
     """
     around = element
     while around is not None:
@@ -162,14 +162,15 @@ def value_type(element: ex.Located) -> Type | None:
 
 
 def is_number(kind: Type) -> bool:
-    """Whether it is an integer or a double."""
+    """Return whether a type is integer or double."""
     return kind in {INTEGER, DOUBLE}
 
 
 def operator_type(row: Operator, operands: Sequence[Type]) -> Type:
-    """The type of an operator's value, given its operands' types: a condition is boolean whatever they are.
+    """Return the type of an operator's value for the types of its operands.
 
-    UNKNOWN for a call with wrong arguments, and for arithmetic whose operands are no numbers or are unknown.
+    A condition is boolean for any operands. UNKNOWN for a call with wrong arguments, and for arithmetic with operands
+    that are unknown or no numbers.
     """
     if row.parameters not in {0, len(operands)}:
         return UNKNOWN  # the rule `argument`
@@ -194,7 +195,10 @@ def operator_type(row: Operator, operands: Sequence[Type]) -> Type:
 
 
 def item_type(item: rsc.AccessibleItem | None) -> Type:
-    """The type of what a name stands for: a state is a boolean; a bare component has no value and is UNKNOWN."""
+    """Return the type of a name's value.
+
+    A state is a boolean. A bare component has no value and is UNKNOWN.
+    """
     match item:
         case rsc.State() | rsc.RequirementState() | rsc.CommunicationType():
             return BOOLEAN
@@ -212,7 +216,7 @@ def item_type(item: rsc.AccessibleItem | None) -> Type:
 
 
 def segment_type(before: Type, segment: rsc.AccessSegment) -> Type:
-    """The type after one step into data of type `before`; UNKNOWN where the step can't be taken."""
+    """Return the type after one step into data of type `before`. UNKNOWN if the step is invalid."""
     match segment:
         case rsc.PropertySegment():
             return declared_type(segment.property.type) if segment.property else UNKNOWN
@@ -222,14 +226,14 @@ def segment_type(before: Type, segment: rsc.AccessSegment) -> Type:
 
 
 def start_type(access: rsc.Access, value: Type | None = None) -> Type:
-    """The type of what an access starts from; `value` as for `access_types`."""
+    """Return the type of the first item of an access; `value` as for `access_types`."""
     return (UNKNOWN if value is None else value) if access.value else item_type(access.item)
 
 
 def access_types(access: rsc.Access, value: Type | None = None) -> list[Type]:
-    """The types along an access: of what it starts from, then after each of its segments.
+    """Return the types along an access: of its first item, then after each of its segments.
 
-    `value` is the type of `value` there, None where there is none.
+    `value` is the type of `value` at this place, None if there is no `value`.
     """
     types = [start_type(access, value)]
     for segment in access.segments:
@@ -238,10 +242,11 @@ def access_types(access: rsc.Access, value: Type | None = None) -> list[Type]:
 
 
 class Types:
-    """The types of expressions of any model, none of which is looked into twice.
+    """Types of expressions of any model. Each expression is typed only once.
 
-    Finds no fault: what has no type is UNKNOWN. `value` is the type of `value` in the text, None where there is none.
-    An object value takes its type from the communication that it is provided to, so that on its own it is UNKNOWN.
+    Reports no errors: an expression without a type is UNKNOWN. `value` is the type of `value` in the text, None if
+    there is no `value`. An object value gets its type from the communication that it is provided to; alone it is
+    UNKNOWN.
     """
 
     def __init__(self, value: Type | None = None) -> None:
@@ -249,7 +254,7 @@ class Types:
         self._known: dict[ex.Expression, Type] = {}
 
     def __call__(self, expression: ex.Expression | None) -> Type:
-        """The type of an expression."""
+        """Return the type of an expression."""
         return UNKNOWN if expression is None else fold(self._type, expression, memo=self._known)
 
     def _type(self, expression: ex.Expression, operands: list[Type]) -> Type:
@@ -275,7 +280,7 @@ class Types:
 
 
 def _reference_type(expression: ex.Expression) -> Type:
-    """The type of a literal, and of a reference in an sct or rosgraph model."""
+    """Return the type of a literal, or of a reference in an sct or rosgraph model."""
     match expression:
         case ex.EnumerationLiteralReference():
             return EnumType(expression.literal.eContainer())
@@ -297,10 +302,10 @@ def _reference_type(expression: ex.Expression) -> Type:
 
 
 def infer(expression: ex.Expression | None, value: Type | None = None) -> Type:
-    """The type of one expression; `value` as for `Types`."""
+    """Return the type of one expression; `value` as for `Types`."""
     return Types(value)(expression)
 
 
 def type_of(expression: ex.Expression) -> Type:
-    """The type of an expression of a model, `value` understood from the place where the expression stands."""
+    """Return the type of an expression of a model. Its place in the model determines the type of `value`."""
     return infer(expression, value_type(expression))

@@ -1,4 +1,4 @@
-"""Walks over expressions that need no recursion: an expression may be thousands of operators deep."""
+"""Traversal of expressions without recursion: an expression may be thousands of operators deep."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _Element = TypeVar("_Element")
 
 
 def operands(expression: ex.Expression | None) -> list[ex.Expression]:
-    """The expressions directly inside an expression, from left to right; what an unfinished text lacks is None."""
+    """Return the operands of an expression, from left to right. Operands missing from an unfinished text are None."""
     match expression:
         case ex.BinaryExpression():
             return [expression.left, expression.right]
@@ -54,7 +54,7 @@ def _in_arrays(expression: ex.Expression | None) -> list[ex.Expression]:
 
 
 def _indices(step: robosc.AccessSegment | rosgraph.WireStep) -> list[ex.Expression]:
-    """What the index of a step into an array is computed from, if it is."""
+    """Return the index expressions of a step into an array; empty for other steps."""
     match step:
         case robosc.IndexSegment() | rosgraph.SliceStep():
             return [index for index in (step.first, step.last) if index is not None]
@@ -64,7 +64,7 @@ def _indices(step: robosc.AccessSegment | rosgraph.WireStep) -> list[ex.Expressi
 
 
 def with_operands(original: ex.Expression, given: Sequence[ex.Expression]) -> ex.Expression:
-    """The operator or function of an expression, of other operands; the new expression contains them."""
+    """Return a copy of an expression's operator or function with other operands, which it contains."""
     kind: Any = type(original)
     made: ex.Expression
     if isinstance(original, ex.FunctionCall):
@@ -78,7 +78,7 @@ def with_operands(original: ex.Expression, given: Sequence[ex.Expression]) -> ex
 
 
 def parts(expression: ex.Expression | None) -> Iterator[ex.Expression]:
-    """The expression and all that is inside it, each before its operands, from left to right."""
+    """Iterate over the expression and all its parts, each before its operands, from left to right."""
     pending = [expression]
     while pending:
         part = pending.pop()
@@ -93,9 +93,10 @@ def fold(
     inside: Callable[[_Node], Sequence[_Node]] = operands,  # type: ignore[assignment]
     memo: MutableMapping[_Node, _Result] | None = None,
 ) -> _Result:
-    """The result for `root`, made bottom-up: `combine` gets a node and the results for what is `inside` it, in order.
+    """Return the result for `root`, computed bottom-up.
 
-    `memo` keeps the results of all nodes; what is in it already is not looked into again.
+    `combine` gets a node and the results for the nodes `inside` it, in order. `memo` stores the results of all nodes.
+    Nodes that it already contains are not visited.
     """
     results: list[_Result] = []
     pending: list[tuple[_Node, int]] = [(root, -1)]
@@ -121,9 +122,9 @@ def walk(
     root: _Node,
     memo: MutableMapping[_Node, _Result] | None = None,
 ) -> _Result:
-    """The result for `root`, where each node decides which others it needs, and in which order.
+    """Return the result for `root`. Each node chooses the nodes that it needs, and their order.
 
-    `step` is written as a recursive function is, with `yield other` for the call of itself: `left = yield node.left`.
+    Write `step` like a recursive function, with `yield other` in place of the recursive call: `left = yield node.left`.
     `memo` is as for `fold`.
     """
     nodes, steps = [root], [step(root)]
@@ -148,9 +149,9 @@ def walk(
 
 
 def copied(root: _Element, instead: Mapping[Any, Any] | None = None) -> _Element:
-    """A copy of an expression or a type with all that it contains; what contains the original keeps it.
+    """Return a deep copy of an expression or a type. The original stays in its container.
 
-    `instead` holds the elements that the copy refers to where the original refers to others.
+    `instead` maps elements that the original refers to to those that the copy refers to.
     """
     known: dict[Any, Any] = {}
     others = {} if instead is None else instead
@@ -165,7 +166,7 @@ def copied(root: _Element, instead: Mapping[Any, Any] | None = None) -> _Element
             if is_attribute(feature):
                 setattr(made, name, value)
             elif not feature.containment:
-                # What names an element of an array names it in the copy, too: it stands before.
+                # A reference to an element of an array refers to the copied element, which precedes it.
                 setattr(made, name, known[value] if value in known else others.get(value, value))
             elif feature.many:
                 getattr(made, name).extend(next(inside) for _ in value)

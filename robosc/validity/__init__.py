@@ -1,4 +1,4 @@
-"""The rules that every model keeps beyond its metamodel's classes and multiplicities."""
+"""Rules for models beyond the classes and multiplicities of their metamodels."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
 _LARGEST = 2**63 - 1
 _IDENTIFIER = re.compile("[A-Za-z_][A-Za-z0-9_]*")
 _PACKAGE = re.compile("[A-Za-z][A-Za-z0-9_-]*")
-#: The features whose texts people read as they stand, in logs too.
+#: Features whose text people read unchanged, also in logs.
 _SHOWN = ("text", "origin", "explanation")
 
 
 def faults(root: Any) -> Iterator[Fault]:
-    """What is wrong with a model whose required features are all set: the element, and the reason.
+    """Report the faults of a model whose required features are set: elements and reasons.
 
-    Names are identifiers and literals have no sign in every model. An sct model has one initial location per plant,
-    one edge per location and event, updates of own variables, and expressions of the right type; a rosgraph model's
-    references and types agree with each other, also where one message is read at several places. Names in a robosc
-    model mean what they can mean in a text; what else the language asks of it, its rules say.
+    In every model, names are identifiers and literals have no sign. An sct model has one initial location per plant,
+    one edge per location and event, updates of own variables, and expressions of the right type. The references and
+    types of a rosgraph model are consistent, also if several places read one message. Names in a robosc model refer to
+    elements that they could refer to in a text. The rules of the language check the rest.
     """
     model = Model(root)
     yield from faults_of(model, _CHECKS)
@@ -43,12 +43,12 @@ def faults(root: Any) -> Iterator[Fault]:
                 return
 
 
-#: The loading of a saved model that keeps these rules.
+#: Loads a saved model and checks these rules.
 load = partial(xmi.load, faults=faults)
 
 
 def _identifier(feature: str) -> Check:
-    """The check that a feature with one text or several holds identifiers."""
+    """Return the check that a feature with one or several texts holds identifiers."""
 
     def check(element: Any, _model: Model) -> Iterator[Fault]:
         value = getattr(element, feature)
@@ -104,7 +104,7 @@ _CHECKS: Checks = {
         )
     ],
 }
-#: What the checks of types rely on. How many arguments a call has in a robosc model, a rule of the language says.
+#: Precondition of the type checks. The number of arguments in a robosc model is checked by a rule of the language.
 _CALLED: Checks = {
     ex.FunctionCall: [demand(lambda call: call.function in FUNCTIONS, "there is no function '{0.function}'")]
 }
@@ -116,7 +116,7 @@ _ARGUMENTS: Checks = {
         )
     ]
 }
-#: The tables for each kind of model; where one finds something, the next are not asked.
+#: Tables of checks for each kind of model. A table is used only if the tables before it report no faults.
 _OWN_CHECKS: Mapping[type, Sequence[Checks]] = {
     robosc.Base: (_CALLED, robosc_models.IMPORT_CHECKS, robosc_models.CHECKS),
     sct.SupervisoryControlModel: (

@@ -1,6 +1,6 @@
-"""Checks of models, and what they share: a check says what is wrong with one element of a model.
+"""Framework for checks of models: a check reports faults of one element.
 
-The checks of a kind of model stand in a table: by class, what is asked of every element of that class.
+Each kind of model has a table of checks. It lists the checks for the elements of each class.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from robosc.semantics.operators import Rule, operator_of
 from robosc.semantics.typing import BOOLEAN, DOUBLE, INTEGER, UNKNOWN, EnumType, Type, Types, is_number
 from robosc.semantics.walks import operands
 
-#: The element with which something is wrong, and the reason.
+#: The faulty element, and the reason.
 Fault = tuple[Any, str]
 
 
 class Model:
-    """A model that is checked: its root, its elements, each before what it contains, and the types of expressions."""
+    """A model under check: its root, its elements in preorder, and the types of expressions."""
 
     def __init__(self, root: Any) -> None:
         self.root = root
@@ -30,11 +30,11 @@ class Model:
 
     @cached_property
     def own(self) -> set[Any]:
-        """The elements, to be looked up."""
+        """Elements as a set."""
         return set(self.elements)
 
     def unlike(self, expression: ex.Expression, wanted: Type) -> Iterator[Fault]:
-        """The fault, if an expression is of another type than is wanted."""
+        """Report a fault if an expression does not have the wanted type."""
         found = self.types(expression)
         if UNKNOWN not in {found, wanted} and found != wanted:
             yield expression, f"this is of {_named(found)}, but {_named(wanted)} is wanted"
@@ -45,7 +45,7 @@ Checks = Mapping[type, Sequence[Check]]
 
 
 def faults_of(model: Model, checks: Checks) -> Iterator[Fault]:
-    """What a table of checks finds in a model."""
+    """Report the faults that a table of checks detects in a model."""
     by_class: dict[type, list[Check]] = {}
     for element in model.elements:
         kind = type(element)
@@ -56,7 +56,7 @@ def faults_of(model: Model, checks: Checks) -> Iterator[Fault]:
 
 
 def demand(holds: Callable[[Any], bool], message: str) -> Check:
-    """The check that something holds of an element; the message cites the element as `{0.name}`."""
+    """Return the check of a condition on an element. The message refers to the element as `{0.name}`."""
 
     def check(element: Any, _model: Model) -> Iterator[Fault]:
         if not holds(element):
@@ -66,7 +66,7 @@ def demand(holds: Callable[[Any], bool], message: str) -> Check:
 
 
 def typed(feature: str, wanted: Callable[[Any], Type] = lambda _: BOOLEAN) -> Check:
-    """The check that the expression in a feature, if there is one, has the type that is wanted for the element."""
+    """Return the check that the expression in a feature, if any, has the type that `wanted` returns for the element."""
 
     def check(element: Any, model: Model) -> Iterator[Fault]:
         value = getattr(element, feature)
@@ -77,7 +77,7 @@ def typed(feature: str, wanted: Callable[[Any], Type] = lambda _: BOOLEAN) -> Ch
 
 
 def unique(*features: str) -> Check:
-    """The check that no two elements in one of these features have the same name, or stand for the same thing."""
+    """Return the check that the names in each of these features are unique."""
 
     def check(element: Any, _model: Model) -> Iterator[Fault]:
         for feature in features:
@@ -88,7 +88,7 @@ def unique(*features: str) -> Check:
 
 
 def repeated(elements: Iterable[Any], key: Callable[[Any], Any]) -> Iterator[Any]:
-    """The elements that have the key of an earlier one."""
+    """Iterate over the elements that have the key of an earlier one."""
     seen = set()
     for element in elements:
         if key(element) in seen:
@@ -97,7 +97,7 @@ def repeated(elements: Iterable[Any], key: Callable[[Any], Any]) -> Iterator[Any
 
 
 def around(element: Any, kind: type) -> Any:
-    """The nearest element of a kind around another; None where there is none."""
+    """Return the nearest container of a class around an element, or None."""
     found = element.eContainer()
     while found is not None and not isinstance(found, kind):
         found = found.eContainer()
@@ -108,7 +108,7 @@ _WANTED = {Rule.LOGICAL: BOOLEAN, Rule.DOUBLE: DOUBLE, Rule.INTEGER: INTEGER, Ru
 
 
 def fitting_operands(expression: ex.Expression, model: Model) -> Iterator[Fault]:
-    """The check of an sct or rosgraph model's operators, which all have operands of one type."""
+    """Check the operators of an sct or rosgraph model, whose operands all have one type."""
     row, given = operator_of(expression), operands(expression)
     if isinstance(expression, (robosc.Access, robosc.ObjectValue)):
         yield expression, f"{type(expression).__name__} belongs in a robosc model only"

@@ -1,4 +1,4 @@
-"""What makes the names of a robosc model mean something, as linking sees to it in a text."""
+"""Checks of the names in a robosc model, which linking ensures in a text."""
 
 from __future__ import annotations
 
@@ -98,7 +98,10 @@ def _member(element: Any, of: Any) -> Iterator[Fault]:
 
 
 def _owner(reference: robosc.CommunicationReference | robosc.Access) -> robosc.Component | None:
-    """The component of which a reference speaks; None where it can't: a library's text speaks of its own one only."""
+    """Return the component that a reference refers to. None if it is not allowed.
+
+    A library's text refers only to its own component.
+    """
     own: robosc.Component | None = around(reference, robosc.Component)
     base = around(reference, robosc.Base)
     component = reference.component or own
@@ -111,7 +114,7 @@ def _owner(reference: robosc.CommunicationReference | robosc.Access) -> robosc.C
 
 
 def _stands_for_an_instance(component: robosc.Component, reference: Any) -> bool:
-    """Whether a reference stands in the body of an `all`, `any` or `count` over the instances of a component."""
+    """Return whether a reference is in the body of an `all`, `any` or `count` over the instances of a component."""
     quantifier: Any = around(reference, robosc.InstanceQuantifier)
     while quantifier is not None and quantifier.template is not component:
         quantifier = around(quantifier, robosc.InstanceQuantifier)
@@ -119,7 +122,7 @@ def _stands_for_an_instance(component: robosc.Component, reference: Any) -> bool
 
 
 def _definitions(component: robosc.Component) -> Sequence[Any]:
-    """What a component's text defines, wherever that is; imports go round in no circle."""
+    """Return the definitions in a component's text. Precondition: imports are not circular."""
     kind = component.type
     while isinstance(kind, robosc.InstantiatedComponent | robosc.ImportedComponent):
         kind = kind.definition.type
@@ -143,7 +146,7 @@ _OWN_OBJECT = demand(
     "it is to name the object that stands for {0.package}/{0.rosType}",
 )
 
-#: Where an import is broken, the other checks are not asked: they follow imports.
+#: The other checks follow imports. They are skipped if an import is broken.
 IMPORT_CHECKS: Checks = {robosc.InstantiatedComponent: [_made], robosc.ImportedComponent: [_made]}
 CHECKS: Checks = {
     robosc.Transition: [_OWN_TARGET],

@@ -1,6 +1,6 @@
-"""What makes a rosgraph model one that nodes can be generated from.
+"""Checks of rosgraph models before nodes are generated from them.
 
-Among that: all that a graph reads of one message, or writes into one, can be parts of one and the same data.
+One of the checks is consistency: all reads and writes of one message must fit the same data.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from robosc.validity.model_checks import Check, Checks, Fault, Model
 
-#: What a field of ROS is in a model.
+#: Types of ROS fields in a model.
 _BASIC = (ex.BooleanType, ex.IntegerType, ex.DoubleType, ex.StringType, rosgraph.ArrayType)
 
 
@@ -49,7 +49,7 @@ def _inputs(reception: rosgraph.Reception, _model: Model) -> Iterator[Fault]:
 
 
 def _reason(read: rosgraph.ErrorReason, _model: Model) -> Iterator[Fault]:
-    """A reason is read where a service or an action has failed, and each of the node's is one of the enumeration."""
+    """Check that a reason is read only at an error, and that its enumeration has all reasons of the node."""
     user = read.eContainer()
     while isinstance(user, ex.Expression | rosgraph.NodeAssignment | rosgraph.InputAssignment):
         user = user.eContainer()
@@ -62,13 +62,13 @@ def _reason(read: rosgraph.ErrorReason, _model: Model) -> Iterator[Fault]:
 
 
 class _Shape:
-    """What is known of one message: an object, an array or a basic value at the end of each path."""
+    """Structure of one message: an object, an array or a basic value at the end of each path."""
 
     def __init__(self) -> None:
         self._kinds: dict[tuple[str | int, ...], str] = {}
 
     def add(self, element: Any, path: Sequence[str | int], kind: ex.Type | None) -> Iterator[Fault]:
-        """Adds what is at the end of a path; `kind` is None where that is an object or an array as a whole."""
+        """Add the type at the end of a path. `kind` is None for a whole object or array."""
         for length, step in enumerate(path):
             yield from self._at(element, tuple(path[:length]), "an array" if isinstance(step, int) else "an object")
         if isinstance(kind, rosgraph.ArrayType):

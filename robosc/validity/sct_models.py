@@ -1,4 +1,4 @@
-"""What makes an sct model one that can be synthesized, run and generated from."""
+"""Checks of sct models before synthesis, execution and generation."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from robosc.validity.model_checks import Checks, Fault, Model
 
-#: The features by which elements refer to what is to be of the same model.
+#: Features that must refer to elements of the same model.
 _REFERENCES = ("enumeration", "literal", "location", "variable", "input", "event")
 
 
@@ -46,7 +46,7 @@ def _initial_location(plant: sct.Plant, model: Model) -> Iterator[Fault]:
 
 
 def _end_of_action(plant: sct.Plant, _model: Model) -> Iterator[Fault]:
-    """An action that can be canceled ends later: models of the first two editions took the cancel for the end."""
+    """Check that an action does not end when it is canceled, as it did in models of the first two editions."""
     ended = (edge for edge in edges_of(plant) if edge.event.kind == sct.EventKind.cancel and edge.target.name == IDLE)
     if plant.kind == sct.PlantKind.action and any(ended):
         found = f"the action '{plant.origin or plant.name}' ends where it is canceled, as in older models"
@@ -70,7 +70,7 @@ def _initial_value(variable: sct.DiscreteVariable, model: Model) -> Iterator[Fau
 
 
 def _one_edge(plant: sct.Plant, model: Model) -> Iterator[Fault]:
-    """Of several edges for an event that a location has, or each of a plant's, all have guards."""
+    """Check that edges of a location, or of a plant, for the same event all have guards."""
     for edge in _unguarded(plant.edges):
         yield edge, f"plant '{plant.name}' has in every location two edges for '{edge.event.name}', one without guard"
     everywhere = {edge.event for edge in plant.edges}
@@ -89,7 +89,7 @@ def _predicates(model: sct.SupervisoryControlModel, checked: Model) -> Iterator[
 
 
 def _unguarded(edges: Iterable[sct.Edge]) -> list[sct.Edge]:
-    """Of the edges with one event that are several, those of which one has no guard, but for the first."""
+    """Return the edges after the first for an event that has several edges and one without guard."""
     lone = {edge.event for edge in edges if edge.guard is None}
     return [edge for edge in repeated(edges, lambda edge: edge.event) if edge.event in lone]
 
@@ -106,7 +106,7 @@ def _updated_once(edge: sct.Edge, _model: Model) -> Iterator[Fault]:
 
 
 def _used(model: sct.SupervisoryControlModel, _model: Model) -> Iterator[Fault]:
-    """Whether an event on no edge can happen, or never, nobody could say."""
+    """Check that each event has an edge. Without one, it is undefined whether the event can happen."""
     used = {edge.event for plant in model.plants for edge in edges_of(plant)}
     for plant in model.plants:
         for event in plant.events:
@@ -115,7 +115,7 @@ def _used(model: sct.SupervisoryControlModel, _model: Model) -> Iterator[Fault]:
 
 
 def _read(reference: sct.InputReference, _model: Model) -> Iterator[Fault]:
-    """An input is read in guards and updates of edges, and in requirements, of an event that names it."""
+    """Check that only edges and requirements of an event that carries the input read it."""
     user = reference.eContainer()
     while isinstance(user, ex.Expression | sct.Update):
         user = user.eContainer()
@@ -126,7 +126,7 @@ def _read(reference: sct.InputReference, _model: Model) -> Iterator[Fault]:
 
 
 def _part(kind: ex.EnumerationType, _model: Model) -> Iterator[Fault]:
-    """A part of an enumeration is one of an input: from a literal to itself or a later one."""
+    """Check that only an input has a part of an enumeration, from a literal to the same or a later one."""
     literals = list(kind.enumeration.literals)
     ends = [literal for literal in (kind.first, kind.last) if literal is not None]
     for literal in ends:
@@ -156,7 +156,7 @@ def _guards(supervisor: sct.Supervisor, model: Model) -> Iterator[Fault]:
 
 
 def _timer(timer: sct.Timer, model: Model) -> Iterator[Fault]:
-    """What starts a time anew is of the same model, and in the location in which it runs."""
+    """Check that the elements that restart a timer are in the same model and in its location."""
     if (timer.milliseconds is None) == (timer.duration is None):
         yield timer, "a time has either milliseconds or a duration"
     if timer.milliseconds is not None and not SHORTEST <= timer.milliseconds <= LONGEST:

@@ -1,6 +1,6 @@
-"""From an sct model to one that CIF can spell: what CIF lacks is said by what it has (docs/cif.md).
+"""Transformation of an sct model to a model that CIF can express (docs/cif.md).
 
-Each step is a file of its name, or a method here.
+Each step is a module of its name, or a method here.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 
 class Lowered(NamedTuple):
-    """An sct model in CIF's terms, and of its elements those that they were made of.
+    """An sct model in CIF's terms, and the original of each element.
 
-    Numbers are never negative, and never outside the range of what they are assigned to; a `-` stands only at the top
-    of what is assigned, and a `*` or a function nowhere. Every event can happen. The locations of most data plants are
-    a variable that was made of none. A location has no name where CIF needs none.
+    Numbers are never negative, and never outside the range of the variable that they are assigned to. A `-` occurs only
+    at the top of an assigned value, a `*` or a function nowhere. Every event can happen. In most data plants, a
+    variable replaces the locations. A location has no name if CIF needs none.
     """
 
     model: sct.SupervisoryControlModel
@@ -37,10 +37,10 @@ class Lowered(NamedTuple):
 
 
 def transform(model: sct.SupervisoryControlModel) -> Lowered:
-    """Lowers a model, which must not come from CIF, with its supervisor where it has one; the model stays as it is.
+    """Lower a model, with its supervisor if it has one. The original model does not change.
 
-    Raises ModelError with findings of the rule `cif` where numbers leave 32 bits, or expressions would have to be split
-    into too many cases.
+    Precondition: the model does not come from CIF. Raises ModelError with findings of the rule `cif` if numbers exceed
+    32 bits, or if expressions would need too many cases.
     """
     return once((transform, model), lambda: _Transformation(model).run())
 
@@ -48,11 +48,11 @@ def transform(model: sct.SupervisoryControlModel) -> Lowered:
 class _Transformation:
     def __init__(self, model: sct.SupervisoryControlModel) -> None:
         self._model = model
-        #: What became of each element, and where a plant is by the number of its location, which this is.
+        #: Lowered element of each element; for a location of a numbered plant, its variable and number.
         self._made: dict[Any, Any] = {}
         self._numbered: dict[sct.Location, tuple[sct.DiscreteVariable, int]] = {}
         self._lowering = Lowering(self._made, self._numbered)
-        #: The reason why an element can't be said, by what it is told of.
+        #: Reason why CIF cannot express an element, by the element to report it at.
         self._faults: dict[Any, str] = {}
         self._impossible = _impossible(model)
         self._referred = {
@@ -66,7 +66,7 @@ class _Transformation:
             self._made |= zip(enumeration.literals, made.literals, strict=True)
             model.enumerations.append(made)
         model.plants.extend(map(self._plant, self._model.plants))
-        self._refuse()  # What is computed from numbers that are too large is too large, too.
+        self._refuse()  # Values computed from numbers that are too large would be reported again.
         for plant in self._model.plants:
             self._made[plant].edges.extend(self._edges(plant.edges))
             for location in plant.locations:
@@ -96,7 +96,7 @@ class _Transformation:
             )
 
     def _plant(self, plant: sct.Plant) -> sct.Plant:
-        """All of a plant but its edges."""
+        """Lower a plant without its edges."""
         self._made[plant] = made = sct.Plant(name=plant.name, kind=plant.kind, origin=plant.origin)
         made.inputs.extend(map(self._cell, plant.inputs))
         made.variables.extend(map(self._cell, plant.variables))
@@ -120,7 +120,7 @@ class _Transformation:
         return made
 
     def _cell(self, cell: Any) -> Any:
-        """An input or variable, its range shifted so that it begins at 0 where it would be negative."""
+        """Lower an input or variable. A negative range is shifted to start at 0."""
         self._made[cell] = made = type(cell)(name=cell.name, type=copied(cell.type, self._made))
         if isinstance(made.type, ex.EnumerationType):
             made.type.first = made.type.last = None
@@ -135,7 +135,7 @@ class _Transformation:
         return made
 
     def _number_locations(self, plant: sct.Plant, made: sct.Plant) -> None:
-        """A variable for the number of the location that a plant is in, and a location without a name for all."""
+        """Replace the locations of a plant by one location without a name and a variable that holds a number."""
         start = next(number for number, location in enumerate(plant.locations) if location.initial)
         variable = sct.DiscreteVariable(
             name="choice",
@@ -164,9 +164,9 @@ class _Transformation:
         return made
 
     def _possible(self, edge: sct.Edge) -> Iterator[ex.Expression]:
-        """Conditions on the inputs of an event: that each is one of the literals that it can be.
+        """Return conditions on the inputs of an event that exclude impossible literals.
 
-        CIF's inputs can be each literal of an enumeration, so that the plant of the event excludes the others.
+        Inputs in CIF can have each literal of their enumeration. The plant of the event excludes the others.
         """
         owner = edge.eContainer()
         if edge.event.eContainer() not in (owner, owner.eContainer()):
@@ -190,13 +190,13 @@ class _Transformation:
         )
 
     def _supervisor(self, supervisor: sct.Supervisor) -> sct.Supervisor:
-        """What the supervisor asks and adds, and how many states it leaves."""
+        """Lower the conditions of the supervisor and its state counts."""
         made = sct.Supervisor(
             uncontrolledStates=supervisor.uncontrolledStates, controlledStates=supervisor.controlledStates
         )
         for guard in supervisor.guards:
             if guard.event not in self._impossible:
-                # A supervisor's guard is no text of the user's.
+                # A supervisor's guard has no place in a user's text.
                 requirement, synthesis = (
                     self._condition(part, guard.event) for part in (guard.requirement, guard.synthesis)
                 )
@@ -208,7 +208,7 @@ class _Transformation:
         return None if expression is None else self._lowered(culprit, self._lowering.condition, expression)
 
     def _lowered(self, culprit: Any, lower: Callable[..., ex.Expression], *given: Any) -> ex.Expression | None:
-        """What a method of the lowering makes; None where that can't be said, which is told of a culprit."""
+        """Call a method of the lowering. If CIF cannot express the result, record a fault and return None."""
         try:
             return lower(*given)
         except Unsupported as fault:
@@ -217,10 +217,10 @@ class _Transformation:
 
 
 def _is_numbered(plant: sct.Plant) -> bool:
-    """Whether a variable is to hold the number of the plant's location, its only location having all edges.
+    """Return whether a variable replaces the plant's locations.
 
-    So it is where data is chosen: every location has the same edges, and written for each of them they would be as many
-    as the square of the choices.
+    This applies to data plants. All their locations have the same edges; written for each location, the number of edges
+    would be the square of the number of choices.
     """
     return (
         plant.kind == sct.PlantKind.data
@@ -232,9 +232,10 @@ def _is_numbered(plant: sct.Plant) -> bool:
 
 
 def _impossible(model: sct.SupervisoryControlModel) -> set[sct.Event]:
-    """The events of which all edges have the guard `false` and which nothing else speaks of: they need not be said.
+    """Return events that are never possible and that no requirement names. CIF does not need them.
 
-    So it is with `c_none` where a provide statement has no condition. CIF warns of an event that can never happen.
+    All their edges have the guard `false`. An example is `c_none` if a provide statement has no condition. CIF warns of
+    events that can never happen.
     """
     found = {event for plant in model.plants for event in plant.events}
     found -= {requirement.event for requirement in model.requirements}

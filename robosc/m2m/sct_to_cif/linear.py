@@ -1,4 +1,4 @@
-"""Sums of variables, which is what CIF's data-based synthesis can add and compare."""
+"""Sums of variables: CIF's data-based synthesis can add and compare them."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from robosc.metamodel import sct
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-#: What holds a number: in CIF never a negative one, so that a negative range is shifted to start at 0.
+#: Element that holds a number. CIF has no negative ones here, so that a negative range is shifted to start at 0.
 Cell: TypeAlias = sct.DiscreteVariable | sct.Input
 
-#: CIF's integers have 32 bits, and synthesis needs one value more than a type has.
+#: Largest integer: CIF has 32 bits, and synthesis needs one value beyond the range of a type.
 LARGEST = 2**31 - 2
-#: Repeated additions that are still shorter to read than a table.
+#: Maximum number of repeated additions; a table is shorter than more of them.
 _REPEATED = 4
 
 
-class Unsupported(Exception):  # noqa: N818 - it says what the expression is
-    """An expression that can't be said in CIF, with the reason."""
+class Unsupported(Exception):  # noqa: N818 - the name states the property of the expression
+    """Error of an expression that CIF cannot express, with the reason."""
 
     def __init__(self, expression: ex.Expression, reason: str) -> None:
         super().__init__(reason)
@@ -31,7 +31,7 @@ class Unsupported(Exception):  # noqa: N818 - it says what the expression is
 
 
 def bounds(cell: Cell) -> tuple[int, int]:
-    """The least and the greatest value of an integer variable or input."""
+    """Return the lowest and the highest value of an integer variable or input."""
     kind = cell.type
     assert isinstance(kind, ex.IntegerType)
     assert kind.minimum is not None
@@ -40,13 +40,13 @@ def bounds(cell: Cell) -> tuple[int, int]:
 
 
 def shift(cell: Cell) -> int:
-    """What is to be added to the value of a variable or input of the given model for the value that CIF holds."""
+    """Return the offset from the value of a variable or input in the original model to its value in CIF."""
     return max(0, -bounds(cell)[0])
 
 
 @dataclass(frozen=True)
 class Linear:
-    """Constant factors times what cells of the lowered model hold, plus a constant."""
+    """A sum of constant factors times cells of the lowered model, plus a constant."""
 
     constant: int
     factors: Mapping[Cell, int] = field(default_factory=dict)
@@ -58,24 +58,24 @@ class Linear:
         return Linear(self.constant + other.constant, {cell: factor for cell, factor in factors.items() if factor})
 
     def times(self, factor: int) -> Linear:
-        """The sum multiplied by a constant."""
+        """Return the sum multiplied by a constant."""
         if not factor:
             return Linear(0)
         return Linear(self.constant * factor, {cell: own * factor for cell, own in self.factors.items()})
 
     def range(self) -> tuple[int, int]:
-        """The least and the greatest value."""
+        """Return the lowest and the highest value."""
         ends = [sorted(factor * bound for bound in bounds(cell)) for cell, factor in self.factors.items()]
         return self.constant + sum(low for low, _ in ends), self.constant + sum(high for _, high in ends)
 
     def sides(self) -> tuple[Linear, Linear]:
-        """Two sums without anything negative in them, of which this one is the difference."""
+        """Return two sums without negative terms whose difference is this sum."""
         positive = {cell: factor for cell, factor in self.factors.items() if factor > 0}
         negative = {cell: -factor for cell, factor in self.factors.items() if factor < 0}
         return Linear(max(self.constant, 0), positive), Linear(max(-self.constant, 0), negative)
 
     def tree(self) -> ex.Expression:
-        """The sum as an expression. Nothing in it is negative."""
+        """Return the sum as an expression. Precondition: it has no negative terms."""
         terms = [_term(cell, factor) for cell, factor in self.factors.items()]
         if self.constant or not terms:
             terms.append(ex.IntegerLiteral(value=self.constant))
@@ -83,14 +83,14 @@ class Linear:
 
 
 def reference(cell: Cell) -> ex.Expression:
-    """Reads a cell."""
+    """Return an expression that reads a cell."""
     if isinstance(cell, sct.Input):
         return sct.InputReference(input=cell)
     return sct.VariableReference(variable=cell)
 
 
 def _term(cell: Cell, factor: int) -> ex.Expression:
-    """A cell times a positive constant: added up, or looked up where that is shorter."""
+    """Return a cell times a positive constant: as repeated addition, or as a table if that is shorter."""
     low, high = bounds(cell)
     if factor <= max(_REPEATED, high - low):
         terms = [reference(cell) for _ in range(factor)]

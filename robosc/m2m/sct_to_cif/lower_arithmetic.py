@@ -1,9 +1,8 @@
-"""Pass: expressions as what CIF's data-based synthesis accepts: no negative number, no `*`, one `-` at most.
+"""Pass: lowers expressions to what CIF's data-based synthesis accepts: no negative number, no `*`, at most one `-`.
 
-A comparison becomes one of two sums, what is subtracted having moved to the other side; a product of variables is split
-by the values of one of them, and a function becomes a choice between sums; a value to be assigned saturates, and what
-is subtracted in it is subtracted at the end, the only place where synthesis takes a `-`. An expression that needs none
-of this stays as it is.
+A comparison becomes a comparison of two sums; subtracted terms move to the other side. A product of variables is split
+by the values of one factor. A function becomes a choice between sums. An assigned value saturates; its subtracted terms
+are subtracted at the end, the only place where synthesis accepts a `-`. All other expressions stay unchanged.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
 
     from robosc.m2m.sct_to_cif.linear import Cell
 
-#: Cases that one expression may be split into.
+#: Maximum number of cases of one expression.
 MOST_CASES = 1024
 
 _ATOMS = (
@@ -33,17 +32,17 @@ _ATOMS = (
 )
 _NUMERIC = (ex.IntegerLiteral, ex.Addition, ex.Subtraction, ex.Multiplication, ex.UnaryMinus, ex.FunctionCall)
 _Comparison = type[ex.BinaryExpression]
-#: Alternatives, of which the first counts whose condition holds; the last has none.
+#: Alternatives: the first one whose condition holds counts. The last one has no condition.
 _Pieces = list[tuple[ex.Expression | None, Linear]]
-#: An expression, and whether it is asked for as a number.
+#: An expression, and whether it is needed as a number.
 _Part = tuple[ex.Expression, bool]
 
 
 class Lowering:
-    """Lowers expressions. Raises Unsupported for one that can't be said in CIF.
+    """Lowers expressions. Raises Unsupported for an expression that CIF cannot express.
 
-    `made` holds the element of the lowered model for each that expressions refer to, but for locations that a variable
-    numbers: `numbered` holds the variable and the number.
+    `made` maps each referenced element to its lowered element. `numbered` maps each location that a variable replaces
+    to this variable and a number.
     """
 
     def __init__(
@@ -53,12 +52,12 @@ class Lowering:
         self._numbered = numbered
 
     def condition(self, expression: ex.Expression) -> ex.Expression:
-        """A boolean or enumeration-valued expression, in a tree of its own. Raises Unsupported."""
+        """Lower a boolean or enumeration-valued expression to a new tree. Raises Unsupported."""
         made: ex.Expression = walk(self._lowered, (expression, False))
         return made
 
     def _lowered(self, part: _Part) -> Generator[_Part, Any, Any]:
-        """Of an expression the same for CIF; of one that is asked for as a number its pieces."""
+        """Lower an expression. The result for a number is its pieces."""
         expression, number = part
         return (yield from self._number_lowered(expression) if number else self._condition_lowered(expression))
 
@@ -84,7 +83,7 @@ class Lowering:
         return with_operands(expression, made)
 
     def assigned(self, variable: sct.DiscreteVariable, value: ex.Expression) -> ex.Expression:
-        """What CIF assigns to a variable that gets a value, inside its range. Raises Unsupported."""
+        """Lower the value that is assigned to a variable, limited to its range. Raises Unsupported."""
         if not isinstance(variable.type, ex.IntegerType):
             return self.condition(value)
         low, high = bounds(self._made[variable])
@@ -139,7 +138,7 @@ class Lowering:
         raise Unsupported(expression, f"CIF has no {type(expression).__name__}")
 
     def _held(self, cell: Cell) -> Linear:
-        """The value of a variable or input, of what the lowered one holds."""
+        """Return the original value of a variable or input in terms of its lowered cell."""
         return Linear(-shift(cell), {self._made[cell]: 1})
 
 
@@ -155,7 +154,7 @@ def _is_number(expression: ex.Expression) -> bool:
 
 
 def _is_plain(expression: ex.Expression) -> bool:
-    """Whether CIF takes a number as it is: a sum of numbers that are never negative."""
+    """Return whether CIF accepts a number unchanged: a sum of numbers that are never negative."""
     pending = [expression]
     while pending:
         match part := pending.pop():
@@ -180,7 +179,7 @@ def _against_zero(operator: _Comparison, value: Linear, origin: ex.Expression) -
 
 
 def _compared(operator: _Comparison, pieces: _Pieces, added: Linear, origin: ex.Expression) -> ex.Expression:
-    """Compares alternatives, to each of which something is added, with zero."""
+    """Compare alternatives with zero, after adding `added` to each."""
     return _first((guard, _against_zero(operator, piece + added, origin)) for guard, piece in pieces)
 
 
@@ -191,13 +190,13 @@ def _written(value: Linear, origin: ex.Expression) -> ex.Expression:
 
 
 def _saturated(value: Linear, low: int, high: int, origin: ex.Expression) -> tuple[ex.Expression, Linear]:
-    """Two terms, neither of them ever negative, whose difference is the value or the nearest bound."""
+    """Return two terms that are never negative and whose difference is the value, limited to the bounds."""
     least, greatest = value.range()
     if least >= high or greatest <= low:
         return ex.IntegerLiteral(value=high if least >= high else low), Linear(0)
     kept, subtracted = value.sides()
     result = _written(kept, origin)
-    # What is kept is at least, and at most, what a bound and all that is subtracted from it come to.
+    # The first term is limited to the bounds, each increased by the subtracted terms.
     for outside, operator, bound in ((least < low, ex.LessThan, low), (greatest > high, ex.GreaterThan, high)):
         if outside:
             result = ex.Conditional(
@@ -209,7 +208,7 @@ def _saturated(value: Linear, low: int, high: int, origin: ex.Expression) -> tup
 
 
 def _first(alternatives: Iterable[tuple[ex.Expression | None, ex.Expression]]) -> ex.Expression:
-    """The expression of the first alternative whose condition holds."""
+    """Return the expression of the first alternative whose condition holds."""
     result: ex.Expression | None = None
     for guard, made in reversed(list(alternatives)):
         if guard is None or result is None:
@@ -230,7 +229,7 @@ def _sum(origin: ex.Expression, left: _Pieces, right: _Pieces) -> _Pieces:
 
 
 def _product(expression: ex.Multiplication, left: _Pieces, right: _Pieces) -> _Pieces:
-    """Split by the values of the factor that has fewer."""
+    """Split a product by the values of the factor that has fewer."""
     split, others = sorted((left, right), key=_values)
     _limit(expression, _values(split) * len(others))
     low = min(piece.range()[0] for _, piece in split)
@@ -243,12 +242,12 @@ def _product(expression: ex.Multiplication, left: _Pieces, right: _Pieces) -> _P
 
 
 def _called(call: ex.FunctionCall, first: _Pieces, last: _Pieces) -> _Pieces:
-    """A function of its first and its last argument: all but `mod` choose between values."""
+    """Lower a function of its first and its last argument. All but `mod` choose between values."""
     if call.function == "mod":
         return _modulo(call, first, last[0][1].constant)
     if call.function == "abs":
         other, difference = _scaled(first, -1), first
-    else:  # Of the two the shorter one comes first: its alternatives repeat the condition.
+    else:  # Put the shorter one first: its alternatives repeat the condition.
         first, other = sorted((first, last), key=len, reverse=True)
         difference = _sum(call, other, _scaled(first, -1))
     chosen = _compared(ex.GreaterThan if call.function == "max" else ex.LessThan, difference, Linear(0), call)
@@ -261,7 +260,7 @@ def _choice(origin: ex.Expression, condition: ex.Expression, then: _Pieces, othe
 
 
 def _modulo(expression: ex.FunctionCall, values: _Pieces, divisor: int) -> _Pieces:
-    """Split by how often the divisor goes into the value."""
+    """Split a remainder by the quotient."""
     made: _Pieces = []
     for guard, value in values:
         low, high = (bound // divisor for bound in value.range())
@@ -279,7 +278,7 @@ def _values(pieces: _Pieces) -> int:
 
 
 def _both(left: ex.Expression | None, right: ex.Expression | None) -> ex.Expression | None:
-    """The conjunction of two conditions, either of which may be missing, in a tree of its own."""
+    """Return the conjunction of two conditions in a new tree. Either condition may be missing."""
     parts = [copied(part) for part in (left, right) if part is not None]
     return ex.Conjunction(left=parts[0], right=parts[1]) if len(parts) == 2 else next(iter(parts), None)
 

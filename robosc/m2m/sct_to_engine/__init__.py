@@ -1,6 +1,6 @@
-"""From an sct model with its supervisor to what a controller executes: passes over terms, each in a file of its name.
+"""Transformation of an sct model with its supervisor to the controller's program. Each pass is a module.
 
-`terms` are what the passes work on. The order is that of `transform`.
+The passes work on `terms`. `transform` defines their order.
 """
 
 from __future__ import annotations
@@ -29,23 +29,23 @@ if TYPE_CHECKING:
     from robosc.m2m.sct_to_engine.combine_guards import GuardTerms
     from robosc.metamodel import expression as ex
 
-#: A robot of up to so many events is asked for all of them whenever something happened: to keep an eye on who is
-#: concerned costs more. Measured, see docs/engine.md.
+#: Maximum number of events for a control loop that checks all events after each change. For fewer events, tracking the
+#: affected ones costs more. Measured, see docs/engine.md.
 POLLED = 64
 
 
 def transform(model: sct.SupervisoryControlModel, polled: int | None = None) -> engine.EngineModel:
-    """What a controller executes of an sct model with its supervisor.
+    """Return the controller's program for an sct model with its supervisor.
 
-    With up to `polled` events the control loop asks all of them, else those only whose state has changed. Raises
-    ValueError where the model has no supervisor, or one without a guard for a controllable event.
+    With up to `polled` events the control loop checks all of them, else only those whose state changed. Raises
+    ValueError if the model has no supervisor, or a supervisor without a guard for a controllable event.
     """
     polled = POLLED if polled is None else polled
     return once((transform, model, polled), lambda: _transform(model, polled))
 
 
 def lowering(model: sct.SupervisoryControlModel) -> Lowering:
-    """What makes terms of the expressions of a model, which needs no supervisor."""
+    """Return the lowering of a model's expressions. The model needs no supervisor."""
     return Lowering(Terms(), place_state(model), place_inputs(model))
 
 
@@ -100,7 +100,7 @@ def _choices(
     edges: EdgeTable,
     lower: Lowering,
 ) -> list[engine.Choice]:
-    """The choices of the data to send; sets `choice` of the triggers."""
+    """Return the choices of outgoing data. Sets `choice` of the triggers."""
     roles, choices = Roles(model), {}
     for alternatives in roles.data:
         plant = plant_of(alternatives[0])
@@ -119,7 +119,7 @@ def _choices(
 
 
 def _stays(edges: EdgeTable, event: sct.Event, plant: sct.Plant, lower: Lowering) -> Term:
-    """Where an event would leave its plant in its location."""
+    """Return the condition that an event leaves its plant in its location."""
     taken = edges[event].get(plant, {})
     if None in taken:
         return lower.within(plant, [edge.target for edge in taken[None]])
@@ -128,7 +128,7 @@ def _stays(edges: EdgeTable, event: sct.Event, plant: sct.Plant, lower: Lowering
 
 
 def _expression(condition: Term) -> ex.Expression | None:
-    """The expression of a condition; None where it holds nowhere."""
+    """Return the expression of a condition. None if it never holds."""
     return None if condition.constant == 0 else build_expression(condition)
 
 

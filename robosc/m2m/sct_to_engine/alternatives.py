@@ -1,4 +1,4 @@
-"""Edges of an event that a plant tries one after the other."""
+"""Edges of an event in a plant, tried in order."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Alternatives:
-    """The edges of an event in a plant: one of them is taken, and they are tried one after the other."""
+    """Edges of an event in a plant. They are tried in order, and one of them is taken."""
 
     def __init__(self, plant: sct.Plant, edges: Edges, lower: Lowering) -> None:
         self._plant = plant
@@ -26,7 +26,10 @@ class Alternatives:
         self._ruled_out: dict[sct.Location | None, list[Term]] = {location: [] for location in edges}
 
     def one_of(self, chosen: Sequence[sct.Edge]) -> Term:
-        """That one of these is taken where none is that was tried before: what that says already is left out."""
+        """Return the condition that one of the edges is taken and none of those tried before.
+
+        Omits parts that the earlier edges already imply.
+        """
         terms = self._lower.terms
         left: dict[sct.Location | None, list[Term]] = {}
         for edge in chosen:
@@ -41,13 +44,13 @@ class Alternatives:
         return self._lower.where(self._plant, guards, list(self._untried))
 
     def rule_out(self, chosen: Sequence[sct.Edge]) -> None:
-        """Has those that are tried from here on not be taken where one of these may be."""
+        """Exclude the states in which one of these edges may be taken from all later edges."""
         for edge in chosen:
             self._ruled_out[origin(edge)].append(self._lower(edge.guard, positive=False))
 
 
 def left_open(guard: Term, denied: set[Term], terms: Terms) -> Term:
-    """What a guard asks beyond what is `denied` by those that are tried before it; its own opposite is added."""
+    """Return the part of a guard that the earlier guards in `denied` do not imply. Adds its opposite to `denied`."""
     parts = guard.operands if guard.operator is engine.And else (guard,)
     left = terms.junction(engine.And, [part for part in parts if part not in denied])
     denied |= {terms.opposite(part) for part in (left.operands if left.operator is engine.Or else (left,))}
@@ -55,7 +58,7 @@ def left_open(guard: Term, denied: set[Term], terms: Terms) -> Term:
 
 
 def exclusive(edges: Edges, lower: Lowering) -> bool:
-    """Whether the guards of a location exclude each other: each says what those before it deny."""
+    """Return whether the guards of each location exclude each other: each includes the denials of those before it."""
     for leaving in edges.values():
         denied: set[Term] = set()
         for edge in leaving:

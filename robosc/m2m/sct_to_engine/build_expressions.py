@@ -1,4 +1,4 @@
-"""Pass: terms as expressions of the engine model, with a conversion wherever integers of different storage meet."""
+"""Pass: builds expressions of the engine model from terms, with conversions between integers of different storage."""
 
 from __future__ import annotations
 
@@ -23,9 +23,10 @@ def build_expression(
     *,
     body: bool = False,
 ) -> ex.Expression:
-    """The expression of a term: `shared` terms in it are references to conditions, but not the term itself as `body`.
+    """Return the expression of a term.
 
-    Variables in `before` are read as they were before the event.
+    `shared` terms in it become references to conditions. With `body`, the term itself is built even if it is shared.
+    Variables in `before` are read with their value before the event.
     """
     built: list[ex.Expression] = []
     pending = [(root, 0)]
@@ -50,7 +51,7 @@ def build_expression(
 
 
 def build_value(variable: engine.StateVariable, value: Term, before: Collection[engine.StateVariable]) -> ex.Expression:
-    """The expression of a value that a variable is given, converted to its storage."""
+    """Return the expression of a value that is assigned to a variable, converted to its storage."""
     expression = build_expression(value, None, before)
     if value.sort is not int or value.constant is not None:
         return expression
@@ -60,9 +61,9 @@ def build_value(variable: engine.StateVariable, value: Term, before: Collection[
 
 
 def as_denial(condition: ex.Expression) -> ex.Expression:
-    """What synthesis adds, a denial of states: in a disjunction the first of two locations is "not the second".
+    """Rewrite a condition from synthesis, a denial of states: the first of two locations becomes "not the second".
 
-    Compilers for ARM make shorter code of it.
+    Compilers for ARM generate shorter code for it.
     """
     if not isinstance(condition, engine.Or):
         return condition
@@ -95,7 +96,7 @@ def _leaf(term: Term, before: Collection[engine.StateVariable]) -> ex.Expression
 
 
 def _built(term: Term, operands: list[ex.Expression]) -> Any:
-    """The expression of an operator, its operands converted to the width in which it computes."""
+    """Return the expression of an operator. Its operands are converted to the width of the computation."""
     kind: Any = term.operator
     if kind is engine.Saturation:
         low, high = term.leaf
@@ -115,7 +116,7 @@ def _built(term: Term, operands: list[ex.Expression]) -> Any:
 
 
 def _convert(term: Term, numbers: list[int], operands: list[ex.Expression]) -> None:
-    """Converts operands that are numbers to the width of the operator; of a choice literals too, of others none."""
+    """Convert numeric operands to the width of the operator. Literals are converted only in a conditional."""
     choice = term.operator is ex.Conditional
     wanted = _working(term)
     for position in numbers:
@@ -129,7 +130,7 @@ def _converted(expression: ex.Expression, width: Width, *, widens: bool) -> engi
 
 
 def _width(number: Term) -> Width:
-    """What the value of an integer that is no literal is stored or computed in."""
+    """Return the width in which a nonliteral integer is stored or computed."""
     if isinstance(number.leaf, engine.Declaration):
         return Width(number.leaf.bits, number.leaf.signed)
     if number.operator is engine.Saturation:
@@ -138,7 +139,7 @@ def _width(number: Term) -> Width:
 
 
 def _working(term: Term) -> Width:
-    """What an operator computes in: a signed integer that holds its operands and its result."""
+    """Return the width in which an operator computes: a signed integer that holds its operands and its result."""
     values = [operand.values for operand in term.operands if operand.sort is int]
     values += [term.values] if term.sort is int else []
     union = values[0]

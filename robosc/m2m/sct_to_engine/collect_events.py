@@ -1,4 +1,4 @@
-"""Pass: the events in the order in which the control loop asks them, with their sources, groups and descriptions."""
+"""Pass: collects the events in the order of the control loop, with their sources, groups and descriptions."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from robosc.semantics.roles import Roles, event_name, plant_of, provide_numbers
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-#: The edges of one event in one plant by the location that they start from; by None those that all locations have.
+#: Edges of one event in one plant by their source location. The key None has the edges of all locations.
 Edges = dict[sct.Location | None, list[sct.Edge]]
-#: The edges of each event in each plant that takes part in it, in the order of the plants.
+#: Edges of each event in each plant that takes part in it, in the order of the plants.
 EdgeTable = dict[sct.Event, dict[sct.Plant, Edges]]
 
-#: What happened, by the kinds of the event and its plant, else by that of the event.
+#: Sentence for an event by the kinds of the event and its plant, else by the kind of the event.
 _OF_KIND = {
     (sct.EventKind.trigger, sct.PlantKind.message): "{what} is sent{on}.",
     (sct.EventKind.trigger, sct.PlantKind.service): "{what} is called{on}.",
@@ -42,7 +42,7 @@ _SENTENCES = {
 
 
 def collect_edges(model: sct.SupervisoryControlModel) -> EdgeTable:
-    """The edges of each event."""
+    """Return the edges of each event."""
     table: EdgeTable = {event: {} for plant in model.plants for event in plant.events}
     for event, by_plant in edges_by_event(model.plants).items():
         for plant, edges in by_plant.items():
@@ -56,7 +56,7 @@ def collect_edges(model: sct.SupervisoryControlModel) -> EdgeTable:
 def collect_events(
     model: sct.SupervisoryControlModel, edges: EdgeTable, inputs: Mapping[sct.Input, engine.Input]
 ) -> dict[sct.Event, engine.Event]:
-    """The events by role: cancels, triggers, silent events, data, what comes from the robot, and timeouts."""
+    """Return the events by role: cancels, triggers, silent events, data, events from the robot, and timeouts."""
     roles = Roles(model)
     remarks = _remarks(model)
     numbers = {event: number for events in roles.data for event, number in provide_numbers(plant_of(events[0])).items()}
@@ -85,7 +85,7 @@ def collect_events(
 def collect_sources(
     model: sct.SupervisoryControlModel, events: Mapping[sct.Event, engine.Event]
 ) -> list[engine.Source]:
-    """The sources of reactions: topics, services, actions, components' times; sets `source` of the events."""
+    """Return the sources of reactions: topics, services, actions, components' timers. Sets `source` of the events."""
     roles, sources = Roles(model), []
     batches = {together[0] for together in roles.batches}
     for together in roles.sources:
@@ -98,7 +98,10 @@ def collect_sources(
 
 
 def collect_groups(model: sct.SupervisoryControlModel, events: Mapping[sct.Event, engine.Event]) -> list[engine.Group]:
-    """Groups of triggers that exclude each other in a round or run once in a tick; sets `group` of the events."""
+    """Return groups of triggers that exclude each other in a round or run once in a tick.
+
+    Sets `group` of the events.
+    """
     roles, groups = Roles(model), []
     for together in roles.shared_topics:
         groups.append(engine.Group(name=plant_of(together[0]).topic, span=engine.Span.round))
@@ -111,7 +114,7 @@ def collect_groups(model: sct.SupervisoryControlModel, events: Mapping[sct.Event
 
 
 def _remarks(model: sct.SupervisoryControlModel) -> dict[sct.Event, list[str]]:
-    """What the requirements on each event say, each with its file, and why synthesis restricts it."""
+    """Return the texts of the requirements on each event, each with its file, and the explanations of synthesis."""
     remarks: dict[sct.Event, list[str]] = {}
     for requirement in model.requirements:
         if requirement.text:
@@ -123,7 +126,7 @@ def _remarks(model: sct.SupervisoryControlModel) -> dict[sct.Event, list[str]]:
 
 
 def _description(event: sct.Event, edges: Edges, number: int | None) -> str:
-    """What happened in the robot when this event has; `number` is that of the `provide` that it chooses."""
+    """Describe the meaning of an event for the robot. `number` is that of the `provide` that it selects."""
     plant = plant_of(event)
     sentence = _OF_KIND.get((event.kind, plant.kind)) or _SENTENCES[event.kind]
     steps = dict.fromkeys(

@@ -1,4 +1,4 @@
-"""Pass: one guard an event, of what the plants, the requirements and synthesis ask."""
+"""Pass: combines the conditions of plants, requirements and synthesis to one guard for each event."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class GuardTerms:
-    """When an event can happen: the three parts, each by itself, and their conjunction.
+    """The condition under which an event can happen: its three parts, and their conjunction.
 
-    `by_plant` says of each plant that has the event where it has an edge for it; `plants` is their conjunction.
+    `by_plant` holds the condition that a plant has an edge for the event; `plants` is the conjunction of these.
     """
 
     by_plant: Mapping[sct.Plant, Term]
@@ -35,7 +35,7 @@ class GuardTerms:
 
     @property
     def parts(self) -> list[tuple[engine.Origin, Term]]:
-        """The parts with where they come from."""
+        """The parts with their origins."""
         kinds = (engine.Origin.plants, engine.Origin.requirement, engine.Origin.synthesis)
         return list(zip(kinds, (self.plants, self.requirement, self.synthesis), strict=True))
 
@@ -43,7 +43,7 @@ class GuardTerms:
 def combine_guards(
     model: sct.SupervisoryControlModel, edges: EdgeTable, lower: Lowering
 ) -> dict[sct.Event, GuardTerms]:
-    """The guard of each event: every plant that has it has an edge for it, and the supervisor's two parts hold."""
+    """Return the guard of each event: all its plants have an edge for it, and both parts of the supervisor hold."""
     assert model.supervisor is not None
     supervised = {guard.event: guard for guard in model.supervisor.guards}
     combined = {}
@@ -60,18 +60,18 @@ def combine_guards(
 
 
 def _possible(plant: sct.Plant, edges: Edges, lower: Lowering) -> Term:
-    """That a plant has an edge for an event from where it is: locations with the same guard together."""
+    """Return the condition that a plant has an edge for an event. Locations with the same guard are combined."""
     if None in edges:
         return _one_of(edges[None], lower)
     return lower.where(plant, {location: _one_of(leaving, lower) for location, leaving in edges.items()})
 
 
 def _one_of(edges: Sequence[sct.Edge], lower: Lowering) -> Term:
-    """That a guard of these holds, of each what those before it leave open.
+    """Return the condition that one of the guards holds, without parts that earlier guards imply.
 
-    Raises ModelError where it depends on the data of the event: that comes when the event is happening already.
+    Raises ModelError if it depends on the data of the event, which is unknown until the event happens.
     """
-    # Each is lowered, also where nothing of it is needed: it may be what no sct model holds.
+    # Lower each guard, even if it is not needed: it may be invalid in an sct model.
     guards = [lower(edge.guard) for edge in edges]
     if _all_covered(edges, lower):
         return lower.terms.true
@@ -86,10 +86,10 @@ def _one_of(edges: Sequence[sct.Edge], lower: Lowering) -> Term:
 
 
 def _all_covered(edges: Sequence[sct.Edge], lower: Lowering) -> bool:
-    """Whether the last of these takes all that those before it leave, as `robosc_to_sct` makes them.
+    """Return whether the edges cover all states, by the form that `robosc_to_sct` gives them.
 
-    Each has the negations of the conditions before it, then its own condition; the last has only the negations. That
-    needs nothing to be known of the conditions, which may be on several variables and data.
+    Each guard has the negations of the conditions before it, then its own condition; the last has only the negations.
+    This test needs no analysis of the conditions, which may depend on several variables and data.
     """
     denied = {lower.terms.true}
     for edge in edges:
@@ -103,7 +103,7 @@ def _all_covered(edges: Sequence[sct.Edge], lower: Lowering) -> bool:
 
 
 def _conjuncts(condition: ex.Expression | None) -> list[ex.Expression | None]:
-    """The parts of a conjunction of conjunctions, the last first; those on the right of one are whole."""
+    """Return the parts of a left-nested conjunction, the last first. Right operands are not split."""
     found = []
     while isinstance(condition, ex.Conjunction):
         found.append(condition.right)

@@ -1,4 +1,4 @@
-"""Pass: who reads what an event writes, for a control loop that asks nobody else again."""
+"""Pass: finds the events that read a variable that an event writes, for an incremental control loop."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def find_readers(
     effects: Mapping[sct.Event, EffectTerms],
     shared: Shared,
 ) -> None:
-    """Tells each event, and each condition that guards refer to by themselves, its readers."""
+    """Set the readers of each event, and of each condition that is a whole conjunct of a guard."""
     read: dict[object, list[engine.Reader]] = {}
 
     def note(reader: engine.Reader, cells: Iterable[object]) -> None:
@@ -51,7 +51,7 @@ def find_readers(
 
 
 def _read(guard: GuardTerms, shared: Shared) -> list[object]:
-    """What a guard reads: conditions that it shares, and for the rest locations and variables."""
+    """Return the cells that a guard reads: its shared conditions, and locations and variables for the rest."""
     cells: list[object] = []
     for term in shared.ask_for(guard):
         cells += [shared.conditions[term]] if term in shared.conditions else term.reads()

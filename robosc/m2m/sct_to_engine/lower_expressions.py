@@ -1,4 +1,4 @@
-"""Pass: the expressions of an sct model as terms, negations pushed to where they end."""
+"""Pass: lowers expressions of an sct model to terms. Negations move to the leaves."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from robosc.semantics.walks import operands
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-#: An expression, and whether it is meant as it stands (else its negation).
+#: An expression, and its polarity (false: its negation).
 _Wanted = tuple[ex.Expression, bool]
 
 
 class Lowering:
-    """Makes terms of expressions; each expression is looked at once, however often it is asked for.
+    """Lowers expressions to terms. Each expression is lowered only once.
 
-    `variables` and `inputs` say where the model's elements are kept; of a plant with one location nothing is.
+    `variables` and `inputs` map the model's elements to the engine's. A plant with one location has no variable.
     """
 
     def __init__(
@@ -34,9 +34,9 @@ class Lowering:
         self._done: dict[_Wanted, Term] = {}
 
     def __call__(self, expression: ex.Expression | None, *, positive: bool = True) -> Term:
-        """The term of an expression, or of its negation; of None, which means that there is no condition, `true`.
+        """Return the term of an expression, or of its negation. None means no condition and gives `true`.
 
-        Raises ValueError for what no sct model holds: doubles, strings, division.
+        Raises ValueError for an expression that no sct model has: doubles, strings, division.
         """
         if expression is None:
             return self.terms.true if positive else self.terms.false
@@ -57,9 +57,10 @@ class Lowering:
         locations: Collection[sct.Location | None],
         possible: Sequence[sct.Location | None] | None = None,
     ) -> Term:
-        """That a plant is in one of the locations, given that it is in a possible one, said the shorter way.
+        """Return the condition that a plant is in one of the locations, given that it is in a possible one.
 
-        All of these are possible, and each once; None: all locations of the plant are.
+        Chooses the shorter form. `locations` is a subset of `possible`, without duplicates. None: all locations are
+        possible.
         """
         possible = plant.locations if possible is None else possible
         holds = 2 * len(locations) <= len(possible)
@@ -76,7 +77,10 @@ class Lowering:
         guards: Mapping[sct.Location | None, Term],
         possible: Sequence[sct.Location | None] | None = None,
     ) -> Term:
-        """That a plant is in one of the locations, and its guard holds: locations with the same guard together."""
+        """Return the condition that a plant is in one of the locations and its guard holds.
+
+        Equal guards are combined.
+        """
         by_guard: dict[Term, list[sct.Location | None]] = {}
         for location, guard in guards.items():
             by_guard.setdefault(guard, []).append(location)
@@ -122,7 +126,7 @@ class Lowering:
 
 
 def _junction(wanted: _Wanted) -> type[engine.And | engine.Or] | None:
-    """What a conjunction, disjunction, implication or its negation becomes; None of anything else."""
+    """Return the class for a conjunction, disjunction, implication or its negation. None for other expressions."""
     match wanted:
         case (ex.Conjunction(), positive):
             return engine.And if positive else engine.Or
@@ -132,7 +136,7 @@ def _junction(wanted: _Wanted) -> type[engine.And | engine.Or] | None:
 
 
 def _parts(wanted: _Wanted) -> list[_Wanted]:
-    """What is lowered before: of a junction all operands at once, however they are nested."""
+    """Return the parts to lower first. All operands of nested junctions of one class are parts of the outermost."""
     kind = _junction(wanted)
     if kind is None:
         return _children(wanted)

@@ -1,4 +1,4 @@
-"""Pass: which times run from the start, and which events start them anew."""
+"""Pass: creates timers, with those that run from the start and the events that restart them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def lower_timers(model: engine.EngineModel, edges: EdgeTable, lower: Lowering) -> None:
-    """Makes the timers of a model, and tells each event what it does with them."""
+    """Create the timers of a model and set the restarts of each event."""
     located: dict[sct.Plant, dict[sct.Location, list[tuple[sct.Timer, engine.Timer]]]] = {}
     everywhere: dict[sct.Event, list[engine.Timer]] = {}
     listening: dict[sct.Event, dict[sct.Plant, None]] = {}
@@ -55,9 +55,9 @@ def _restarts(
     timers: Mapping[sct.Location, Sequence[tuple[sct.Timer, engine.Timer]]],
     lower: Lowering,
 ) -> list[engine.Restart]:
-    """What an event does with the timers of a plant's locations, by where it comes from.
+    """Return the effect of an event on the timers of a plant's locations, by the location that it leaves.
 
-    Where it is on no edge of the plant (`taken` is None), the plant stays where it is.
+    If no edge of the plant has the event (`taken` is None), the plant stays in its location.
     """
     if taken is None:
         return _staying(event, plant, timers, lower)
@@ -82,7 +82,7 @@ def _staying(
     timers: Mapping[sct.Location, Sequence[tuple[sct.Timer, engine.Timer]]],
     lower: Lowering,
 ) -> list[engine.Restart]:
-    """What an event starts anew in a plant that takes no part in it."""
+    """Return the timers that an event restarts in a plant without an edge for it."""
     cases: dict[tuple[engine.Timer, ...], list[sct.Location]] = {}
     for location in plant.locations:
         starts = tuple(made for timed, made in timers.get(location, ()) if event in timed.without)

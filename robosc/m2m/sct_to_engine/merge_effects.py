@@ -1,4 +1,4 @@
-"""Pass: one simultaneous effect for each event, made of the updates and moves of its edges in all plants."""
+"""Pass: merges the updates and moves of an event's edges in all plants to one simultaneous effect."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from robosc.m2m.sct_to_engine.lower_expressions import Lowering
     from robosc.m2m.sct_to_engine.terms import Term
 
-#: Variables with the values that they get.
+#: Variables with their new values.
 Values = dict[engine.StateVariable, "Term"]
 
 
 @dataclass(frozen=True, eq=False)
 class StepTerms:
-    """Assignments that are made together: those of the first case whose condition holds (None: in all others).
+    """Simultaneous assignments. The first case whose condition holds is executed (None: all other states).
 
     A step that does not depend on a location has one case, without condition.
     """
@@ -32,29 +32,29 @@ class StepTerms:
     cases: Sequence[tuple[Term | None, Values]]
 
     def writes(self) -> set[engine.StateVariable]:
-        """The variables that get a value."""
+        """Return the assigned variables."""
         return {variable for _, values in self.cases for variable in values}
 
     def reads(self) -> set[engine.Declaration]:
-        """What the values and the choice among the cases depend on."""
+        """Return the variables and inputs that the values and conditions depend on."""
         terms = [term for condition, values in self.cases for term in (condition, *values.values())]
         return {read for term in terms if term is not None for read in term.reads()}
 
 
 @dataclass(frozen=True)
 class EffectTerms:
-    """What an event changes, step by step, and which variables are read after they were written."""
+    """Changes by an event, step by step, and the variables that are read after they are written."""
 
     steps: Sequence[StepTerms]
     copied: Collection[engine.StateVariable]
 
 
 def merge_effects(edges: Mapping[sct.Plant, Edges], lower: Lowering) -> EffectTerms:
-    """The effect of an event whose plants take these edges.
+    """Return the effect of an event whose plants take these edges.
 
-    Variables come first, ordered so that each is read before it is written; where that is impossible the value before
-    is to be read from a copy. Locations come last: no other step needs one after it has changed. Where several edges of
-    a location may be possible, which is so in models from CIF, one is taken with all that it changes.
+    Variables come first, ordered so that each is read before it is written. If no such order exists, the old value is
+    read from a copy. Locations come last: no other step needs one after it has changed. In models from CIF, several
+    edges of a location may be possible; one of them is taken with all its changes.
     """
     chosen = {plant: taken for plant, taken in edges.items() if not exclusive(taken, lower)}
     others = {plant: taken for plant, taken in edges.items() if plant not in chosen}
@@ -65,7 +65,7 @@ def merge_effects(edges: Mapping[sct.Plant, Edges], lower: Lowering) -> EffectTe
 
 
 def _changes(plant: sct.Plant, edges: Edges, lower: Lowering) -> list[StepTerms]:
-    """What the edges change, updates and location together: of those that may be taken the first in the text does."""
+    """Return updates and move of the edges in one step: the first possible edge in the text is taken."""
     variable = lower.variables.get(plant)
     cases: list[tuple[list[sct.Edge], Values]] = []
     known: dict[tuple[tuple[engine.StateVariable, Term], ...], int] = {}
@@ -75,7 +75,7 @@ def _changes(plant: sct.Plant, edges: Edges, lower: Lowering) -> list[StepTerms]
         if variable is not None and edge.target is not location:
             values[variable] = lower.terms.place(plant, edge.target)
         case = known.get(tuple(values.items()), -1)
-        # Not before an edge of the same location that comes before it in the text.
+        # The order of edges of one location stays that of the text.
         if case < last.get(location, 0):
             case = known[tuple(values.items())] = len(cases)
             cases.append(([], _in_order(values)))
@@ -85,7 +85,7 @@ def _changes(plant: sct.Plant, edges: Edges, lower: Lowering) -> list[StepTerms]
 
 
 def _updates(plant: sct.Plant, edges: Edges, lower: Lowering) -> list[StepTerms]:
-    """Updates that are the same on all edges, one by one; else by location."""
+    """Return updates that all edges share, one by one; else the updates by location."""
     groups: dict[tuple[tuple[engine.StateVariable, Term], ...], list[sct.Edge]] = {}
     for edge in _all(edges):
         groups.setdefault(tuple(_values(edge, lower).items()), []).append(edge)
@@ -96,7 +96,7 @@ def _updates(plant: sct.Plant, edges: Edges, lower: Lowering) -> list[StepTerms]
 
 
 def _values(edge: sct.Edge, lower: Lowering) -> Values:
-    """What the updates of an edge change."""
+    """Return the variables that an edge's updates change, with their values."""
     values: Values = {}
     for update in edge.updates:
         variable = lower.variables[update.variable]
@@ -112,7 +112,7 @@ def _in_order(values: Values) -> Values:
 
 
 def _moves(plant: sct.Plant, edges: Edges, lower: Lowering) -> list[StepTerms]:
-    """The change of location. Staying counts as going to the same location where that takes fewer conditions."""
+    """Return the change of location. Staying counts as a move to the same location if that needs fewer conditions."""
     variable = lower.variables.get(plant)
     if variable is None:
         return []
@@ -150,9 +150,9 @@ def _by_edge(
     *,
     overlapping: bool = False,
 ) -> list[StepTerms]:
-    """A step with the cases that change something; the last needs no condition where all do.
+    """Return a step with the cases that change something. If all cases do, the last needs no condition.
 
-    Where the cases are `overlapping`, the first that holds is taken also where it changes nothing.
+    If the cases are `overlapping`, the first case that holds is taken even if it changes nothing.
     """
     alternatives = Alternatives(plant, edges, lower)
     found: list[tuple[Term | None, Values]] = []
@@ -168,12 +168,12 @@ def _by_edge(
 
 
 def _ordered(steps: Sequence[StepTerms]) -> list[StepTerms]:
-    """The steps so that each comes before those that write what it reads, as far as that is possible.
+    """Return the steps in an order in which each comes before the writers of its operands, as far as possible.
 
-    The first of those that come next is taken; where each waits for another (a cycle), the first of all.
+    Among several possible next steps, the first is taken; in a cycle, the first of all.
     """
     writers = {variable: number for number, step in enumerate(steps) for variable in step.writes()}
-    # Whom each step is to come before: who writes what it reads.
+    # For each step, the writers that must come after it.
     before = [
         {writers[read] for read in step.reads() if isinstance(read, engine.StateVariable) and read in writers}
         - {number}
@@ -202,7 +202,7 @@ def _ordered(steps: Sequence[StepTerms]) -> list[StepTerms]:
 
 
 def _read_late(steps: Sequence[StepTerms]) -> list[engine.StateVariable]:
-    """What is read after it was written, in the order of the steps."""
+    """Return variables that are read after they are written, in the order of the steps."""
     late: dict[engine.StateVariable, None] = {}
     written: set[engine.StateVariable] = set()
     for step in steps:
@@ -218,5 +218,5 @@ def _read_late(steps: Sequence[StepTerms]) -> list[engine.StateVariable]:
 
 
 def _variables(term: Term, written: Collection[engine.StateVariable]) -> dict[engine.StateVariable, None]:
-    """Those of the variables that a term reads."""
+    """Return the written variables that a term reads."""
     return dict.fromkeys(read for read in term.reads() if isinstance(read, engine.StateVariable) and read in written)

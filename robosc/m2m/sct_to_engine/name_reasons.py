@@ -1,4 +1,4 @@
-"""Pass: what can keep an event from happening, in the words of the robot's model."""
+"""Pass: names the reasons that can prevent an event, in the terms of the robot's model."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from robosc.m2m.sct_to_engine.lower_expressions import Lowering
     from robosc.m2m.sct_to_engine.terms import Term
 
-#: The events that a node tells about, wherever they are blocked: what the controller sends.
+#: Roles of events that the controller sends. A node reports all reasons that block them.
 _COMMANDS = (engine.Role.cancel, engine.Role.trigger)
 
 
@@ -24,7 +24,7 @@ def name_reasons(
     guards: Mapping[sct.Event, GuardTerms],
     lower: Lowering,
 ) -> None:
-    """Sets `reasons` of the events: requirements of all, plants and what synthesis prevents of commands."""
+    """Set `reasons` of the events: requirements for all; plants and synthesis only for commands."""
     assert model.supervisor is not None
     for requirement in model.requirements:
         forbidden = lower(requirement.condition, positive=requirement.kind == sct.RequirementKind.disables)
@@ -41,7 +41,7 @@ def name_reasons(
 
 
 def _of_plants(possible: Mapping[sct.Plant, Term], lower: Lowering) -> Iterator[engine.Reason]:
-    """That a plant has no edge for an event where it is, unless it has one everywhere."""
+    """Return a reason for each plant that does not have an edge for the event in all its locations."""
     for plant, holds in possible.items():
         if holds.constant != 1:
             location = lower.variables.get(plant)

@@ -1,4 +1,4 @@
-"""Pass: what a model keeps in memory, each in the smallest storage that holds its values."""
+"""Pass: places each state variable and input in the smallest storage that holds its values."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _Declared = TypeVar("_Declared", bound=engine.Declaration)
 
 
 def place_state(model: sct.SupervisoryControlModel) -> dict[sct.Plant | sct.DiscreteVariable, engine.StateVariable]:
-    """The location of each plant that has several and each variable, in the order of the plants."""
+    """Return a variable for each plant with several locations and for each variable, in the order of the plants."""
     names = Names()
     placed: dict[sct.Plant | sct.DiscreteVariable, engine.StateVariable] = {}
     start = first_state(model)
@@ -31,7 +31,7 @@ def place_state(model: sct.SupervisoryControlModel) -> dict[sct.Plant | sct.Disc
 
 
 def place_inputs(model: sct.SupervisoryControlModel) -> dict[sct.Input, engine.Input]:
-    """The data that comes with events."""
+    """Return the engine's inputs: the data of events."""
     placed = {}
     for plant in model.plants:
         for declared in plant.inputs:
@@ -50,7 +50,7 @@ def _state(plant: sct.Plant) -> Iterator[tuple[sct.Plant | sct.DiscreteVariable,
 
 
 def _keep(declared: _Declared, kind: ex.Type) -> _Declared:
-    """Fills in the type, as a copy, since each type has one owner, and from it the range and the storage."""
+    """Set the type, and from it the range and the storage. The type is copied because each type has one owner."""
     declared.type = copied(kind)
     declared.minimum, declared.maximum = domain(kind)
     declared.bits, declared.signed = storage(domain(kind))

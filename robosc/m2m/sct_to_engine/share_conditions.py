@@ -1,4 +1,4 @@
-"""Pass: conditions that several guards have in common become elements of their own (common subexpressions)."""
+"""Pass: extracts conditions that several guards share (common subexpressions)."""
 
 from __future__ import annotations
 
@@ -15,34 +15,34 @@ if TYPE_CHECKING:
     from robosc.m2m.sct_to_engine.terms import Term, Terms
     from robosc.metamodel import expression as ex
 
-#: In how many guards a single comparison of a variable is to be for an incremental loop to compute it once for all.
+#: Minimum number of guards with a comparison of a variable that an incremental loop computes once for all.
 _MANY = 4
 _JUNCTIONS = (engine.And, engine.Or)
-#: How often conditions are looked for that only one other refers to, since it is put together from longer ones.
+#: Maximum number of passes that remove conditions with only one reference, after longer ones absorbed the others.
 _ROUNDS = 5
 
-#: Who refers to each term: guards and shared terms, no more than `_MANY` of them.
+#: References to each term: guards and shared terms, at most `_MANY` of them.
 _Owners = dict["Term", dict[object, None]]
 
 
 class Shared:
-    """Terms that are shared, and how others are put together from them."""
+    """Shared terms, and the composition of other terms from them."""
 
     def __init__(self, terms: Sequence[Term], opposites: Mapping[Term, Term]) -> None:
         self.conditions = {term: engine.Condition(name=f"condition_{number}") for number, term in enumerate(terms, 1)}
         #: Terms that are the opposite of a shared one.
         self.denied = {term: shared for term, shared in opposites.items() if shared in self.conditions}
         parts = Counter(operand for term in terms for operand in term.operands)
-        #: By the operand that the fewest of them have.
+        #: Shared junctions by their rarest operand.
         self._with: dict[Term, list[Term]] = {}
         for term in terms:
             if term.operator in _JUNCTIONS:
                 self._with.setdefault(min(term.operands, key=parts.__getitem__), []).append(term)
 
     def folded(self, kind: type[ex.Expression], operands: Sequence[Term], but: Term | None = None) -> dict[Term, Term]:
-        """For each operand of a junction what stands for it: itself, or a shared junction of several, long ones first.
+        """Map each operand of a junction to itself or to a shared junction of several operands, long ones first.
 
-        A shared term is not put together from itself: `but` is left out.
+        Does not use the term `but`: a shared term must not be composed of itself.
         """
         given = set(operands)
         found = [
@@ -58,13 +58,13 @@ class Shared:
         return {operand: stands.get(operand, operand) for operand in operands}
 
     def operands(self, term: Term) -> Sequence[Term]:
-        """The operands of a term; several that make up a shared junction are replaced by it."""
+        """Return the operands of a term. A shared junction replaces the operands that it consists of."""
         if term.operator not in _JUNCTIONS:
             return term.operands
         return list(dict.fromkeys(self.folded(term.operator, term.operands, term).values()))
 
     def inside(self, roots: Iterable[Term]) -> dict[Term, None]:
-        """The shared terms among some terms and, outside of other shared ones, below them."""
+        """Return the shared terms in `roots`, without those inside other shared terms."""
         found: dict[Term, None] = {}
         seen = set()
         pending = list(roots)
@@ -78,7 +78,7 @@ class Shared:
         return found
 
     def ask_for(self, guard: GuardTerms) -> dict[Term, list[engine.Origin]]:
-        """The terms whose conjunction is a guard, with the origins that ask for each; shared junctions are one."""
+        """Return the conjuncts of a guard, each with the origins that require it. A shared junction is one conjunct."""
         if guard.whole.constant is not None:
             false = [origin for origin, part in guard.parts if part is guard.whole]
             either = [origin for origin, part in guard.parts if part.constant is None]
@@ -96,11 +96,11 @@ class Shared:
 def share_conditions(
     guards: Mapping[sct.Event, GuardTerms], events: Mapping[sct.Event, engine.Event], terms: Terms, *, incremental: bool
 ) -> Shared:
-    """The terms that are shared; inner ones come before those that they are part of.
+    """Return the shared terms, inner ones first.
 
-    Shared is a junction that several guards or other shared conditions refer to, as it is or denied, but one as it is
-    and one denied are not enough: calls cost more. Where the control loop is incremental also a comparison of a
-    variable is shared that many guards ask for by itself.
+    A junction is shared if several guards or other shared conditions refer to it or to its opposite. One reference to
+    each is not enough, because calls cost more. An incremental control loop also shares a comparison of a variable that
+    is a conjunct of many guards.
     """
     found, opposites = _find(guards.values(), terms, incremental=incremental)
     denied = set(opposites.values())
@@ -126,9 +126,9 @@ def share_conditions(
 
 
 def _find(guards: Iterable[GuardTerms], terms: Terms, *, incremental: bool) -> tuple[list[Term], dict[Term, Term]]:
-    """The common subexpressions of the guards: every term is looked at once, outer ones first.
+    """Find the common subexpressions of the guards. Visits each term once, outer terms first.
 
-    Also which junctions are the opposites of which: these count as references to them.
+    Also returns the junctions that are opposites of others. References to them count as references to their opposites.
     """
     order: dict[Term, None] = {}
     owners: _Owners = {}
@@ -151,7 +151,7 @@ def _find(guards: Iterable[GuardTerms], terms: Terms, *, incremental: bool) -> t
         own, direct = owners.pop(term, {}), asked.pop(term, {})
         junction = term.operator in _JUNCTIONS
         if term in opposites:
-            pass  # Whoever refers to it refers to its opposite.
+            pass  # References to it are references to its opposite.
         elif len(own) > 1 if junction else incremental and len(direct) >= _MANY and _reads_variable(term):
             shared.append(term)
             own, direct = {term: None}, {}
@@ -162,7 +162,7 @@ def _find(guards: Iterable[GuardTerms], terms: Terms, *, incremental: bool) -> t
 
 
 def operands_of(condition: Term) -> Sequence[Term]:
-    """What is to hold so that a condition does."""
+    """Return the conjuncts of a condition."""
     if condition.constant is not None:
         return () if condition.constant else (condition,)
     return condition.operands if condition.operator is engine.And else (condition,)

@@ -1,4 +1,4 @@
-"""Expressions as terms: normalised, and each made once, so that equal ones are the same object."""
+"""Normalized expressions as terms. Equal terms are the same object."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from robosc.semantics.operators import BY_CLASS
 if TYPE_CHECKING:
     from collections.abc import Container, Hashable, Iterable, Iterator, Mapping, Sequence
 
-#: Of what a term is a value: None is a truth value, `int` an integer, else the owner of the literals or locations.
+#: Sort of a term's value: None for a truth value, `int`, or the owner of the literals or locations.
 Sort = type[int] | ex.Enumeration | sct.Plant | None
-#: How many values a variable may have for the conditions on it to be decided by trying them all.
+#: Maximum number of values of a variable for which conditions on it are decided by trying all of them.
 _TRIED = 1024
 
 COMPLEMENTS: Final[Mapping[type[ex.Expression], type[ex.Expression]]] = {
@@ -30,9 +30,10 @@ _COMMUTATIVE = (ex.Equation, ex.Inequation, ex.Addition, ex.Multiplication, engi
 
 
 class Term:
-    """An expression: the class of its operator or reference, its operands, and for a leaf what it refers to or is.
+    """A normalized expression: the class of its operator or reference, its operands, and the content of a leaf.
 
-    `values` is the interval of its values, `cells` what it depends on, but no more than two of these.
+    `values` is the interval of its values. `cells` are the variables and inputs that it depends on. If
+    there are several, the set may be incomplete.
     """
 
     __slots__ = ("cells", "leaf", "operands", "operator", "sort", "values")
@@ -62,11 +63,14 @@ class Term:
 
     @property
     def constant(self) -> int | None:
-        """Its only value, where it has only one."""
+        """The only value of the term. None if it may have several."""
         return self.values.single
 
     def below(self, leaves: Container[Term] = ()) -> Iterator[Term]:
-        """The term and all that it is made of, each once and before what it is part of; below `leaves` nothing."""
+        """Iterate over the term and its parts, each once and before the terms that contain it.
+
+        Skips parts of `leaves`.
+        """
         seen: set[Term] = set()
         pending = [(self, False)]
         while pending:
@@ -80,12 +84,12 @@ class Term:
                     pending += [(operand, False) for operand in reversed(term.operands)]
 
     def reads(self) -> dict[engine.Declaration, None]:
-        """All that it depends on, in the order of the text."""
+        """Return the variables and inputs that the term depends on, in the order of the text."""
         return dict.fromkeys(term.leaf for term in self.below() if isinstance(term.leaf, engine.Declaration))
 
 
 class Terms:
-    """Makes terms. What can be decided before the robot runs is decided when a term is made."""
+    """Creates terms. Simplifies them at creation as far as they are decided before the robot runs."""
 
     def __init__(self) -> None:
         self._made: dict[Hashable, Term] = {}
@@ -96,14 +100,14 @@ class Terms:
         self.false = self.constant(None, 0)
 
     def constant(self, sort: Sort, value: int) -> Term:
-        """A value: a truth value, an integer, or the literal or location at a position."""
+        """Return a constant: a truth value, an integer, or the literal or location at a position."""
         kind: type[ex.Expression] = ex.BooleanLiteral if sort is None else ex.IntegerLiteral
         if isinstance(sort, (sct.Plant, ex.Enumeration)):
             kind = engine.LocationLiteral if isinstance(sort, sct.Plant) else ex.EnumerationLiteralReference
         return self._make(kind, (), value, sort, Interval(value, value))
 
     def reference(self, declared: engine.Declaration) -> Term:
-        """What a variable or an input holds."""
+        """Return the value of a variable or an input."""
         values = domain(declared.type)
         match declared.type:
             case ex.BooleanType():
@@ -118,22 +122,25 @@ class Terms:
         return self._make(kind, (), declared, sort, values)
 
     def at(self, variable: engine.StateVariable | None, location: sct.Location, *, holds: bool = True) -> Term:
-        """That a plant is in a location, or is not; without a variable the plant has no other."""
+        """Return the condition that a plant is in a location, or is not.
+
+        Without a variable, the plant has no other location.
+        """
         if variable is None:
             return self.true if holds else self.false
         place = self.place(variable.plant, location)
         return self.operation(ex.Equation if holds else ex.Inequation, self.reference(variable), place)
 
     def place(self, plant: sct.Plant, location: sct.Location) -> Term:
-        """A location of a plant, as a value."""
+        """Return a location of a plant as a value."""
         if location not in self._positions:
             self._positions |= {known: position for position, known in enumerate(plant.locations)}
         return self.constant(plant, self._positions[location])
 
     def operation(self, kind: type[ex.Expression], *operands: Term) -> Term:
-        """An operator of the expression metamodel on its operands, but for those that `junction` and `negation` make.
+        """Return an operator on its operands, except for junctions and negations.
 
-        Raises ValueError for what no sct model holds: doubles, strings, division.
+        Raises ValueError for an operator that no sct model has: doubles, strings, division.
         """
         if kind is ex.Conditional:
             return self._conditional(*operands)
@@ -142,7 +149,7 @@ class Terms:
         return self._make(kind, operands, None, int, _interval(kind, *operands))
 
     def called(self, function: str, value: Term, *others: Term) -> Term:
-        """A function of integers: `mod` as a remainder, the others by cases."""
+        """Return a function of integers: `mod` as a remainder, the others by cases."""
         match function, others:
             case "mod", (divisor,):
                 return self.modulo(value, divisor)
@@ -154,7 +161,10 @@ class Terms:
         return self.operation(ex.Conditional, better, other, value)
 
     def modulo(self, value: Term, divisor: Term) -> Term:
-        """What `mod` gives: remainders have the sign of the value, so one that may be negative is made positive."""
+        """Return `value mod divisor`.
+
+        A remainder has the sign of the value; if it may be negative, it is made positive.
+        """
         if Interval(0, divisor.values.low - 1).holds(value.values):
             return value
         rest = self.operation(engine.Remainder, value, divisor)
@@ -176,19 +186,20 @@ class Terms:
                 continue
             if other.sort is None:
                 return other if (side is self.true) is (kind is ex.Equation) else self.opposite(other)
-            # Not above the least value, not below the greatest: to be it.
+            # Not above the lowest value or not below the highest: equal to it.
             smaller, greater = (ex.LessOrEqual, ex.GreaterOrEqual)[:: 1 if side is right else -1]
             if (kind is smaller and side.values.low == other.values.low) or (
                 kind is greater and side.values.low == other.values.high
             ):
                 kind = ex.Equation
-            # Not the least is above it, not the greatest below: the opposites of those above, however they are said.
+            # Not the lowest value: above it. Not the highest value: below it. Opposites of the above then share one
+            # form.
             if kind is ex.Inequation and other.sort is int:
                 if side.values.low == other.values.low:
                     kind = ex.GreaterThan if side is right else ex.LessThan
                 elif side.values.low == other.values.high:
                     kind = ex.LessThan if side is right else ex.GreaterThan
-            # Of two locations or literals: not to be one is to be the other.
+            # One of two locations or literals: not equal to one is equal to the other.
             if (
                 kind is ex.Inequation
                 and other.sort is not int
@@ -199,9 +210,9 @@ class Terms:
         return self._decided(self._make(kind, (left, right), None, None, _interval(kind, left, right)))
 
     def _decided(self, condition: Term) -> Term:
-        """A condition, or the truth value that it has whatever the value of the only variable that it depends on.
+        """Return a condition, or its truth value if it is the same for all values of its only variable.
 
-        A comparison of it with a value is left out: its interval decides it.
+        Skips comparisons of a variable with a constant, which intervals decide.
         """
         if condition.sort is None and len(condition.cells) == 1:
             [cell] = condition.cells
@@ -213,7 +224,10 @@ class Terms:
         return condition
 
     def negation(self, condition: Term) -> Term:
-        """The opposite of a condition that is no junction and no choice: of a comparison the complementary one."""
+        """Return the opposite of a condition that is no junction and no conditional.
+
+        A comparison becomes its complement.
+        """
         if condition.operator in COMPLEMENTS:
             return self._comparison(COMPLEMENTS[condition.operator], *condition.operands)
         if condition.operator is ex.Negation:
@@ -221,7 +235,10 @@ class Terms:
         return self._make(ex.Negation, (condition,), None, None, _interval(ex.Negation, condition))
 
     def junction(self, kind: type[engine.And | engine.Or], conditions: Iterable[Term]) -> Term:
-        """A conjunction or disjunction, without what is decided, said twice, or inside another of the same class."""
+        """Return a conjunction or disjunction.
+
+        Removes neutral and duplicate parts, and flattens nested ones of its class.
+        """
         neutral, absorbing = (self.true, self.false) if kind is engine.And else (self.false, self.true)
         parts: dict[Term, None] = {}
         for condition in conditions:
@@ -234,7 +251,7 @@ class Terms:
         return self._make(kind, tuple(parts), None, None, BOOLEAN)
 
     def opposite(self, condition: Term) -> Term:
-        """The opposite of a condition, of any class: junctions and choices are turned inside out."""
+        """Return the opposite of any condition. Junctions and conditionals are negated part by part."""
         opposites, pending = self._opposites, [condition]
         while pending:
             term = pending[-1]
@@ -258,13 +275,13 @@ class Terms:
         return opposites[condition]
 
     def _contradictory(self, kind: type[engine.And | engine.Or], parts: Iterable[Term]) -> bool:
-        """Whether some of the parts, all on one variable or location, decide the junction whatever its value is."""
+        """Return whether the parts on one variable or location alone decide the junction."""
         groups: dict[engine.Declaration, list[Term]] = {}
         for part in parts:
             if len(part.cells) == 1:
                 groups.setdefault(next(iter(part.cells)), []).append(part)
         for cell, group in groups.items():
-            # One alone was decided when it was made.
+            # A single part was decided at its creation.
             if len(group) > 1 and _size(cell) <= _TRIED:
                 everywhere = (1 << _size(cell)) - 1
                 table = everywhere if kind is engine.And else 0
@@ -275,7 +292,7 @@ class Terms:
         return False
 
     def _table(self, condition: Term, cell: engine.Declaration) -> int:
-        """For which values of the only cell that it depends on a condition holds: a bit for each, the least first."""
+        """Return the truth table of a condition on one cell: a bit for each value, the lowest value first."""
         if condition not in self._tables:
             order = list(condition.below(self._tables))
             table = 0
@@ -293,7 +310,7 @@ class Terms:
         return self._tables[condition]
 
     def saturation(self, value: Term, bounds: Interval) -> Term:
-        """An integer as a variable with these bounds keeps it: the nearest bound where it is outside."""
+        """Return an integer limited to the bounds of a variable."""
         if bounds.holds(value.values):
             return value
         low, high = (min(max(bound, bounds.low), bounds.high) for bound in value.values)
@@ -314,7 +331,7 @@ class Terms:
 
 
 def _size(cell: engine.Declaration) -> int:
-    """How many values a variable may have; no `len`: that of a range ends at 2^63."""
+    """Return the number of values of a variable. `len` of a range would be limited to 2^63."""
     return int(cell.maximum - cell.minimum + 1)
 
 
@@ -326,7 +343,7 @@ def _interval(kind: type[ex.Expression], *operands: Term) -> Interval:
 
 
 def _value(term: Term, operands: Sequence[int]) -> int:
-    """The value of a term with operands of these values."""
+    """Return the value of a term for the values of its operands."""
     kind = term.operator
     if kind is ex.Conditional:
         return operands[1 if operands[0] else 2]

@@ -1,1 +1,1 @@
-"""The supervisor as C99: what the targets that contain it share."""
+"""The supervisor as C99, shared by all targets that contain it."""

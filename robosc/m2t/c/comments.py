@@ -1,4 +1,4 @@
-"""Text of a model, made safe for comments and string literals of C."""
+"""Escapes text of a model for comments and string literals of C."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _WIDTH = 100
 
 
 def comment_text(text: str) -> str:
-    """The text on one line, with nothing in it that could end a comment, start one, or draw a compiler's warning."""
+    """Return the text on one line, without anything that ends or starts a comment or causes a compiler's warning."""
     plain = "".join(" " if unicodedata.category(character)[0] in "CZ" else character for character in text)
     for risky in ("*/", "/*", "??"):
         while risky in plain:
@@ -22,7 +22,7 @@ def comment_text(text: str) -> str:
 
 
 def comment(paragraphs: Iterable[str], indent: int = 0) -> str:
-    """A block comment, each paragraph on lines of its own, all indented, without a line end; "" of no text."""
+    """Return an indented block comment without a line end; each paragraph starts a new line. "" if there is no text."""
     lines = [
         line
         for text in paragraphs
@@ -37,7 +37,7 @@ def comment(paragraphs: Iterable[str], indent: int = 0) -> str:
 
 
 def string_literal(text: str) -> str:
-    """A C string literal with the text in UTF-8; everything but letters, digits and plain signs as octal escapes."""
+    """Return a C string literal of the text in UTF-8. Unsafe characters become octal escapes."""
     return '"' + "".join(_character(byte) for byte in text.encode()) + '"'
 
 

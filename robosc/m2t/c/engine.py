@@ -1,4 +1,4 @@
-"""Writes the engine: a header and a source file in C99 (and C++17), with state, guards, events and control loop."""
+"""Generates the engine: a header and a source file in C99 (and C++17), with state, guards, events and control loop."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from robosc.configuration import ControlLoop
 
 _INDENT = 4
-#: Of how many events a comment on what their guards share gives the names.
+#: Maximum number of events that a comment on a shared condition names.
 _NAMED = 3
-#: The bits of a word in a set.
+#: Bits of a word in a set.
 _WORD = 32
-#: How many times its length the queue has places: the more, the fewer rounds begin with closing its gaps.
+#: Places in the queue for each of its elements. More places make it less often necessary to close gaps.
 _GENEROUS = 3
-#: How many events the engine remembers before it looks up whom they concern. A message rarely means more.
+#: Number of events that the engine stores before it looks up their readers. A message rarely causes more.
 _BEHIND = 8
 _HEADINGS = {
     engine.Role.cancel: "Cancels: the control loop runs them first.",
@@ -42,7 +42,7 @@ _HEADINGS = {
 
 
 def generate(executed: engine.EngineModel, settings: ControlLoop, templates: Path | None = None) -> dict[str, str]:
-    """The files `P_supervisor.h` and `P_supervisor.c` of what a controller executes.
+    """Return the files `P_supervisor.h` and `P_supervisor.c` of an engine model.
 
     `settings` become the default settings. The preconditions of `robosc.m2t.c.preconditions` must hold.
     """
@@ -63,7 +63,7 @@ def generate(executed: engine.EngineModel, settings: ControlLoop, templates: Pat
 
 
 class _Preparation:
-    """The values that the templates put in."""
+    """Values for the templates."""
 
     def __init__(self, model: engine.EngineModel, names: CNames) -> None:
         self._model = model
@@ -75,7 +75,7 @@ class _Preparation:
         self._located = [variable.plant for variable in model.variables if variable.variable is None]
 
     def all(self) -> dict[str, Any]:
-        """All values by name."""
+        """Return all values by name."""
         readers = self._readers() if self._model.incremental else {}
         return {**self._declarations(), **self._computations(), **self._loop(), **self._timers(), **readers}
 
@@ -83,7 +83,7 @@ class _Preparation:
         return self._names.enumerator(event.event)
 
     def _declarations(self) -> dict[str, Any]:
-        """What the header declares: events and what each means, enumerations, locations, state, inputs, names."""
+        """Return the declarations of the header: events, enumerations, locations, state, inputs, names."""
         model, names = self._model, self._names
         groups = [(heading, self._events[role]) for role, heading in _HEADINGS.items() if self._events[role]]
         owners: list[tuple[sct.Plant | ex.Enumeration, Sequence[ex.NamedElement]]] = [
@@ -101,7 +101,7 @@ class _Preparation:
                 }
                 for position, (heading, events) in enumerate(groups)
             ],
-            # C has no empty enumerations: a robot without events has one that never happens.
+            # C has no empty enumerations: a robot without events gets one that never happens.
             "event_count": max(len(model.events), 1),
             "enumerations": [
                 {
@@ -140,12 +140,12 @@ class _Preparation:
         }
 
     def _computations(self) -> dict[str, Any]:
-        """The condition of each event, what it changes, and what these have in common."""
+        """Return the guards and effects of the events, and their shared conditions."""
         events = self._model.events
         guards = [
             (event, comment(event.remarks, _INDENT), self._printer.guard(event.guard))
             for event in events
-            # Nothing forbids the others, and there is nothing to tell about them.
+            # All others are always allowed and have no remarks.
             if event.guard.terms or event.remarks
         ]
         effects = [(event, self._printer.effect(event.effect)) for event in events if event.effect.steps]
@@ -180,7 +180,7 @@ class _Preparation:
         }
 
     def _loop(self) -> dict[str, Any]:
-        """What the control loop knows of the events: their numbers, and which exclude each other."""
+        """Return the control loop's data on events: their numbers, and the groups that exclude each other."""
         model, queued, silent = self._model, len(self._queued), len(self._silent)
         data = self._events[engine.Role.data]
         incoming = self._events[engine.Role.incoming] + self._events[engine.Role.timeout]
@@ -196,7 +196,7 @@ class _Preparation:
             "silent": silent,
             "own": " + ".join(["QUEUED"] * bool(queued) + ["SILENT"] * bool(silent)),
             "bound": model.settlingBound,
-            # The first event of each choice, and the one behind the last.
+            # The first event of each choice, and the event after the last choice.
             "data": [*first, str(queued + silent + len(data))] if first else [],
             "settles": bool(silent or first),
             "topics": sum(group.span == engine.Span.round for group in model.groups),
@@ -214,7 +214,7 @@ class _Preparation:
         }
 
     def _timers(self) -> dict[str, Any]:
-        """The times, and what events do with them."""
+        """Return the timers and the effects of events on them."""
         timers = self._model.timers
         numbers = {timer: number for number, timer in enumerate(timers)}
         located = [timer.location.eContainer() for timer in timers if timer.location is not None]
@@ -272,7 +272,7 @@ class _Preparation:
         }
 
     def _readers(self) -> dict[str, Any]:
-        """How the incremental loop knows whom to ask again after an event: who reads what it writes."""
+        """Return the incremental loop's tables: the readers of variables that each event writes."""
         model, queued = self._model, len(self._queued)
         conditions = [condition for condition in model.conditions if condition.readers]
         asked = [*self._queued, *self._silent, *model.choices]
@@ -305,7 +305,7 @@ class _Preparation:
 
 
 def _merged(cases: Sequence[tuple[str, str, list[str], bool]]) -> list[dict[str, Any]]:
-    """Parts of a `switch`, neighbours with the same lines as one, where the second has no comment.
+    """Return the cases of a `switch`. Neighbors with equal lines are merged if the second has no comment.
 
     A case is an enumerator, a comment, the lines, and whether these read a copy of the state.
     """
@@ -325,7 +325,7 @@ def _used_in(condition: engine.Condition) -> str:
 
 
 def _values(kind: ex.Type) -> str:
-    """The range of a type in words."""
+    """Return the range of a type in words."""
     match kind:
         case engine.LocationType():
             return f"a location of {comment_text(kind.plant.name)}"

@@ -1,4 +1,4 @@
-"""Types, constants, expressions, guards and effects of an engine model as C: a table of spellings, and exceptions."""
+"""Prints types, constants, expressions, guards and effects of an engine model as C."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ _UNARY = PRECEDENCE[ex.Negation]
 
 
 def integer_type(bits: int, *, signed: bool) -> str:
-    """The type of <stdint.h> of a width."""
+    """Return the type of <stdint.h> of a width."""
     return f"{'' if signed else 'u'}int{bits}_t"
 
 
 def type_name(kind: ex.Type) -> str:
-    """The C type that stores a value of a type of an sct or engine model."""
+    """Return the C type that stores a value of a type of an sct or engine model."""
     if isinstance(kind, ex.BooleanType):
         return "bool"
     width = storage(domain(kind))
@@ -35,17 +35,17 @@ def type_name(kind: ex.Type) -> str:
 
 
 def unsigned_type(most: int) -> str:
-    """The C type that stores a number up to `most` and mixes with `unsigned` ones."""
+    """Return the C type for a number up to `most` that mixes with `unsigned` numbers."""
     return next(f"uint{bits}_t" for bits in (8, 16, 32) if Width(bits, signed=False).values.high >= most)
 
 
 def number(value: int) -> str:
-    """A constant of any integer type; C's most negative number can't be written as one."""
+    """Return a constant of any integer type. C has no literal for its most negative number."""
     return f"(-{-(value + 1)} - 1)" if value == -(2**63) else str(value)
 
 
 def clamp(saturation: engine.Saturation) -> str:
-    """The function of the engine that gives the nearest value within bounds."""
+    """Return the engine's function that limits a value to bounds."""
     return "clamp" if saturation.bits == 32 else "clampwide"
 
 
@@ -61,21 +61,21 @@ class CPrinter(Printer):
         engine.Or: "||",
     }
 
-    #: What stands before the name of a part of the state.
+    #: Prefix of the name of a state member.
     state = "state->"
 
     def __init__(self, names: CNames) -> None:
         self._names = names
 
     def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
-        """Junctions of several operands, conversions, saturation and `?:` are C's own."""
+        """Print an expression, with C's forms of long junctions, conversions, saturation and `?:`."""
         match expression:
             case engine.And() | engine.Or():
                 return Printed(f" {self.symbols[type(expression)]} ".join(_operands(given)), _JUNCTION)
             case ex.UnaryMinus(operand=ex.IntegerLiteral(value=value)):
                 return Printed(number(-value), _UNARY)
             case engine.Conversion(bits=16, widens=True):
-                return given[0]  # C computes in `int`, which has 16 bits at least.
+                return given[0]  # C computes in `int`, which has at least 16 bits.
             case engine.Conversion(bits=bits, signed=signed):
                 return Printed(f"({integer_type(bits, signed=signed)}){given[0].tight}", _UNARY)
             case engine.Saturation(minimum=low, maximum=high):
@@ -86,7 +86,7 @@ class CPrinter(Printer):
         return super().write(expression, given)
 
     def binary(self, expression: ex.BinaryExpression, left: Printed, right: Printed) -> Printed:
-        """A number that is compared with an unsigned one is unsigned, a condition stands in parentheses."""
+        """Print a binary operator. A number compared with an unsigned one is unsigned; a condition gets parentheses."""
         if not isinstance(expression, COMPARISONS):
             return super().binary(expression, left, right)
         first, second = expression.left, expression.right
@@ -94,7 +94,7 @@ class CPrinter(Printer):
         return Printed(f" {self.symbols[type(expression)]} ".join(sides), PRECEDENCE[type(expression)])
 
     def atom(self, expression: ex.Expression) -> str:
-        """Where the engine keeps a value, the function of a shared condition, an enumerator or a number."""
+        """Return the place of a value, the function of a shared condition, an enumerator, or a number."""
         match expression:
             case engine.VariableReference():
                 return f"{'old.' if expression.before else self.state}{self._names.of(expression.variable)}"
@@ -109,7 +109,7 @@ class CPrinter(Printer):
         return super().atom(expression)
 
     def constant(self, kind: ex.Type, value: int) -> str:
-        """A value of a type."""
+        """Return a value of a type."""
         match kind:
             case ex.BooleanType():
                 return "true" if value else "false"
@@ -120,14 +120,14 @@ class CPrinter(Printer):
         return number(value)
 
     def lines(self, condition: ex.Expression) -> list[str]:
-        """A condition, each operand of a conjunction or disjunction on a line of its own, its operator before it."""
+        """Return a condition as lines: one operand of a conjunction or disjunction each, with its operator first."""
         if not isinstance(condition, (engine.And, engine.Or)):
             return [self(condition)]
         first, *others = _operands(map(self.printed, condition.operands))
         return [first, *(f"{self.symbols[type(condition)]} {other}" for other in others)]
 
     def guard(self, guard: engine.Guard) -> list[str]:
-        """A guard, one part a line, with what synthesis added to the rest."""
+        """Return a guard as lines, one part each. Parts added by synthesis are marked."""
         terms = list(guard.terms)
         if not terms:
             return ["true"]
@@ -138,7 +138,7 @@ class CPrinter(Printer):
         return [lines[0], *(f"&& {line}" for line in lines[1:])]
 
     def effect(self, effect: engine.Effect) -> list[str]:
-        """The statements of an effect; those with values from before read them from `old`, a copy of the state."""
+        """Return the statements of an effect. Values before the event come from `old`, a copy of the state."""
         return [line for step in effect.steps for line in self._step(step)]
 
     def _step(self, step: engine.Step) -> Sequence[str]:
@@ -156,12 +156,12 @@ class CPrinter(Printer):
 
 
 def around(given: Printed, least: int) -> str:
-    """The text, in parentheses where it binds less tightly than `least`."""
+    """Return the text, in parentheses if it binds less tightly than `least`."""
     return given.text if given.precedence >= least else f"({given.text})"
 
 
 def _operands(given: Iterable[Printed]) -> list[str]:
-    """The operands of a conjunction or disjunction."""
+    """Return the operands of a conjunction or disjunction."""
     return [around(part, _JUNCTION + 1) for part in given]
 
 
@@ -172,7 +172,7 @@ def _compared(side: ex.Expression, other: ex.Expression, given: Printed) -> str:
 
 
 def _is_unsigned(node: ex.Expression) -> bool:
-    """Whether it is a number that is stored without sign, with which C is to compare a constant without sign."""
+    """Return whether a number is stored without sign, so that C must compare it with an unsigned constant."""
     match node:
         case engine.VariableReference(variable=declared) | engine.InputReference(input=declared):
             return isinstance(declared.type, ex.IntegerType) and not declared.signed

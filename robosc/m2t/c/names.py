@@ -1,4 +1,4 @@
-"""What the elements of an sct model are called in C. ROS nodes, in C++, call them the same."""
+"""C names for the elements of an sct model. ROS nodes in C++ use the same names."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ uint64_t size_t ptrdiff_t linux unix i386 _Alignas _Alignof _Atomic _Bool _Compl
 _Static_assert _Thread_local
 """
 KEYWORDS = frozenset(_KEYWORDS.split())
-#: Macros of the standard headers that could stand where a model's name stands.
+#: Macros of the standard headers that could clash with a model's names.
 _MACROS = """
 EOF assert errno stdin stdout stderr BUFSIZ RAND_MAX EXIT_SUCCESS EXIT_FAILURE SEEK_SET SEEK_CUR SEEK_END INFINITY
 NAN HUGE_VAL M_E M_LOG2E M_LOG10E M_LN2 M_LN10 M_PI M_PI_2 M_PI_4 M_1_PI M_2_PI M_2_SQRTPI M_SQRT2 M_SQRT1_2 DBL_DIG
@@ -38,7 +38,7 @@ PTRDIFF_MAX PTRDIFF_MIN PATH_MAX NAME_MAX BYTE_ORDER BIG_ENDIAN LITTLE_ENDIAN F_
 SIGINT SIGKILL SIGQUIT SIGSTOP SIGTERM EACCES EAGAIN EBUSY ECANCELED EDOM EEXIST EINTR EINVAL EIO ENODATA ENODEV ENOENT
 ENOMEM ENOTSUP EPERM ERANGE ETIME ETIMEDOUT
 """
-#: What no member of a struct, field or variable that stands for an element of a model is called.
+#: Names that no member of a struct, field or variable for a model's element may have.
 TAKEN = KEYWORDS.union(_MACROS.split())
 _API = """
 nothing event state inputs settings hooks set supervisor default_settings init enabled perform begin end tick event_name
@@ -47,10 +47,10 @@ _SETTINGS = "events_per_tick reactions_per_tick react_immediately resolution_ms"
 
 
 class CNames:
-    """The C names of the elements of one model. No two elements of one scope share one, none is a keyword.
+    """C names for the elements of one model. They are unique within a scope and no keywords.
 
-    `prefix` begins every name at file level (`line_follower`), `macro` every macro (`LINE_FOLLOWER`). A member of the
-    state is named as its plant or `plant_variable`, an enumerator `prefix_plant_event`; of names that clash, the
+    `prefix` begins every name at file level (`line_follower`), `macro` every macro (`LINE_FOLLOWER`). A state member
+    has the name of its plant or `plant_variable`, an enumerator the name `prefix_plant_event`. If two names clash, the
     second gets an underscore.
     """
 
@@ -85,8 +85,8 @@ class CNames:
     def _named(
         self, model: sct.SupervisoryControlModel, elements_of: Callable[[sct.Plant], Iterable[ex.NamedElement]]
     ) -> dict[ex.NamedElement, str]:
-        """The members of one struct."""
-        names = Names(TAKEN | {"EVENTS"})  # which the source defines
+        """Return the members of one struct."""
+        names = Names(TAKEN | {"EVENTS"})  # the source defines EVENTS
         return {
             element: names.fresh(identifier(plant.name if element is plant else f"{plant.name}_{element.name}"))
             for plant in model.plants
@@ -94,25 +94,25 @@ class CNames:
         }
 
     def enumerator(self, element: sct.Event | sct.Location | ex.EnumerationLiteral) -> str:
-        """The enumerator of an event, location or literal: `line_follower_message_move_c_trigger`."""
+        """Return the enumerator of an event, location or literal: `line_follower_message_move_c_trigger`."""
         return self._global[element]
 
     def member(self, element: sct.Plant | sct.DiscreteVariable | sct.Input) -> str:
-        """The member of the state (a plant's location, a variable) or of the inputs: `component_LidarSensor`."""
+        """Return the member of the state (a plant's location, a variable) or of the inputs: `component_LidarSensor`."""
         return self._members[element]
 
     def setting(self, duration: sct.Duration) -> str:
-        """The member of the settings: `pause_ms`."""
+        """Return the member of the settings: `pause_ms`."""
         return self._settings[duration]
 
     def of(self, declared: engine.StateVariable | engine.Input) -> str:
-        """The member for what an engine model keeps."""
+        """Return the member for a variable or input of the engine model."""
         if isinstance(declared, engine.Input):
             return self.member(declared.input)
         return self.member(declared.variable or declared.plant)
 
     def lookup(self, owner: sct.Plant | ex.Enumeration) -> str:
-        """The function that gives the name of a plant's location or of an enumeration's literal."""
+        """Return the function that returns the name of a plant's location or of an enumeration's literal."""
         return self._lookups[owner]
 
     def _prefixed(self, *parts: str) -> str:
@@ -120,5 +120,5 @@ class CNames:
 
 
 def identifier(name: str) -> str:
-    """The name in ASCII letters, digits and underscores; other characters become their code."""
+    """Return the name in ASCII letters, digits and underscores. Other characters become their code."""
     return re.sub(r"[^A-Za-z0-9_]", lambda found: f"_u{ord(found[0]):04x}", name)

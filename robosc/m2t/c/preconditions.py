@@ -1,4 +1,4 @@
-"""What the engine in C asks of a model beyond what every sct model keeps."""
+"""Requirements of the C engine on a model, beyond the rules for sct models."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _WIDEST = Width(64, signed=True).values
 
 
 def preconditions(model: sct.SupervisoryControlModel) -> list[Diagnostic]:
-    """An error for every computation whose intermediate values may not fit into 64 bits."""
+    """Return an error for every computation whose intermediate values may exceed 64 bits."""
     lower = lowering(model)
     return [
         Diagnostic(
@@ -40,14 +40,14 @@ def preconditions(model: sct.SupervisoryControlModel) -> list[Diagnostic]:
 
 
 def _expressions(model: sct.SupervisoryControlModel) -> Iterator[tuple[ex.Located, ex.Expression]]:
-    """Every expression that the engine computes, with what it stands in."""
+    """Return every expression that the engine computes, with the element to report it at."""
     for plant in model.plants:
         for edge in edges_of(plant):
             if edge.guard is not None:
                 yield edge, edge.guard
             for update in edge.updates:
                 yield update, update.value
-    # What the author can change about a guard is a requirement on its event.
+    # The author can change a guard only through a requirement on its event.
     requirements = {requirement.event: requirement for requirement in reversed(model.requirements)}
     for guard in model.supervisor.guards if model.supervisor else ():
         for part in (guard.requirement, guard.synthesis):
@@ -60,15 +60,15 @@ def _overflows(expression: ex.Expression, lower: Lowering) -> Iterator[str]:
     parts = [expression]
     for part in parts:
         parts += [child for _, child in contents(part)]
-    # Operands before the operators on them, from left to right.
+    # Operands before their operators, from left to right.
     for part in reversed(parts):
         if isinstance(part, _LOGICAL) or (
             isinstance(part, ex.UnaryMinus) and isinstance(part.operand, ex.IntegerLiteral)
         ):
-            continue  # There is nothing to compute, or it is a number, the least one too.
+            continue  # There is nothing to compute, or it is a literal number, including the lowest one.
         numbers = [lower(number) for _, number in [("", part), *contents(part)] if isinstance(number, ex.Expression)]
         if isinstance(part, ex.FunctionCall):
-            numbers += lower(part).operands  # what a remainder is computed from
+            numbers += lower(part).operands  # the operands of a remainder
         values = [term.values for term in numbers if term.sort is int]
         if len(numbers) > 1 and values:
             union = values[0]

@@ -1,7 +1,7 @@
-"""CIF 3: the plants and requirements of a robot, and the plants under their supervisor (thesis 5.2).
+"""Target `cif`: the plants and requirements of a robot, and the supervised plants, in CIF 3 (thesis 5.2).
 
-The text stays inside what the data-based synthesis of Eclipse ESCET accepts from version 5 on; `docs/cif.md` says what
-is written.
+The text uses only constructs that the data-based synthesis of Eclipse ESCET accepts from version 5 on; see
+`docs/cif.md`.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ _NAME = re.compile("[A-Za-z_][A-Za-z0-9_]*")
 
 
 def preconditions(models: Models, _configuration: Configuration) -> list[Diagnostic]:
-    """What keeps CIF from the sct model, as errors of the rule `cif`, each at the text that it comes from.
+    """Return errors of the rule `cif` for everything that CIF cannot express, at its place in the text.
 
-    No plant at all, numbers beyond 32 bits, names that are none, and expressions that would have to be split into too
-    many cases, since CIF's synthesis can't multiply.
+    The causes are: no plant, numbers beyond 32 bits, invalid names, and expressions that need too many cases because
+    CIF's synthesis cannot multiply.
     """
     if is_from_cif(models.sct):
         return []
@@ -53,11 +53,10 @@ def preconditions(models: Models, _configuration: Configuration) -> list[Diagnos
 
 
 def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
-    """`<robot>.cif`, and where the model has a supervisor `<robot>.supervised.cif`; of the sct model alone.
+    """Return `<robot>.cif` and, if the model has a supervisor, `<robot>.supervised.cif`, from the sct model alone.
 
-    Of a model that was read from CIF the latter only: it imports the specification, from where that is.
-
-    Raises ModelError where `preconditions` finds something.
+    A model from CIF only gets the latter. It imports the specification from its place. Raises ModelError if
+    `preconditions` reports an error.
     """
     name, supervisor = models.sct.name, models.sct.supervisor
     if is_from_cif(models.sct):

@@ -1,4 +1,4 @@
-"""Expressions of an sct model as text of CIF."""
+"""Prints expressions of an sct model as CIF."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ if TYPE_CHECKING:
 
     from robosc.m2t.cif.names import AbsoluteNames, CifNames
 
-#: Stands in the text of a declaration for a space at which its line may end.
+#: Marks a space in the text of a declaration at which its line may break.
 BREAK = "\n"
 
 
 class CifPrinter(Printer):
-    """Prints a lowered expression as it is read in a plant or outside of all, with a BREAK wherever a line may end."""
+    """Prints a lowered expression inside a plant or outside of all, with a BREAK where a line may break."""
 
     symbols = {**SYMBOLS, ex.Negation: "not "}  # noqa: RUF012  # ClassVar in the parent
 
@@ -28,7 +28,7 @@ class CifPrinter(Printer):
         self._plant = plant
 
     def inside(self, expression: ex.Expression) -> Sequence[ex.Expression]:
-        """Of choices one in the other all at once: CIF writes them as one."""
+        """Return the parts of nested conditionals together: CIF has one form for a chain."""
         if not isinstance(expression, ex.Conditional):
             return super().inside(expression)
         found: list[ex.Expression] = []
@@ -39,7 +39,7 @@ class CifPrinter(Printer):
         return [*found, rest]
 
     def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
-        """`if a: b elif c: d else e end`."""
+        """Print an expression; a conditional becomes `if a: b elif c: d else e end`."""
         if isinstance(expression, ex.Conditional):
             *cases, otherwise = [text for text, _ in given]
             asked = (f"{condition}: {value}" for condition, value in zip(cases[::2], cases[1::2], strict=True))
@@ -47,20 +47,20 @@ class CifPrinter(Printer):
         return super().write(expression, given)
 
     def binary(self, expression: ex.BinaryExpression, left: Printed, right: Printed) -> Printed:
-        """As everywhere, but that CIF has no chains of implications."""
+        """Print a binary operator. CIF does not chain implications."""
         level = PRECEDENCE[ex.Implication]
         if isinstance(expression, ex.Implication):
             return Printed(self.between(ex.Implication, self.operand(level, left), self.operand(level, right)), level)
         return super().binary(expression, left, right)
 
     def between(self, kind: type[ex.BinaryExpression], left: str, right: str) -> str:
-        """The operator after a BREAK, but for comparisons."""
+        """Return an operator after a BREAK, except for comparisons."""
         return (
             super().between(kind, left, right) if kind in COMPARISONS else f"{left}{BREAK}{self.symbols[kind]} {right}"
         )
 
     def atom(self, expression: ex.Expression) -> str:
-        """Names with their plant before them, and literals."""
+        """Return a name, qualified by its plant, or a literal."""
         match expression:
             case ex.EnumerationLiteralReference():
                 return self._names.used(expression.literal, self._plant)

@@ -1,7 +1,7 @@
-"""The supervisor of a specification that was read from CIF: it imports the specification and adds an automaton.
+"""Supervisor of a specification that was read from CIF: imports the specification and adds an automaton.
 
-The guards of that automaton hold for the text that is imported. In it nothing keeps a variable in its range: there an
-update out of the range is an error of whoever runs the text.
+The guards of the automaton are valid for the imported text. Nothing in the text keeps variables in their ranges: an
+update outside a range is an error of the program that executes the text.
 """
 
 from __future__ import annotations
@@ -27,28 +27,28 @@ if TYPE_CHECKING:
 
 
 def extended(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor, folder: Path | None) -> str:
-    """Return a specification that imports the model's own, with an automaton of what that lacks.
+    """Return a specification that imports the model's own and adds an automaton with the missing conditions.
 
-    The requirements of the text stay what they are: all of CIF's tools but synthesis take them as automata like others.
-    `folder` is where it is to be written; None: beside the model's own, as it is where that place is not known.
+    The requirements in the text stay unchanged: all of CIF's tools except synthesis treat them as normal automata.
+    `folder` is the folder of the new file. None: the folder of the model's own file, also if that is unknown.
     """
     return folded(list(_lines(model, supervisor, folder)))
 
 
 def _imported(model: sct.SupervisoryControlModel, folder: Path | None) -> str:
-    """The path of a model's own specification, from the folder of the one that imports it."""
+    """Return the path of a model's own specification, relative to the folder of the file that imports it."""
     assert model.source is not None
     assert model.source.file is not None
     file = model.source.file
-    if folder is not None and Path(file.path).is_file():  # A saved model does not say where its text is.
-        with suppress(ValueError):  # On another drive.
+    if folder is not None and Path(file.path).is_file():  # A saved model does not contain the path of its text.
+        with suppress(ValueError):  # The folder is on another drive.
             return Path(os.path.relpath(Path(file.path).resolve(), folder.resolve())).as_posix()
     return file.name
 
 
 def _lines(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor, folder: Path | None) -> Iterator[str]:
     printer = CifPrinter(AbsoluteNames(), None)
-    # What stands first in each name, of all that the specification has.
+    # First component of each name in the specification.
     taken = {plant.origin.partition(".")[0] for plant in model.plants if plant.origin}
     taken |= {event_name(event).partition(".")[0] for plant in model.plants for event in plant.events}
     taken |= {member.name for plant in model.plants if not plant.origin for member in plant.variables}
@@ -79,9 +79,9 @@ def _string(text: str) -> str:
 
 
 def _lacking(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor) -> dict[sct.Event, list[ex.Expression]]:
-    """Return what the text lacks of each event's guard: its ranges where they matter, and what synthesis added."""
+    """Return the conditions that the text lacks for each event: ranges that matter, and additions of synthesis."""
     lacking: dict[sct.Event, list[ex.Expression]] = {guard.event: [] for guard in supervisor.guards}
-    # Another synthesizer does not list the requirements behind a guard: then each may matter.
+    # Another synthesis tool does not list the requirements behind a guard: each may matter then.
     behind = {
         guard.event: set(guard.requirements) if guard.requirements or guard.requirement is None else None
         for guard in supervisor.guards

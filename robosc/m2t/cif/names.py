@@ -1,4 +1,4 @@
-"""What the elements of an sct model are called in CIF: one to one, no keyword, nothing hidden by a nearer name."""
+"""CIF names for the elements of an sct model: unique, no keywords, not hidden by an inner scope."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from robosc.metamodel import expression as ex
     from robosc.metamodel import sct
 
-#: The words of CIF that are no names unless a `$` stands before them.
+#: Words of CIF that are names only with a `$` before them.
 _WORDS = """
 alg alphabet any attr automaton bool break case const cont continue controllable def der dict disables disc dist do
 edge elif else end enum equation event false file final for func goto group id if import initial input int invariant
@@ -30,15 +30,15 @@ KEYWORDS = frozenset(_WORDS.split())
 
 
 def escaped(name: str) -> str:
-    """A name of one identifier with a dollar sign before it where it is a keyword."""
+    """Return a name of one identifier, with a dollar sign before it if it is a keyword."""
     return f"${name}" if name in KEYWORDS else name
 
 
 class CifNames:
-    """The names in one specification, of a lowered model; a location without a name has none.
+    """Names in one specification of a lowered model. A location without a name has none.
 
-    A plant's members share one scope and so do plants, enumerations, literals and the supervisor. A member called like
-    something of the outer scope would hide it from the plant's edges, so it gets another name.
+    The members of a plant share one scope. Plants, enumerations, literals and the supervisor share the outer scope. A
+    member with a name of the outer scope would hide it from the plant's edges, so it gets another name.
     """
 
     def __init__(self, model: sct.SupervisoryControlModel) -> None:
@@ -46,11 +46,11 @@ class CifNames:
         outer = Names()
         for element in self._outer(model):
             self._names[element] = outer.fresh(element.name)
-        #: What invariants with a name are called.
+        #: Names of the invariants that have one.
         self.invariants = {
             invariant: outer.fresh(invariant.name.replace(".", "_")) for invariant in model.invariants if invariant.name
         }
-        #: The automaton that holds what synthesis added.
+        #: Name of the automaton with the additions of synthesis.
         self.supervisor = outer.fresh("sup")
         taken = {*self._names.values(), *self.invariants.values(), self.supervisor}
         for plant in model.plants:
@@ -65,11 +65,11 @@ class CifNames:
         return [*model.plants, *model.enumerations, *literals]
 
     def declared(self, element: ex.NamedElement) -> str:
-        """The name where the element is declared, and within the same plant."""
+        """Return the name at the element's declaration and within its plant."""
         return escaped(self._names[element])
 
     def used(self, element: ex.NamedElement, plant: sct.Plant | None) -> str:
-        """The name as it is read from inside a plant, or from outside of all."""
+        """Return the name as it is used inside a plant, or outside of all plants."""
         owner = element.eContainer()
         if owner is plant or owner not in self._names or not hasattr(owner, "locations"):
             return self.declared(element)
@@ -77,9 +77,9 @@ class CifNames:
 
 
 class AbsoluteNames:
-    """Names as they are read outside of all automata."""
+    """Names as they are used outside of all automata."""
 
     def used(self, element: ex.NamedElement, _plant: sct.Plant | None) -> str:
-        """A name with all around it."""
+        """Return a name with all its scopes."""
         around = element.eContainer().origin
         return f"{around}.{element.name}" if around else escaped(element.name)

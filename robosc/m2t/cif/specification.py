@@ -1,4 +1,4 @@
-"""The text of CIF for an sct model, plant by plant and line by line."""
+"""CIF text of an sct model, plant by plant and line by line."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
     from robosc.m2m.sct_to_cif import Lowered
 
-#: Characters in a line, unless one word has more.
+#: Maximum number of characters in a line. A longer word gets a line of its own.
 _WIDTH = 120
 
 
 class Writer:
-    """Writes CIF of a lowered sct model."""
+    """Writes CIF for a lowered sct model."""
 
     def __init__(self, lowered: Lowered) -> None:
         self._model, self._originals = lowered
@@ -35,12 +35,12 @@ class Writer:
         self._meanings = {**_transitions(original), **_choices(original)}
 
     def unsupervised(self) -> str:
-        """The plants and the requirements."""
+        """Return the plants and the requirements."""
         lines = document([f"The plants and requirements of {self._model.name}."], sign="@@")
         return folded([*lines, *self._plants("requirement automaton"), *self._requirements()])
 
     def supervised(self, supervisor: sct.Supervisor) -> str:
-        """The plants under their supervisor: the requirements as it keeps them, and an automaton of what it adds."""
+        """Return the plants with their supervisor: its requirements, and an automaton of its additions."""
         events = [self._names.used(guard.event, None) for guard in supervisor.guards]
         kept = [
             f"supervisor invariant {event}{BREAK}needs {self._outside(guard.requirement)};"
@@ -70,10 +70,10 @@ class Writer:
         )
 
     def _plants(self, requirement: str) -> Iterator[str]:
-        """Yield the enumerations and the plants, with a blank line before them and between plants.
+        """Return the enumerations and the plants, with a blank line before them and between plants.
 
-        `requirement` is the kind of requirement automata: CIF's tools take none beside a supervisor, and its own
-        synthesis makes supervisors of them.
+        `requirement` is the kind of requirement automata. CIF's tools accept no requirement automata beside a
+        supervisor; its own synthesis converts them to supervisors.
         """
         if self._model.enumerations:
             yield ""
@@ -85,7 +85,7 @@ class Writer:
             yield from ["", f"{kind} {self._names.declared(plant)}:", *self._plant(plant), "end"]
 
     def _requirements(self) -> Iterator[str]:
-        """The requirements of the model; what several of them ask of an event alike stands there once."""
+        """Return the requirements of the model. Equal conditions on an event appear once."""
         texts: dict[str, list[str]] = {}
         for requirement in self._model.requirements:
             event, asked = self._names.used(requirement.event, None), self._outside(requirement.condition)
@@ -104,7 +104,7 @@ class Writer:
             yield from [*document(dict.fromkeys(filter(None, found))), text]
 
     def _plant(self, plant: sct.Plant) -> Iterator[str]:
-        """What is in a plant."""
+        """Return the contents of a plant."""
         printer = CifPrinter(self._names, plant)
         declared = [*self._events(plant), *self._variables(plant, printer)]
         yield from [*declared, *([""] if declared else [])]
@@ -117,7 +117,7 @@ class Writer:
             yield from inside
 
     def _events(self, plant: sct.Plant) -> Iterator[str]:
-        """The events of a plant, those together that are alike."""
+        """Return the events of a plant, with similar ones grouped."""
         alike = groupby(
             plant.events, key=lambda event: (event.controllable, self._meanings.get(self._originals[event]))
         )
@@ -127,7 +127,7 @@ class Writer:
             yield f"  {kind} {listed(map(self._names.declared, events))};"
 
     def _variables(self, plant: sct.Plant, printer: CifPrinter) -> Iterator[str]:
-        """The inputs and variables of a plant, with a note on those that hold another number than in the model."""
+        """Return the inputs and variables of a plant, with a note on each whose number differs from the model's."""
         members: list[sct.Input | sct.DiscreteVariable] = [*plant.inputs, *plant.variables]
         for member in members:
             name, kind = self._names.declared(member), "bool"
@@ -140,7 +140,7 @@ class Writer:
             yield f"  input {kind} {name};" if initial is None else f"  disc {kind} {name} = {printer(initial)};"
 
     def _held(self, member: sct.Input | sct.DiscreteVariable, kind: ex.IntegerType) -> list[str]:
-        """What is to be said of the number that an integer holds."""
+        """Return notes on the number in an integer variable."""
         if member not in self._originals:
             return ["The number of the provide statement that is chosen, 0 for none."]
         name, original = self._names.declared(member), self._originals[member].type
@@ -157,36 +157,36 @@ class Writer:
         )
 
     def _counted(self, supervisor: sct.Supervisor) -> list[str]:
-        """What the supervisor leaves of the plants, as it is counted here and in CIF."""
+        """Return the state counts of the supervised plants, as RoboSC and as CIF count them."""
         inputs = input_values(self._model)
         left, all_of = supervisor.controlledStates, supervisor.uncontrolledStates
         told = f"The plants of {self._model.name} under their supervisor"
-        if left is None or all_of is None:  # A supervisor of a saved model need not have been counted.
+        if left is None or all_of is None:  # The supervisor of a saved model may have no counts.
             return [f"{told}."]
-        # Python writes numbers of thousands of digits only as decimals.
+        # Python prints numbers of thousands of digits only as decimals.
         here, there = (f"{Decimal(left * times)} of {Decimal(all_of * times)}" for times in (1, inputs))
         counts = f"CIF counts {there}: each of them with the {Decimal(inputs)} values of the inputs."
         return [f"{told}, which leaves them {here} states.", *([counts] if inputs > 1 else [])]
 
 
 def document(texts: Iterable[str], indent: str = "", sign: str = "@") -> list[str]:
-    """Annotations with these texts."""
+    """Return annotations with these texts."""
     return [f"{indent}{sign}doc({quoted(text)})" for text in texts]
 
 
 def edge_text(event: str, guard: str, updates: str = "", target: str = "") -> str:
-    """An edge; what is empty is left out."""
+    """Return an edge without its empty parts."""
     parts = zip(("when", "do", "goto"), (guard, updates, target), strict=True)
     return f"    edge {event}{''.join(f'{BREAK}{word} {text}' for word, text in parts if text)};"
 
 
 def listed(texts: Iterable[str]) -> str:
-    """Texts with commas between them."""
+    """Return texts joined by commas."""
     return f",{BREAK}".join(texts)
 
 
 def quoted(text: str) -> str:
-    """A text as a string of CIF, in plain ASCII; a long one as a sum of strings, which can stand in several lines."""
+    """Return a text as a CIF string in ASCII. A long one becomes a sum of strings, which may span several lines."""
     shown = " ".join(text.split()).encode("ascii", "backslashreplace").decode()
     shown = "".join(character if character.isprintable() else f"\\x{ord(character):02x}" for character in shown)
     parts = wrap(shown, _WIDTH - 10, drop_whitespace=False, break_on_hyphens=False)
@@ -194,7 +194,7 @@ def quoted(text: str) -> str:
 
 
 def folded(lines: Iterable[str]) -> str:
-    """Declarations in lines of a length that can be read."""
+    """Return declarations in lines of readable length."""
     return "".join(map(_folded, lines))
 
 
@@ -214,7 +214,7 @@ def _folded(line: str) -> str:
 
 
 def _transitions(model: sct.SupervisoryControlModel) -> dict[sct.Event, str]:
-    """What each transition of a component by itself does, whose event has no name but a number."""
+    """Describe each silent or timed transition of a component, whose event is only a number."""
     steps: dict[sct.Event, dict[str, None]] = {}
     edges = (edge for plant in model.plants for location in plant.locations for edge in location.edges)
     for edge in edges:
@@ -228,7 +228,7 @@ def _transitions(model: sct.SupervisoryControlModel) -> dict[sct.Event, str]:
 
 
 def _choices(model: sct.SupervisoryControlModel) -> dict[sct.Event, str]:
-    """Which statement of the model each choice of data stands for."""
+    """Return the statement of the model that each choice of data selects."""
     plants = (plant for plant in model.plants if plant.kind == sct.PlantKind.data)
     numbers = {event: number for plant in plants for event, number in provide_numbers(plant).items()}
     return {
@@ -237,6 +237,6 @@ def _choices(model: sct.SupervisoryControlModel) -> dict[sct.Event, str]:
 
 
 def _owner(event: sct.Event) -> str:
-    """What the robot model calls the plant of an event."""
+    """Return the robot model's name for the plant of an event."""
     plant: sct.Plant = event.eContainer()
     return plant.origin or plant.name

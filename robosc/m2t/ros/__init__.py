@@ -1,8 +1,8 @@
 """ROS packages: controllers for ROS 1 and ROS 2, supervisory layers for ROS 2.
 
-`include` holds real C++ headers, the same in every package: `robosc` needs no middleware, `robosc_ros1` and
-`robosc_ros2` put it on one. `templates` prints what the model decides; `ros1` and `ros2` are what differs. This
-package offers its targets.
+`include` holds C++ headers, the same for every package: `robosc` needs no middleware, `robosc_ros1` and `robosc_ros2`
+connect it to one. `templates` print the parts that depend on the model; `ros1` and `ros2` hold the differences. This
+package exports its targets.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Expressions of the node as C++17."""
+"""Prints expressions of the node as C++17."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ _CONVERSIONS: dict[type[ex.Type | None], str] = {
 
 
 def converted(place: str, kind: ex.Type | None) -> str:
-    """A place in the ROS data as a value of a type of the model."""
+    """Return a place in ROS data as a value of a type of the model."""
     conversion = _CONVERSIONS.get(type(kind))
     return f"{conversion}({place})" if conversion else place
 
 
-#: What functions are called in C++, where that is not their name: none like one of C, which takes other numbers.
+#: Functions whose C++ name differs. None has the name of a C function with other number types.
 _FUNCTIONS = {
     "abs": "magnitude",
     "min": "smaller",
@@ -48,12 +48,11 @@ _QUANTIFIERS = {"all": "for_all", "any": "for_any", "count": "number_of"}
 
 
 class CppPrinter(Printer):
-    """Prints what the node evaluates: doubles as `double`, whole numbers as the node's saturating `Integer`.
+    """Prints expressions for the node: doubles as `double`, integers as the node's saturating `Integer`.
 
-    `data` is the variable that holds the data which came in, `node` the one with the node's variables, `reason` the
-    one with the reason of an error. Elements of
-    arrays are read through an `ArrayReader`, the variable `reader`, in the order of the text and as far as `and`, `or`
-    and `=>` need them.
+    `data` is the variable with the incoming data, `node` the one with the node's variables, `reason` the one with the
+    reason of an error. Array elements are read through an `ArrayReader`, the variable `reader`, in the order of the
+    text and only as far as `and`, `or` and `=>` need them.
     """
 
     symbols = {  # noqa: RUF012  # ClassVar in the parent
@@ -72,13 +71,16 @@ class CppPrinter(Printer):
         self._types = Types()
 
     def inside(self, expression: ex.Expression) -> Sequence[ex.Expression]:
-        """A conversion's argument is a place in the data: printed before are its indices."""
+        """Return the operands to print first.
+
+        The argument of a conversion is a place in the data: its indices are printed.
+        """
         if isinstance(expression, rosgraph.IfReadable):
             return [expression.otherwise]  # the value has a reader of its own
         return operands(expression.argument if isinstance(expression, rosgraph.ConversionCall) else expression)
 
     def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
-        """A state is a comparison in C++, a conversion a call."""
+        """Print an expression. A state becomes a comparison, a conversion becomes a call."""
         if isinstance(expression, sct.LocationReference):
             return self._names.location(expression.location)
         texts = [text for text, _ in given]
@@ -108,7 +110,10 @@ class CppPrinter(Printer):
         return super().write(expression, given)
 
     def binary(self, expression: ex.BinaryExpression, left: Printed, right: Printed) -> Printed:
-        """A comparison with NaN is false, `!=` too; no whole number overflows in the compiler's own `int`."""
+        """Print a binary operator.
+
+        A comparison with NaN is false, also `!=`. Integers never overflow in C++'s `int`.
+        """
         if isinstance(expression, ex.Implication):
             return Printed(f"(!{left.tight} || {right.tight})")
         if isinstance(expression, ex.Inequation) and self._double(expression.left):
@@ -119,13 +124,13 @@ class CppPrinter(Printer):
         return super().binary(expression, left, right)
 
     def unary(self, expression: ex.UnaryExpression, operand: Printed) -> Printed:
-        """An operator before its operand; C++ has no literal of the least integer."""
+        """Print an operator before its operand. C++ has no literal of the lowest integer."""
         if isinstance(expression, ex.UnaryMinus) and isinstance(expression.operand, ex.IntegerLiteral):
             return Printed(number(-expression.operand.value), PRECEDENCE[ex.UnaryMinus])
         return super().unary(expression, operand)
 
     def call(self, expression: ex.FunctionCall, given: Sequence[Printed]) -> Printed:
-        """A function of the header `data.hpp`, of whole numbers of the node; the reader has those that may fail."""
+        """Print a call of a function in the header `data.hpp`. Partial functions are methods of the reader."""
         row = operator_of(expression)
         assert row is not None
         arguments = map(self._whole, expression.arguments, given)
@@ -140,7 +145,7 @@ class CppPrinter(Printer):
         return f"Integer({given.text})" if self._constant(expression) else given.text
 
     def atom(self, expression: ex.Expression) -> str:
-        """Literals, references to the state, the node's variables and the data that came in, conversions."""
+        """Return a literal, or a reference to the state, the node's variables or the incoming data."""
         match expression:
             case ex.DoubleLiteral():
                 return repr(expression.value)
@@ -162,7 +167,7 @@ class CppPrinter(Printer):
         return super().atom(expression)
 
     def wire(self, access: rosgraph.WireAccess, indices: Sequence[str] = ()) -> str:
-        """The place in the ROS data, not converted to a type of the model."""
+        """Return the place in the ROS data, not converted to a type of the model."""
         text = _element(access.quantifier) if access.quantifier else self._data
         if access.variable is not None:
             text = f"{self._node}.{self._names.variable(access.variable)}"
@@ -179,7 +184,7 @@ class CppPrinter(Printer):
         return text
 
     def integer(self, expression: ex.Expression, kind: ex.IntegerType) -> str:
-        """A whole number as an `Integer`, within the bounds of its type."""
+        """Return an integer as an `Integer`, within the bounds of its type."""
         bounds = ""
         if kind.minimum is not None and kind.maximum is not None:
             bounds = f".within({number(kind.minimum)}, {number(kind.maximum)})"
@@ -189,7 +194,7 @@ class CppPrinter(Printer):
         return f"{given.tight}{bounds}" if bounds else given.text
 
     def tight(self, expression: ex.Expression) -> str:
-        """The text, in parentheses where it is not a single operand."""
+        """Return the text, in parentheses if it is not a single operand."""
         return self.printed(expression).tight
 
     def _constant(self, expression: ex.Expression) -> bool:
@@ -204,7 +209,7 @@ def _element(quantifier: rosgraph.ArrayQuantifier) -> str:
 
 
 def _is_constant(expression: ex.Expression, given: list[bool]) -> bool:
-    """Whether the expression is made of integer literals only."""
+    """Return whether the expression consists of integer literals only."""
     return isinstance(expression, ex.IntegerLiteral) or (
         isinstance(expression, (ex.BinaryExpression, ex.UnaryExpression)) and all(given)
     )

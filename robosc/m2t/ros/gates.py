@@ -1,4 +1,4 @@
-"""The commands of a node, each with what may keep the supervisor from letting it happen."""
+"""Commands of a node, each with the reasons for which the supervisor may block it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from robosc.m2t.ros.node import Node
     from robosc.metamodel import expression as ex
 
-#: What adds a reason to the header's `BlockReasons`, by who gives it.
+#: Method of the header's `BlockReasons` that adds a reason, by the origin of the reason.
 _ADDED_BY = {
     engine.Origin.requirement: "add_requirement",
     engine.Origin.plants: "add_state",
@@ -28,7 +28,7 @@ _ADDED_BY = {
 
 @dataclass(frozen=True)
 class Reason:
-    """A reason: the condition under which it is one, if any, what adds it, and its text as an expression of C++."""
+    """A reason: its condition, if any, the method that adds it, and its text as a C++ expression."""
 
     condition: str | None
     add: str
@@ -37,10 +37,10 @@ class Reason:
 
 @dataclass(frozen=True)
 class Gate:
-    """A command to the robot that the supervisor lets through or blocks.
+    """A command to the robot that the supervisor passes or blocks.
 
-    A word fit for names, the event's enumerator, its communication in the model, what requirements say about it.
-    Without reasons nothing is known that could block it.
+    `word` is valid in names, `event` is the event's enumerator, `name` its communication in the model, `requirements`
+    are the texts of the requirements on it. Without reasons, nothing can block it.
     """
 
     word: str
@@ -51,7 +51,7 @@ class Gate:
 
 
 def gates(graph: rosgraph.RosGraph, node: Node, executed: engine.EngineModel) -> dict[rosgraph.Sending, Gate]:
-    """The gate of each command of a node."""
+    """Return the gate of each command of a node."""
     sendings = [sending for publisher in graph.publishers for sending in publisher.sendings]
     sendings += [service.request for service in graph.serviceClients]
     sendings += [action.request for action in graph.actionClients]
@@ -86,7 +86,7 @@ class _Printer(CPrinter):
         self._places = names
 
     def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
-        """A conversion is a cast of C++."""
+        """Print an expression. A conversion becomes a C++ cast."""
         if isinstance(expression, engine.Conversion) and not (expression.widens and expression.bits == 16):
             kind = integer_type(expression.bits, signed=expression.signed)
             return Printed(f"static_cast<std::{kind}>({given[0].text})")

@@ -1,4 +1,4 @@
-"""What the templates of a layer print beside what it shares with a controller: what passes it, and what it blocks."""
+"""Template values of a layer that a controller does not have: passing and blocked messages."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
 
 class LayerNode:
-    """The layer of one graph: `node` is what it shares with the controller's, `gates` are those of its commands."""
+    """The layer of one graph.
+
+    `node` is the part shared with the controller's node, `gates` are those of its commands.
+    """
 
     def __init__(
         self, graph: rosgraph.RosGraph, node: Node, gates: Iterable[Gate], executed: engine.EngineModel
@@ -24,26 +27,26 @@ class LayerNode:
         self.node = node
         messages = [message for publisher in self.node.publishers for message in publisher.messages]
         messages += [client.request for client in self.node.clients]
-        #: What the controller sends, by the enumerator of its event.
+        #: Gates of the controller's commands, by the enumerator of the event.
         self.gates = {gate.event: gate for gate in gates}
-        #: What it sends in the place of blocked messages, by the enumerator of its event.
+        #: Messages that replace blocked ones, by the enumerator of the event.
         self.instead = {last.message.event: last for last in node.on_blocked}
-        #: Events of the controller and internal ones that change the node's own data.
+        #: Events of the controller and internal events that change the node's own data.
         self.changing = [*self.node.internal, *(message.reaction for message in messages if message.reaction)]
-        #: Events that choose provided data, which is none of the layer's business.
+        #: Events that select provided data. The layer does not handle them.
         names = CppNames(graph)
         self.ignored = [names.c.enumerator(event.event) for event in executed.events if event.role == Role.data]
 
     @property
     def received(self) -> list[EventHandler]:
-        """What comes from the robot."""
+        """Incoming events from the robot."""
         messages = [topic.receptions[0] for topic in self.node.subscriptions]
         clients = self.node.clients
         ends = (end for call in clients for end in (call.feedback, call.response, call.error, call.canceled))
         return [*messages, *filter(None, ends)]
 
     def remapped(self, parts_of_actions: Sequence[str]) -> list[str]:
-        """The robot's names that a controller is started with others for; an action is re-mapped part by part."""
+        """Return the robot's names that are remapped for a controller. An action is remapped part by part."""
         node = self.node
         names = [topic.topic for topic in node.subscriptions] + [topic.topic for topic in node.publishers]
         names += [service.name for service in node.services]

@@ -1,4 +1,4 @@
-"""What the templates of a node print: a ROS graph with every expression, name and type as text of C++."""
+"""Template values of a node: a ROS graph with all expressions, names and types as C++."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ from robosc.semantics.walks import parts
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-#: The method that writes a field as it came.
+#: Method that writes a field unchanged.
 _HAND_ON = "hand_on"
 
 
 @dataclass(frozen=True)
 class Assignment:
-    """`target = value`, of arrays and objects by a function."""
+    """An assignment `target = value`. Arrays and objects are assigned by a function."""
 
     target: str
     value: str
@@ -54,7 +54,7 @@ class Assignment:
 
 @dataclass(frozen=True)
 class Reaction:
-    """Assignments under a condition on the state before the event and its data; None: always. `needs` are only read."""
+    """Assignments under a condition on the data and the state before the event; None: always. `needs` are only read."""
 
     condition: str | None
     needs: list[str]
@@ -63,12 +63,12 @@ class Reaction:
 
 @dataclass(frozen=True)
 class EventHandler:
-    """What the node does when an event happens: its inputs, its data and what it changes in the node.
+    """The node's handler of an event: its inputs, its data and its changes to the node.
 
-    `copy` of the node's variables: `old`, which values read while the variables change; `next`, which changes while
-    values read the variables; or none. One that `reads_elements` of arrays changes a copy only, and does not happen
-    where one is not there; inputs that do are among the reactions, where a transition reads them. One that
-    `reads_reason` does so of an error.
+    `copy` is the copy of the node's variables. `old` is read while the variables change; `next` changes while the
+    variables are read; "" is no copy. A handler that `reads_elements` of arrays changes only a copy. The event does not
+    happen if an element is missing; inputs with elements are among the reactions, if a transition reads them. A handler
+    that `reads_reason` reads the reason of an error.
     """
 
     event: str
@@ -83,7 +83,10 @@ class EventHandler:
 
 @dataclass(frozen=True)
 class Subscription:
-    """A topic that the node listens to; `word` is fit for names. `unread`: nothing in its messages matters."""
+    """A topic that the node subscribes to.
+
+    `word` is valid in names. `unread`: the node ignores the content of its messages.
+    """
 
     word: str
     topic: str
@@ -93,13 +96,13 @@ class Subscription:
 
     @property
     def reads_elements(self) -> bool:
-        """Whether a message may be one that can't be read."""
+        """Whether a message may be unreadable."""
         return any(handler.reads_elements for handler in self.receptions)
 
 
 @dataclass(frozen=True)
 class Alternative:
-    """The data of one provide statement under a condition: what writes each field, its name, its value."""
+    """The data of one provide statement under a condition. A field is a writing method, a name and a value."""
 
     condition: str
     fields: list[tuple[str, str, str]]
@@ -109,9 +112,9 @@ class Alternative:
 class Message:
     """Data that the node sends: a message, a request or a goal.
 
-    `on_change` are the fields that are compared, where it is sent on change only.
-    It may fail where a double could be no finite number, or where it `reads_elements` of arrays. `reaction` is what
-    sending it changes in the node; `parts` may hold headers that are the node's to fill in, "" is the whole.
+    `on_change` are the fields to compare if the message is sent only on change. Sending may fail if a double may not be
+    finite, or if the message `reads_elements` of arrays. `reaction` are the changes in the node. `parts` are those that
+    may hold headers for the node to fill in; "" is the whole message.
     """
 
     word: str
@@ -127,7 +130,7 @@ class Message:
 
 @dataclass(frozen=True)
 class Publisher:
-    """A topic that the node sends to."""
+    """A topic that the node publishes on."""
 
     word: str
     topic: str
@@ -136,15 +139,15 @@ class Publisher:
 
     @property
     def on_change(self) -> bool:
-        """Whether all of its messages are sent on change only."""
+        """Whether all messages are sent on change only."""
         return all(message.on_change is not None for message in self.messages)
 
 
 @dataclass(frozen=True)
 class Client:
-    """A service that the node calls, or an action that it starts: only actions have feedback and can be canceled.
+    """A service that the node calls, or an action that it starts. Only actions have feedback and can be canceled.
 
-    `unread`: what the log has of an answer that can't be read, and so is an error.
+    `unread` is the log's data of an unreadable answer, which is an error.
     """
 
     word: str
@@ -162,13 +165,13 @@ class Client:
 
     @property
     def data(self) -> str:
-        """The member that holds what is sent."""
+        """Member that holds the sent data."""
         return f"{self.word}_{'goal' if self.cancel else 'request'}_"
 
 
 @dataclass(frozen=True)
 class LastMessage:
-    """A message that goes out whatever is required of it, and the requirements that this overrides."""
+    """A message that is sent in spite of all requirements, and the requirements that this overrides."""
 
     publisher: Publisher
     message: Message
@@ -177,7 +180,7 @@ class LastMessage:
 
 @dataclass(frozen=True)
 class Enumeration:
-    """An enumeration that only the node knows: literals in C++ and in the model."""
+    """An enumeration that only the node has: its literals in C++ and in the model."""
 
     name: str
     literals: list[tuple[str, str]]
@@ -214,7 +217,7 @@ class Reasons:
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable of the node: its type and first value, or the part of ROS data that it has the type of."""
+    """A variable of the node: its type and initial value, or the part of ROS data whose type it has."""
 
     name: str
     type: str
@@ -224,7 +227,7 @@ class Variable:
 
 @dataclass(frozen=True)
 class Part:
-    """A part of what comes in: a message, or the `response` or `feedback` of a client, and the way into it."""
+    """A part of incoming data: of a message, or of the `response` or `feedback` of a client; and the path to it."""
 
     kind: str
     interface: rosgraph.Interface
@@ -233,11 +236,11 @@ class Part:
 
 
 class Node:
-    """The node of one graph; everything is ready to be printed, in the order of the model.
+    """The node of one graph, prepared for the templates, in the order of the model.
 
-    `on_shutdown` names the messages that go out when the node stops the robot, `on_withheld` those when data of a
-    command can't be sent, `on_blocked` those that a layer sends in the place of blocked ones; each must be one that it
-    sends.
+    `on_shutdown` names the messages to send when the node stops the robot, `on_withheld` those to send if the data of a
+    command cannot be sent, `on_blocked` those that a layer sends in place of blocked ones. The node must send each of
+    them.
     """
 
     def __init__(
@@ -255,7 +258,7 @@ class Node:
         self._sent = Names()
         self.robot = graph.name
         self.prefix = self._names.c.prefix
-        #: How calls of the engine say what time it is; empty where the model has no times.
+        #: Time argument of engine calls; empty if the model has no timers.
         self.at = ", alarm_->at()" if executed.timers else ""
         self.enumerations = [self._enumeration(enumeration) for enumeration in graph.enumerations]
         self.conversions = [self._conversion(conversion) for conversion in graph.conversions]
@@ -277,12 +280,13 @@ class Node:
         self._reactions: dict[sct.Event, list[rosgraph.Reaction]] = {}
         for reaction in graph.reactions:
             self._reactions.setdefault(reaction.event, []).append(reaction)
-        #: What is set on the robot: its name there, its type, and where the node keeps it.
+        #: Parameters on the robot: name, type, and place in the node.
         self.parameters = [
             (known.name, self._type(parameter.type), self._names.variable(parameter))
             for parameter, known in model_parameters(graph).items()
         ]
-        #: The times that these set: where the node keeps the parameter, its unit in milliseconds, the engine's setting.
+        #: Timers with a duration from a parameter: its place in the node, its unit in milliseconds, the engine's
+        #: setting.
         self.durations = [
             {"place": self._names.variable(parameter), "unit": duration.unit, "member": self._names.c.setting(duration)}
             for parameter in graph.parameters
@@ -317,13 +321,13 @@ class Node:
 
     @property
     def may_withhold(self) -> bool:
-        """Whether there may be a command whose data can't be sent."""
+        """Whether the data of a command may be impossible to send."""
         messages = [message for publisher in self.publishers for message in publisher.messages]
         return any(message.may_fail for message in [*messages, *(client.request for client in self.clients)])
 
     @property
     def hands_on(self) -> bool:
-        """Whether it sends objects as they came."""
+        """Whether the node sends received objects unchanged."""
         messages = [message for publisher in self.publishers for message in publisher.messages]
         messages += [client.request for client in self.clients]
         fields = [field for message in messages for given in message.alternatives for field in given.fields]
@@ -331,7 +335,7 @@ class Node:
 
     @property
     def reason(self) -> Reasons | None:
-        """The literals for reasons of errors; None where the node reads none."""
+        """Literals for the reasons of errors. None if the node reads no reasons."""
         read = next((part for _, part in tree(self._graph) if isinstance(part, rosgraph.ErrorReason)), None)
         if read is None:
             return None
@@ -340,7 +344,7 @@ class Node:
 
     @property
     def interfaces(self) -> list[rosgraph.Interface]:
-        """The types in use, each once, by package and name."""
+        """Types in use, each once, by package and name."""
         used: list[Subscription | Publisher | Client] = [*self.subscriptions, *self.publishers, *self.clients]
         found = {(kind.package, kind.type, kind.kind.name): kind for kind in (end.interface for end in used)}
         return [found[key] for key in sorted(found)]
@@ -392,12 +396,12 @@ class Node:
 
     @staticmethod
     def _tested(rule: rosgraph.ConversionRule, printer: CppPrinter) -> str:
-        """A rule's condition, fit to stand before `&& read.complete()`."""
+        """Return a rule's condition in a form that is valid before `&& read.complete()`."""
         printed = printer.printed(rule.condition)
         loose = printed.precedence < PRECEDENCE[ex.Conjunction] and reads_elements(rule.condition)
         return printed.tight if loose else printed.text
 
-    # What comes in
+    # Incoming data
 
     def _subscription(self, subscription: rosgraph.Subscription) -> Subscription:
         receptions = [self._reception(reception) for reception in subscription.receptions]
@@ -413,13 +417,13 @@ class Node:
         values = self._values(reception)
         inputs = [self._input(assignment) for assignment in reception.inputs]
         handler = self._handler(reception.event, inputs, reports.received(values, self._names))
-        # An answer that can't be read is an error, too: the reason tells whose data the log has.
+        # An unreadable answer is an error, too. The reason selects the data for the log.
         is_error = reception.event.kind == sct.EventKind.error
         reads = is_error and (reads_reason(values) or handler.data is not None)
         return replace(handler, reads_reason=reads)
 
     def _values(self, reception: rosgraph.Reception) -> list[ex.Expression]:
-        """All values that are computed of data that comes in."""
+        """Return all values that are computed from incoming data."""
         reactions = self._reactions.get(reception.event, ())
         assigned = (assignment.value for reaction in reactions for assignment in reaction.assignments)
         return [*(given.value for given in reception.inputs), *assigned]
@@ -470,7 +474,7 @@ class Node:
         )
 
     def _merged(self, reactions: Sequence[rosgraph.Reaction], copy: str) -> list[Reaction]:
-        """Reactions of one component that do the same become one."""
+        """Merge equal reactions of one component."""
         places: dict[tuple[sct.Plant, str | None, tuple[str, ...], tuple[Assignment, ...]], list[sct.Location]] = {}
         for reaction in reactions:
             guard = None if reaction.guard is None else self._printer.tight(reaction.guard)
@@ -484,7 +488,10 @@ class Node:
         ]
 
     def _condition(self, locations: Sequence[sct.Location], guard: str | None) -> str | None:
-        """That a plant is in one of these locations of its own, and a guard holds; None where it always is so."""
+        """Return the condition that a plant is in one of these locations and a guard holds.
+
+        None if it is always true.
+        """
         plants: dict[sct.Plant, int] = {}
         for location in locations:
             plants[location.eContainer()] = plants.get(location.eContainer(), 0) + 1
@@ -507,7 +514,7 @@ class Node:
         text = printer.integer(value, kind) if isinstance(kind, ex.IntegerType) else printer(value)
         return Assignment(target, text, "store" if is_structured(kind) else "")
 
-    # What goes out
+    # Outgoing data
 
     def _publisher(self, publisher: rosgraph.Publisher) -> Publisher:
         return Publisher(
@@ -569,7 +576,7 @@ class Node:
         )
 
     def _written(self, assignment: rosgraph.FieldAssignment) -> tuple[str, str, str]:
-        """What writes a field, its name, its value."""
+        """Return the method that writes a field, the field's name, and its value."""
         name, value, kind = ".".join(assignment.path), assignment.value, assignment.type
         if holds_objects(kind) and isinstance(value, rosgraph.WireAccess):
             return _HAND_ON, name, self._printer(value)
@@ -585,5 +592,5 @@ class Node:
 
 
 def _may_be_infinite(field: rosgraph.FieldAssignment) -> bool:
-    """Whether its value may hold a double, which may be no finite number."""
+    """Return whether a field may hold a double, which may not be finite."""
     return holds_objects(field.type) or infer(field.value) in {DOUBLE, ArrayType(DOUBLE)}

@@ -1,4 +1,4 @@
-"""The packages of controllers and supervisory layers: names, dependencies, files, the engine."""
+"""Packages of controllers and supervisory layers: names, dependencies, files, the engine."""
 
 from __future__ import annotations
 
@@ -32,14 +32,13 @@ if TYPE_CHECKING:
 
     Values = Mapping[str, Any]
 
-#: What makes a package of its own: path to template.
+#: Files of a stand-alone package: path to template.
 _PACKAGE = {"package.xml": "package.xml.j2", "CMakeLists.txt": "CMakeLists.txt.j2"}
-#: Types of geometry_msgs that hold numbers only: no header, no quaternion.
+#: Types of geometry_msgs that contain only numbers: no header, no quaternion.
 _PLAIN = frozenset(["Accel", "Inertia", "Point", "Point32", "Polygon", "Twist", "Vector3", "Wrench"])
 _INCLUDED = re.compile(r'^#include "(robosc[^"]*)"$', re.MULTILINE)
 
-#: The headers that nodes include from `include`, each with what of a node it is there for; empty: always.
-#: `{ros}` is the version of ROS.
+#: Headers in `include`, each with the features of a node that need it (empty: always). `{ros}` is the ROS version.
 _HEADERS = {
     "robosc/block_reasons": {"gates"},
     "robosc/component_status": {"statuses"},
@@ -72,44 +71,44 @@ _HEADERS = {
 }
 
 _MESSAGE = rosgraph.InterfaceKind.message
-#: What reports are made of: JSON, and statuses of components.
+#: Types of reports: JSON, and statuses of components.
 _TEXT = rosgraph.Interface(package="std_msgs", type="String", kind=_MESSAGE)
 _STATUSES = rosgraph.Interface(package="diagnostic_msgs", type="DiagnosticArray", kind=_MESSAGE)
 
 
 @dataclass(frozen=True)
 class Used:
-    """The packages whose types a node uses, and the types of what it tells about itself."""
+    """Packages of the types that a node uses, and the types of its reports."""
 
     types: Set[str]
     reports: Sequence[rosgraph.Interface]
 
 
 class Middleware(Protocol):
-    """The differences between ROS 1 and ROS 2; a folder of its name beside this file has its templates."""
+    """Differences between ROS 1 and ROS 2. A folder of its name beside this file has its templates."""
 
-    #: 1 or 2.
+    #: ROS version: 1 or 2.
     version: ClassVar[int]
-    #: How the names of its launch files end.
+    #: Suffix of launch files.
     launch_file: ClassVar[str]
-    #: What `--with-tests` adds to a controller: path to template.
+    #: Files that `--with-tests` adds to a controller: path to template.
     test_files: ClassVar[Mapping[str, str]]
 
     def controller(self, node: Node, configuration: Configuration, used: Used, *, tests: bool) -> Values:
-        """Values for the templates of a controller alone."""
+        """Return template values that only a controller has."""
 
 
 @dataclass(frozen=True)
 class RosTarget:
-    """A target that is a ROS package: a controller or a layer, for one ROS."""
+    """A target that is a ROS package: a controller or a layer, for one ROS version."""
 
     kind: Literal["controller", "layer"]
     ros: Middleware
-    #: Values for the templates of a layer alone.
+    #: Function that returns the template values that only a layer has.
     layer: Callable[[LayerNode, Configuration, Used], Values] | None = None
 
     def preconditions(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
-        """Return errors that keep these models from becoming such a node, and warnings on settings without effect."""
+        """Return errors that make such a node impossible, and warnings on settings without effect."""
         return preconditions.preconditions(models, configuration, self.kind, self.ros.version)
 
     def generate(
@@ -119,9 +118,9 @@ class RosTarget:
         tests: TraceTest | None = None,
         into: str | None = None,
     ) -> dict[str, str]:
-        """The files of the package, by their path in it. `preconditions` must have found nothing.
+        """Return the files of the package by their path in it. Precondition: `preconditions` reports no error.
 
-        `into` names a package of the user's own that the node becomes part of: `fragment.cmake` is what that includes.
+        `into` names a package of the user that includes the node through `fragment.cmake`.
         """
         graph = models.rosgraph
         assert graph is not None
@@ -134,9 +133,9 @@ class RosTarget:
         return self._files(graph, executed, name, configuration, node, tests, into)
 
     def interfaces(self, models: Models, configuration: Configuration) -> dict[str, str]:
-        """The package with the type of the robot's state, where the configuration asks for one: text by path.
+        """Return the package with the type of the robot's state, if the configuration needs one: text by path.
 
-        It stands beside the node's: its own name begins each path.
+        The package is beside the node's package. Each path starts with its name.
         """
         graph = models.rosgraph
         assert graph is not None
@@ -175,7 +174,7 @@ class RosTarget:
         told = statuses(graph, node, commands) if configuration.diagnostics_ms else []
         included = self._included(node, layer, told, configuration)
         source, definition = f"src/{name}_node.cpp", f"include/{name}/definition.hpp"
-        # Of a layer everything but the model's own parameters is rarely set.
+        # Users rarely set a layer's parameters, except for the model's own.
         has_file = kind == "controller" or bool(node.parameters)
         files = {
             **({"fragment.cmake": "fragment.cmake.j2"} if into else _PACKAGE),
@@ -206,7 +205,7 @@ class RosTarget:
             "layer": layer,
             "tests": tests,
             "package": name,
-            # The package in which the node is found: its own, or that of which it is a part.
+            # Package that contains the node: its own, or the user's.
             "ros_package": into or name,
             "has_own_types": into in types,
             "player": _player(name, into),
@@ -247,7 +246,7 @@ class RosTarget:
         texts[source] = fold(texts[source])
         texts |= {f"include/{header}.hpp": text for header, text in shipped(included).items()}
         supervisor = engine.generate(executed, configuration.control_loop)
-        # The header of the engine is for others, too, where they can find it.
+        # The header of the engine is public in a place where other code finds it.
         places = {".h": f"include/{name}" if into else "src", ".c": "src"}
         texts |= {f"{places[file[-2:]]}/{file}": text for file, text in supervisor.items()}
         return texts | ({f"test/{path}": text for path, text in tests.files.items()} if tests else {})
@@ -255,7 +254,7 @@ class RosTarget:
     def _included(
         self, node: Node, layer: LayerNode | None, told: Sequence[Status], configuration: Configuration
     ) -> list[str]:
-        """The headers of `include` that the node includes, without their ending."""
+        """Return the headers in `include` that the node includes, without suffix."""
         if self.kind == "controller":
             sent = [end.interface for ends in (node.publishers, node.clients) for end in ends]
         else:
@@ -287,7 +286,7 @@ class RosTarget:
 
 
 def _turned(node: Node) -> list[tuple[Variable, str]]:
-    """The objects that the node keeps and that may hold quaternions, each with its component."""
+    """Return the node's object variables that may hold quaternions, each with its component."""
     return [
         (variable, component)
         for component, variables in node.components
@@ -297,13 +296,13 @@ def _turned(node: Node) -> list[tuple[Variable, str]]:
 
 
 def _awaited(node: Node, configuration: Configuration) -> list[str]:
-    """The topics that commands wait for."""
+    """Return the topics that commands wait for."""
     names = {topic.removeprefix("/") for topic in configuration.wait_for}
     return [topic.topic for topic in node.subscriptions if topic.topic.removeprefix("/") in names]
 
 
 def _test_files(ros: Middleware, name: str, into: str | None) -> dict[str, str]:
-    """Path to template. In a package of the user's own there is another Dockerfile, if any, and may be more nodes."""
+    """Return path to template. A user's package has its own Dockerfile, if any, and possibly several nodes."""
     if not into:
         return dict(ros.test_files)
     own = {path: template for path, template in ros.test_files.items() if path != "Dockerfile"}
@@ -311,12 +310,12 @@ def _test_files(ros: Middleware, name: str, into: str | None) -> dict[str, str]:
 
 
 def _player(name: str, into: str | None) -> str:
-    """The file of the program that plays traces: ROS 1 finds it by this name in the whole package."""
+    """Return the file name of the program that plays traces. ROS 1 finds it by its name in the whole package."""
     return f"{name}_play_trace.py" if into else "play_trace.py"
 
 
 def _groups(declared: Iterable[Parameter]) -> dict[str, dict[str, Parameter]]:
-    """Parameters by what stands before the point in their names: nothing, first of all."""
+    """Group parameters by the part of their names before the last point, "" first."""
     found: dict[str, dict[str, Parameter]] = {"": {}}
     for parameter in declared:
         group, _, name = parameter.name.rpartition(".")
@@ -325,7 +324,7 @@ def _groups(declared: Iterable[Parameter]) -> dict[str, dict[str, Parameter]]:
 
 
 def shipped(headers: Iterable[str]) -> dict[str, str]:
-    """Headers of `include` by name, such as `robosc/json`, and all that they include: text by name."""
+    """Return headers in `include` by name, such as `robosc/json`, with all that they include: text by name."""
     found: dict[str, str] = {}
     waiting = list(headers)
     while waiting:
@@ -337,7 +336,7 @@ def shipped(headers: Iterable[str]) -> dict[str, str]:
 
 
 def has_defaults(interface: rosgraph.Interface) -> bool:
-    """Whether a message of this type may hold a header or a quaternion, which the node then sets."""
+    """Return whether a message of this type may hold a header or a quaternion, which the node then sets."""
     if interface.package == "std_msgs":
         return interface.type == "Header"
     if interface.package == "std_srvs":
@@ -346,13 +345,13 @@ def has_defaults(interface: rosgraph.Interface) -> bool:
 
 
 def controller_package(configuration: Configuration) -> set[str]:
-    """The package of the existing controller, where the configuration names one."""
+    """Return the package of the existing controller, if the configuration names one."""
     controller = configuration.supervisor.controller
     return {started.package_name for started in (controller.run, controller.launch) if started}
 
 
 def launch_path(configuration: Configuration) -> str:
-    """Where the launch file of the existing controller is in its package; empty where the configuration names none."""
+    """Return the launch file's path in the existing controller's package. Empty if the configuration names none."""
     launch = configuration.supervisor.controller.launch
     if launch is None:
         return ""
@@ -360,7 +359,7 @@ def launch_path(configuration: Configuration) -> str:
 
 
 def _no_stop(node: Node, configuration: Configuration) -> list[tuple[str, str]]:
-    """The warnings of a node at its start that nothing would stop its robot, each with its condition."""
+    """Return the node's warnings at its start that nothing stops the robot, each with its condition."""
     if node.shutdown or not node.publishers:
         return []
     silence = [("watchdog_stops_", NO_STOP_ON_SILENCE)] if node.subscriptions else []

@@ -1,4 +1,4 @@
-"""What keeps models and settings from becoming a ROS node: located errors; and settings without effect: warnings."""
+"""Checks of models and settings for a ROS node: located errors, and warnings on settings without effect."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _NAMESPACE = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
 _FILE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*(/[A-Za-z0-9_][A-Za-z0-9_.+-]*)*")
 _FIELD = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _TOPIC = re.compile(r"(/_*)?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
-#: Types of messages that move a robot until the next one.
+#: Types of messages that keep a robot moving until the next message.
 _MOVING = frozenset(
     [
         "geometry_msgs/Twist",
@@ -43,16 +43,16 @@ _MOVING = frozenset(
         "trajectory_msgs/MultiDOFJointTrajectory",
     ]
 )
-#: Parameters that every node has, by version of ROS.
+#: Parameters that every node has, by ROS version.
 _OWN_PARAMETERS = {1: ("log_level",), 2: ("use_sim_time", "start_type_description_service")}
-#: What would end a string, or mean something in it, where the build tools copy it into CMake code.
+#: Characters that end a string, or have a meaning in it, where build tools copy it into CMake code.
 _RISKY = re.compile(r'["\\$;\n\r]')
 
 
 def preconditions(models: Models, configuration: Configuration, kind: str, ros: int) -> list[Diagnostic]:
-    """What keeps these models from becoming a node with these settings, and warnings about settings without effect.
+    """Return the errors that make a node with these models and settings impossible, and warnings on unused settings.
 
-    `kind`: "controller" or "layer"; `ros`: the version of ROS, 1 or 2.
+    `kind` is "controller" or "layer", `ros` the ROS version, 1 or 2.
     """
     graph = models.rosgraph
     if graph is None:
@@ -78,7 +78,7 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
 
 
 def _package(graph: rosgraph.RosGraph, configuration: Configuration, name: str) -> Iterator[Diagnostic]:
-    """What keeps a package from having this name and these settings."""
+    """Return errors on the name and settings of a package."""
     if not _PACKAGE.fullmatch(name):
         yield _error(graph, f'"{name}" is no name of a ROS package', 'set "package.name" in controller-config.json')
     if _RISKY.search(configuration.package.maintainer):
@@ -92,7 +92,7 @@ def _error(element: ex.Located, message: str, hint: str | None = None, rule: str
 
 
 def _names(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
-    """Names that stand in code as they are, and that ROS itself would refuse otherwise."""
+    """Return errors on names that appear in code unchanged, and that ROS would reject at run time."""
     for interface in graph.interfaces:
         if not _PACKAGE.fullmatch(interface.package):
             yield _error(interface, f'"{interface.package}" is no name of a ROS package')
@@ -114,7 +114,7 @@ def _names(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
 
 
 def _parameters(graph: rosgraph.RosGraph, configuration: Configuration, kind: str, ros: int) -> Iterator[Diagnostic]:
-    """Parameters of the model whose name the node needs itself, or whose numbers ROS can't hold."""
+    """Return errors on parameters with a reserved name, or with numbers that ROS cannot hold."""
     declared = (layer_parameters if kind == "layer" else controller_parameters)(graph, configuration, "")
     names = Counter([*_OWN_PARAMETERS[ros], *(parameter.name for parameter in declared)])
     for element, parameter in model_parameters(graph).items():
@@ -128,7 +128,7 @@ def _parameters(graph: rosgraph.RosGraph, configuration: Configuration, kind: st
 
 
 def _types(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
-    """Topics with more than one type: a node of ROS 1 that speaks of such a one ends when it starts."""
+    """Return errors on topics with more than one type. A ROS 1 node with such a topic ends at its start."""
     types: dict[str, str] = {}
     ends: list[rosgraph.Subscription | rosgraph.Publisher] = [*graph.subscriptions, *graph.publishers]
     for end in ends:
@@ -177,7 +177,7 @@ def _settings(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterato
 def _outside(
     graph: rosgraph.RosGraph, configuration: Configuration, setting: str, names: Sequence[str]
 ) -> Iterator[Diagnostic]:
-    """What can't be sent where a setting names it; and what is sent then, requirements or not."""
+    """Return errors on names in a setting that are no sent messages, and warnings on requirements that it overrides."""
     yield from _unsendable(graph, configuration, setting, names)
     for place_of_name, name in enumerate(names):
         sending = message_named(graph, name)
@@ -192,7 +192,7 @@ def _outside(
 def _unsendable(
     graph: rosgraph.RosGraph, configuration: Configuration, setting: str, names: Sequence[str]
 ) -> Iterator[Diagnostic]:
-    """Names in a setting that are no messages to the robot."""
+    """Return errors on names in a setting that are no messages to the robot."""
     for place_of_name, name in enumerate(names):
         if message_named(graph, name) is None:
             sent = [sending.name for publisher in graph.publishers for sending in publisher.sendings]
@@ -204,7 +204,7 @@ def _unsendable(
 def _swallowed(
     graph: rosgraph.RosGraph, executed: engine.EngineModel, configuration: Configuration
 ) -> Iterator[Diagnostic]:
-    """Messages that move the robot until the next one, and that a layer can block without a word to the robot."""
+    """Return warnings on messages that keep the robot moving and that a layer may block without notice to the robot."""
     if "on_blocked" in configuration.model_fields_set:
         return
     blockable = {event.event for event in executed.events if event.reasons}
@@ -224,7 +224,7 @@ def _swallowed(
 
 
 def _nothing_safe(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterator[Diagnostic]:
-    """Where the robot would go on as it was told last since nothing else is sent."""
+    """Return warnings if the robot would continue its last command because nothing else is sent."""
     if not graph.publishers:
         return
     if configuration.watchdog_stops and not configuration.on_shutdown:
@@ -252,7 +252,7 @@ def _nothing_safe(graph: rosgraph.RosGraph, configuration: Configuration) -> Ite
 
 
 def _may_be_withheld(field: rosgraph.FieldAssignment, outside: set[rosgraph.NodeVariable]) -> bool:
-    """Whether a field may be set to what holds a double that is not finite, as far as its type is known."""
+    """Return whether a field's value may hold a double that is not finite, as far as its type is known."""
     value = field.value
     if isinstance(value, rosgraph.WireAccess) and value.variable is not None and holds_objects(field.type):
         return any(isinstance(kind, ex.DoubleType) for _, kind in parts_of(value.variable.type, path_of(value)))
@@ -260,7 +260,7 @@ def _may_be_withheld(field: rosgraph.FieldAssignment, outside: set[rosgraph.Node
 
 
 def _from_outside(graph: rosgraph.RosGraph) -> set[rosgraph.NodeVariable]:
-    """The variables that get, in one step or several, a double that the robot sent or that a division made."""
+    """Return the variables that may get a double from the robot or from a division, directly or indirectly."""
     assignments = [
         assignment
         for reaction in graph.reactions
@@ -286,7 +286,7 @@ def _reads(value: ex.Expression, outside: set[rosgraph.NodeVariable]) -> bool:
 
 
 def _shared_topics(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
-    """A message that could be two things: a layer can't hand it on as one."""
+    """Return errors on topics with several messages: a layer cannot determine which one it passes."""
     named: dict[str, str] = {}
     found: list[tuple[str, Sequence[rosgraph.Reception | rosgraph.Sending]]] = [
         *((subscription.topic, subscription.receptions) for subscription in graph.subscriptions),
@@ -302,7 +302,7 @@ def _shared_topics(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
 
 
 def _controller(configuration: Configuration) -> Iterator[Diagnostic]:
-    """What stands in the launch file as it is."""
+    """Return errors on settings that are copied to the launch file."""
     controller = configuration.supervisor.controller
     run, launch = controller.run, controller.launch
     key = ("supervisor", "controller")
@@ -325,7 +325,7 @@ def _controller(configuration: Configuration) -> Iterator[Diagnostic]:
 
 
 def _unused(configuration: Configuration) -> Iterator[Diagnostic]:
-    """Settings that mean nothing to a layer."""
+    """Return warnings on settings without effect on a layer."""
     settings = {
         "retryMs": configuration.retry_ms != Configuration().retry_ms,
         "frameId": configuration.frame_id,

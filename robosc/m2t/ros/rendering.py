@@ -1,4 +1,4 @@
-"""Renders the templates of a node: those of one ROS on top of those of both."""
+"""Renders the templates of a node: those of one ROS version on top of the shared ones."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _OPENING, _CLOSING = "([{", ")]}"
 
 @cache
 def node_environment(middleware: str) -> Environment:
-    """The templates of one ROS (`robosc.m2t.ros.ros1`), on top of those of this package."""
+    """Return the templates of one ROS version (`robosc.m2t.ros.ros1`), on top of those of this package."""
     templates = environment(middleware, "robosc.m2t.ros")
     templates.filters.update(
         literal=string_literal,
@@ -39,23 +39,23 @@ def node_environment(middleware: str) -> Environment:
 
 
 def line_comment(text: str, indent: int = 0) -> str:
-    """The text as comment lines of C++, wrapped; nothing in it ends them or joins them with the line after."""
+    """Return the text as wrapped C++ comment lines. Nothing in it ends a comment or joins it with the next line."""
     lines = textwrap.wrap(comment_text(text), _WIDTH - indent, break_long_words=False, break_on_hyphens=False)
     margin = " " * indent + "// "
     return "\n".join(f"{margin}{line}{'.' if line.endswith(chr(92)) else ''}" for line in lines)
 
 
 def raw_literal(json: str) -> str:
-    """A raw string literal with JSON text in ASCII, whose strings can't end it."""
+    """Return a raw string literal with JSON text in ASCII. The text cannot end the literal."""
     return 'R"json(' + json.replace(')json"', '\\u0029json"') + ')json"'
 
 
 def fold(code: str, width: int = 120) -> str:
-    """C++ code with long lines broken, at blanks outside of literals and before the calls of a chain.
+    """Break long lines of C++ code, at blanks outside of literals and before the calls of a chain.
 
-    A line breaks where the least brackets are open, at the last of these places that fits; directives, and comments
-    wherever they begin, stay as they are. What it goes by is tokens, as other formatters do: a long line is made of a
-    template's own words as much as of printed expressions, and only in the whole of it is its width known.
+    A line breaks where the fewest brackets are open, at the last such place that fits. Directives and comments stay
+    unchanged. The function works on tokens, as other formatters do: a long line mixes text of a template with printed
+    expressions, and only the complete line has a known width.
     """
     return "".join(_folded(line, width) for line in code.splitlines(keepends=True))
 
@@ -66,7 +66,7 @@ def _folded(line: str, width: int) -> str:
         return line
     places = _places(line, indent, end)
     made: list[str] = []
-    # Where the rest begins, and the column in which it will stand.
+    # Start of the remaining text, and its column after the break.
     start = column = 0
     while end - start + column > width:
         first = bisect_right(places, start, key=_position)
@@ -82,7 +82,7 @@ def _folded(line: str, width: int) -> str:
 
 
 def _places(line: str, start: int, end: int) -> list[tuple[int, int]]:
-    """Where a line may break, in order: how little is open there, and the position."""
+    """Return the places where a line may break, in order: the negated bracket depth, and the position."""
     depth = 0
     found = []
     for token in _TOKEN.finditer(line, start, end):
@@ -97,17 +97,17 @@ _position = itemgetter(1)
 
 
 def shift(text: str, indent: int) -> str:
-    """The text with every line that is not empty so much further to the right."""
+    """Indent every nonempty line of the text."""
     return textwrap.indent(text, " " * indent)
 
 
 def xml_text(text: str) -> str:
-    """The text between tags, without the characters that XML can't hold."""
+    """Return the text between tags, without characters that are invalid in XML."""
     return escape(_printable(text))
 
 
 def xml_attribute(text: str) -> str:
-    """The text as the value of an attribute, in its quotes."""
+    """Return the text as a quoted attribute value."""
     return quoteattr(_printable(text))
 
 

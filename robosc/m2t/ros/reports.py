@@ -1,4 +1,4 @@
-"""What the node tells about itself: values, data of events and states as expressions of its `Json` type."""
+"""The node's reports on itself: values, data of events and states as expressions of its `Json` type."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Member:
-    """A part of an event's data: its path as a literal, its value. One that `reads_elements` does so by `element`."""
+    """A part of an event's data: its path as a literal, its value.
+
+    If it `reads_elements`, it reads them by `element`.
+    """
 
     path: str
     value: str
@@ -29,9 +32,9 @@ class Member:
 
 @dataclass(frozen=True)
 class EventData:
-    """Data of an event, for the event log: as one expression, or, where elements of arrays are read, member by member.
+    """Data of an event for the event log: one expression, or one for each member if it reads elements of arrays.
 
-    Elements that are not there are left out.
+    Missing elements are omitted.
     """
 
     json: str
@@ -48,7 +51,7 @@ class Component:
 
 
 def received(values: Sequence[ex.Expression], names: CppNames) -> EventData | None:
-    """What the node reads of a message, in the shape of the message; basic data is the value itself."""
+    """Return the parts of a message that the node reads, in the message's structure. Basic data is the value itself."""
     printer = CppPrinter(names, reader="element")
     found = shown(values)
     if not found:
@@ -63,7 +66,7 @@ def received(values: Sequence[ex.Expression], names: CppNames) -> EventData | No
 
 
 def _value(path: Path, part: Read | Shown, printer: CppPrinter, names: CppNames) -> str:
-    """What is shown of what stands at the end of a path."""
+    """Return the reported value at the end of a path."""
     if isinstance(part, Read):
         kind = ex.EnumerationType(enumeration=part.conversion.enumeration) if part.conversion else part.type
         text = printer(part.reference)
@@ -72,7 +75,7 @@ def _value(path: Path, part: Read | Shown, printer: CppPrinter, names: CppNames)
 
 
 def _list(array: str, parts: Shown, names: CppNames, depth: int = 1) -> str:
-    """What is shown of the elements of an array."""
+    """Return the reported elements of an array."""
     element = f"element{depth}"
 
     def text(path: Path, part: Read | Shown) -> str:
@@ -93,7 +96,7 @@ def _reads_elements(path: Path, part: Read | Shown) -> bool:
 
 
 def component(plant: sct.Plant, variables: Sequence[rosgraph.NodeVariable], names: CppNames) -> Component:
-    """A component with the variables that the supervisor and the node keep for it."""
+    """Return a component with its variables in the supervisor and in the node."""
     if len(plant.locations) == 1:
         state = string_literal(plant.locations[0].name)
     else:
@@ -129,7 +132,7 @@ def _dotted(path: Path) -> str:
 
 
 def _grouped(paths: Iterable[Path]) -> list[Path]:
-    """The paths, those of one object behind each other, objects where their first member was."""
+    """Return the paths grouped by object. An object is at the position of its first member."""
     heads: dict[Path, list[Path]] = {}
     for path in paths:
         heads.setdefault(path[:1], []).append(path)

@@ -1,4 +1,4 @@
-"""Statuses of components for `/diagnostics`, ready to be printed."""
+"""Statuses of components for `/diagnostics`, prepared for the templates."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Command:
-    """A command: what a status calls it, as a literal; its gate, its name; whether it may be withheld, of an action."""
+    """A command in a status: key as a literal, gate, name, whether sending may fail, and action, if any."""
 
     key: str
     gate: Gate
@@ -31,28 +31,31 @@ class Command:
 
 @dataclass(frozen=True)
 class Status:
-    """A component: a word for it, its name, its state, where it has one, and its variables, as expressions of C++."""
+    """The status of a component: a word for it, and its name, state and variables as C++ expressions.
+
+    `state` is None if the component has no state.
+    """
 
     word: str
     name: str
     state: str | None
     stateless: str
     variables: Sequence[tuple[str, str]]
-    #: What it is told, and what tells of it.
+    #: Commands to the component, and its incoming topics and clients.
     commands: list[Command]
     topics: list[Subscription]
     clients: list[Client]
-    #: The topics on which its commands go out.
+    #: Topics of its commands.
     commanded: list[str]
 
     def watched(self, version: int) -> list[str]:
-        """The topics, services and actions whose faults in the graph are told in a ROS."""
+        """Return the topics, services and actions whose faults a ROS version reports."""
         names = [*(topic.topic for topic in self.topics), *self.commanded]
         return names if version == 1 else [*names, *(client.name for client in self.clients)]
 
 
 def statuses(graph: rosgraph.RosGraph, node: Node, gates: Mapping[rosgraph.Sending, Gate]) -> list[Status]:
-    """The status of each component of a graph, whose commands have these gates."""
+    """Return the status of each component of a graph whose commands have these gates."""
     heard = dict(zip(graph.subscriptions, node.subscriptions, strict=True))
     called = dict(zip([*graph.serviceClients, *graph.actionClients], node.clients, strict=True))
     actions = {client.request.event: client for client in node.clients if client.cancel}

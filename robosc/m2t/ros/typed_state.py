@@ -1,6 +1,6 @@
-"""A robot's state as a message of ROS: a field for each state and variable, with constants for the values of its type.
+"""ROS message with a robot's state: a field for each state and variable, with constants for the values of its type.
 
-The constants of a field stand right before it, which is where Foxglove looks for them.
+The constants of a field come directly before it, because Foxglove expects them there.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
     from robosc.m2t.ros.names import CppNames
 
-#: The message's name in its package.
+#: Name of the message in its package.
 MESSAGE = "State"
 _WIRE = {ex.BooleanType: "bool", ex.DoubleType: "float64", ex.IntegerType: "int64", ex.StringType: "string"}
 
 
 @dataclass(frozen=True)
 class Constant:
-    """A constant of the message; `enumerator` is the same in the node's code, where it has one."""
+    """A constant of the message. `enumerator` is the equal constant in the node's code, if there is one."""
 
     name: str
     value: int
@@ -38,7 +38,7 @@ class Constant:
 
 @dataclass(frozen=True)
 class Field:
-    """A field of the message: what it is of, its type and name, its constants, and what the node sets it to."""
+    """A field of the message: description, type, name, constants, and the value that the node assigns."""
 
     about: str
     type: str
@@ -48,7 +48,7 @@ class Field:
 
 
 def fields(graph: rosgraph.RosGraph, names: CppNames) -> list[Field]:
-    """The fields of a robot's state: of each component with behaviour its state and its variables."""
+    """Return the fields of a robot's state: the state and the variables of each component with behaviour."""
     return list(_Maker(names).fields(graph))
 
 
@@ -97,13 +97,13 @@ class _Maker:
 
 
 class _Scope:
-    """Names of one message, as both ROS allow them: letters, digits and single underscores between these."""
+    """Names in one message that both ROS versions allow: letters, digits, and single underscores between them."""
 
     def __init__(self, taken: set[str] | None = None) -> None:
         self._taken = taken or set()
 
     def fresh(self, name: str) -> str:
-        """The name, or one like it that is free."""
+        """Return the name, or a similar one that is free."""
         ascii_only = re.sub(r"[^a-z0-9_]", lambda found: f"u{ord(found[0]):04x}", name)
         word = re.sub("_+", "_", ascii_only).strip("_")
         word = word if word[:1].isalpha() else f"x{word}"

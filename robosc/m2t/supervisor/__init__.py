@@ -1,4 +1,4 @@
-"""The target `supervisor`: the engine in C99 as a static library, for robots with and without ROS."""
+"""Target `supervisor`: the engine in C99 as a static library, for robots with and without ROS."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 
 def preconditions(models: Models, configuration: Configuration) -> list[Diagnostic]:  # noqa: ARG001
-    """What keeps the model from being generated: a computation that needs more than 64 bits."""
+    """Return errors on computations that need more than 64 bits."""
     return c_preconditions.preconditions(models.sct)
 
 
 def generate(models: Models, configuration: Configuration, into: str | None = None) -> dict[str, str]:
-    """Header, source and `CMakeLists.txt` of a model with its supervisor: relative path to text.
+    """Return header, source and `CMakeLists.txt` of a model with its supervisor: relative path to text.
 
-    `into` names a target of CMake: a `fragment.cmake` makes that, in place of `CMakeLists.txt`.
+    `into` names a CMake target, which a `fragment.cmake` creates in place of the `CMakeLists.txt`.
     """
     names = CNames(models.sct)
     build = "CMakeLists.txt" if into is None else "fragment.cmake"

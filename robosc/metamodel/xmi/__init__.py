@@ -1,8 +1,7 @@
-"""Models as XMI files, which Eclipse's own EMF reads too.
+"""Models as XMI files that Eclipse's EMF reads too.
 
-pyecore's XMI says nothing of where a file is damaged, follows a reference to any address and writes features in the
-order in which they were set; this one locates everything, stays in its folder and gives the same bytes for the same
-model.
+pyecore's XMI does not locate damage in a file, follows references to any address, and writes features in the order of
+assignment. This package locates every error, stays in its folder and writes the same bytes for the same model.
 """
 
 from robosc.metamodel.xmi.reading import load

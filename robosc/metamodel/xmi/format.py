@@ -1,4 +1,4 @@
-"""What writing and reading of XMI have to agree on: names, limits, and the text of values."""
+"""Conventions shared by writing and reading of XMI: names, limits, and the text of values."""
 
 import math
 import re
@@ -11,27 +11,27 @@ from pyecore.ecore import EEnum
 XMI = "http://www.omg.org/XMI"
 XSI = "http://www.w3.org/2001/XMLSchema-instance"
 
-#: Elements inside each other: as many as an expression of the language may have operators, and those around it.
+#: Maximum depth of elements: as many as an expression may have operators, plus those around it.
 DEEPEST = 6000
-#: What XML 1.0 can't hold, not even escaped.
+#: Characters that XML 1.0 cannot hold, not even escaped.
 UNWRITABLE = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-#: More digits than the number of states has of any robot that can be synthesized.
+#: The limit exceeds the digits of the number of states of any robot that can be synthesized.
 _INTEGER = re.compile("[+-]?[0-9]{1,1000000}")
 _LONG = range(-(2**63), 2**63)
 _DOUBLE = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]{1,4})?")
 
 
 def to_text(value: object) -> str:
-    """The text of a value, as EMF reads it."""
+    """Return the text of a value in EMF's format."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, int):
-        return str(Decimal(value))  # a number of states may have more digits than Python writes by itself
+        return str(Decimal(value))  # a number of states may have more digits than `str` accepts
     return repr(value) if isinstance(value, float) else str(value)
 
 
 def from_text(kind: Any, text: str) -> object | None:
-    """The value of a data type or an enumeration that a text stands for; None where it stands for none."""
+    """Return the value of a data type or an enumeration. None if the text is invalid."""
     if isinstance(kind, EEnum):
         literal: object | None = kind.getEEnumLiteral(name=text)
         return literal

@@ -1,4 +1,4 @@
-"""XML text to elements that know their place, refusing what a model has no use for and an attacker has."""
+"""Parses XML to located elements. Rejects constructs that models do not need and attackers use."""
 
 import re
 from collections.abc import Sequence
@@ -17,9 +17,9 @@ _LINE_END = re.compile("\r\n|\r|\n")
 
 @dataclass(eq=False)
 class Element:
-    """An XML element: its namespace and name, attributes by (namespace, name), place.
+    """An XML element: its namespace and name, attributes by (namespace, name), and place.
 
-    `type` is what its `xsi:type` names, as (namespace, name); None where it has none.
+    `type` is the value of its `xsi:type` as (namespace, name), or None.
     """
 
     namespace: str
@@ -34,12 +34,12 @@ class Element:
 
     @property
     def span(self) -> Span:
-        """Where the start tag's name is."""
+        """Span of the start tag's name."""
         name = _NAME.match(self.lines[self.line - 1], self.column - 1)
         return Span(self.line, self.column, self.line, name.end() + 1 if name else self.column + 1)
 
     def attribute_span(self, written: str) -> Span:
-        """Where an attribute is, by its name as it is written; where the element is, if it is on no one line."""
+        """Return the span of an attribute by its literal name. If it spans several lines, return the element's span."""
         return self._attribute_spans.get(written, self.span)
 
     @cached_property
@@ -56,10 +56,10 @@ class Element:
 
 
 def parse(data: bytes, file: str) -> Element:
-    """The root element of a UTF-8 document.
+    """Return the root element of a UTF-8 document.
 
-    Raises ModelError with a located `syntax` finding where it is not well-formed, not UTF-8, has a document type (and
-    with it, entities) or elements too deep inside each other.
+    Raises ModelError with a located `syntax` finding if the document is not well-formed, not UTF-8, has a document type
+    (and thus entities), or is nested too deeply.
     """
     return _Parser(data, file).root()
 
@@ -70,7 +70,7 @@ class _Parser:
         self._file = file
         self._lines: list[str] = []
         self._open: list[Element] = []
-        #: What each prefix means, outermost first.
+        #: Namespaces of each prefix, the outermost first.
         self._prefixes: dict[str, list[str]] = {}
         self._root: Element | None = None
         self._expat: Any = expat.ParserCreate("utf-8", " ")

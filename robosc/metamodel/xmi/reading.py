@@ -1,4 +1,4 @@
-"""XMI files to models, with everything found wrong at once."""
+"""Reads models from XMI files and reports all errors at once."""
 
 import re
 from collections import Counter
@@ -19,9 +19,9 @@ from robosc.metamodel.reflection import features, is_attribute
 from robosc.metamodel.xmi.format import XMI, XSI, from_text
 from robosc.metamodel.xmi.markup import Element, parse
 
-#: What is wrong with a model, given its root: elements, and the reasons.
+#: Returns the faults of a model, given its root: elements, and the reasons.
 Faults: TypeAlias = Callable[[Any], Iterable[tuple[Any, str]]]
-#: What a file may hold: a class of each metamodel that describes something whole.
+#: Root classes of a file: the classes of each metamodel that describe a complete model.
 ROOTS = {
     "robosc": ("Robot", "Library"),
     "sct": ("SupervisoryControlModel",),
@@ -40,15 +40,14 @@ def load(
     *,
     faults: Faults,
 ) -> Any:
-    """The root element of the model in an XMI file; files that it refers to are loaded with it.
+    """Load the model in an XMI file, with all files that it refers to, and return its root element.
 
-    These must lie in the file's folder or below. Raises ModelError with all findings, located in the files: `syntax`
-    for what is no XML, `xmi` for what is no model of these metamodels, refers to nothing, or is among the `faults` of
-    a model (`robosc.validity`). Nothing is ever fetched, and no entity expanded.
+    These must be in the file's folder or below. Raises ModelError with all findings, located in the files: `syntax` for
+    invalid XML; `xmi` for contents that violate the metamodels, for broken references, and for `faults` of a model
+    (`robosc.validity`). Never opens a network address or expands an entity.
 
-    `texts`: filled with the text of each file that was read, by the file name that findings carry. `locate`: maps the
-    name of a source text, as the model stores it, to the path that the user would write; None or no answer: the name
-    stays.
+    `texts` receives the text of each file, by the file name of findings. `locate` maps the name of a source text in the
+    model to the path that the user would write. If it is None or returns None, the name stays.
     """
     loading = _Loading(Path(path), {} if texts is None else texts, faults)
     if locate is not None:
@@ -58,7 +57,7 @@ def load(
 
 
 class Reference(NamedTuple):
-    """A reference to be resolved: `target` is a fragment path, with a file's relative path before the `#`."""
+    """An unresolved reference. `target` is a fragment path, with a file's relative path before the `#`."""
 
     element: Any
     feature: Any
@@ -68,9 +67,9 @@ class Reference(NamedTuple):
 
 @dataclass(eq=False)
 class Document:
-    """A file: its name as the user would write it, its root (None where it has no usable one) and what was found.
+    """A file: its name as the user would write it, its root (None if it has no usable one) and its findings.
 
-    `sources` are the files that the elements come from, by their names, for all documents of a model.
+    `sources` are the source files of the elements by name, for all documents of a model.
     """
 
     name: str
@@ -80,15 +79,15 @@ class Document:
     markup: dict[Any, Element] = field(default_factory=dict)
     references: list[Reference] = field(default_factory=list)
     findings: list[Diagnostic] = field(default_factory=list)
-    #: The file of the places that name none.
+    #: File of places that do not name one.
     source: str = ""
 
     def report(self, span: Span, message: str, hint: str | None = None) -> None:
-        """Adds a finding of the rule `xmi`."""
+        """Add a finding of the rule `xmi`."""
         self.findings.append(Diagnostic(self.name, span, Severity.ERROR, "xmi", message, hint))
 
     def build(self, top: Element) -> None:
-        """Makes the elements of the file whose outermost XML element is `top`; references are left to be resolved."""
+        """Create the elements of the file with the outermost XML element `top`. References stay unresolved."""
         metaclass = self._root_class(top)
         if metaclass is None:
             return
@@ -117,20 +116,20 @@ class Document:
         return None
 
     def _fill(self, markup: Element, element: Any) -> list[tuple[Element, Any]]:
-        """Sets the features of an element; its children are made, and given back to be filled."""
+        """Set the features of an element. Create its children and return them."""
         declared, named = features(element.eClass), a(element.eClass)
         given = Counter(self._fill_attributes(markup, element))
         children = list(self._fill_children(markup, element, given))
         if markup.text.strip():
             self.report(markup.span, f"{named} holds no text")
         for name, feature in declared.items():
-            # What EMF leaves out has a default: a boolean, a number, the first literal of an enumeration.
+            # Features that EMF omits have a default: a boolean, a number, the first literal of an enumeration.
             if feature.lowerBound and name not in given and (feature.many or getattr(element, name) is None):
                 self.report(markup.span, f"{named} needs '{name}'")
         return children
 
     def _fill_attributes(self, markup: Element, element: Any) -> Iterator[str]:
-        """Sets what stands in attributes, and gives the names of these features."""
+        """Set the features that XML attributes hold, and yield their names."""
         for (namespace, name), text in markup.attributes.items():
             if namespace in (XMI, XSI) and name in ("version", "type", "schemaLocation"):
                 continue
@@ -148,9 +147,9 @@ class Document:
                 self.references += [Reference(element, feature, f"#{target}", where) for target in text.split()]
 
     def _fill_children(self, markup: Element, element: Any, given: Counter[str]) -> Iterator[tuple[Element, Any]]:
-        """Sets what stands in elements inside of an element, and gives those that are elements of the model.
+        """Set the features that child elements hold, and yield the children that are model elements.
 
-        `given` counts what is there for each feature.
+        `given` counts the values of each feature.
         """
         for child in markup.children:
             feature = None if child.namespace else features(element.eClass).get(child.name)
@@ -172,7 +171,10 @@ class Document:
                 yield child, made
 
     def _child_class(self, child: Element, feature: Any) -> Any:
-        """The class of a child: the one that it names, else its feature's; None with a finding where it can't be."""
+        """Return the class of a child: the class that it names, else its feature's.
+
+        If it is invalid, report it and return None.
+        """
         found = feature.eType if child.type is None else _classifier(*child.type)
         if found is None or not isinstance(found, EClass):
             written = child.attributes.get((XSI, "type"))
@@ -223,7 +225,7 @@ class _Loading:
             raise ModelError(findings)
 
     def _read(self, name: str, path: Path) -> Document:
-        """Reads a file and all that it refers to."""
+        """Read a file and all files that it refers to."""
         main = self._documents[path] = Document(name, path, self.sources)
         pending = [main]
         while pending:
@@ -240,7 +242,7 @@ class _Loading:
         return main
 
     def _referred(self, document: Document) -> list[Document]:
-        """The files that a file refers to, and that are not read yet."""
+        """Return the files that a file refers to and that are not read yet."""
         found = []
         for reference in document.references:
             href = unquote(reference.target.partition("#")[0])
@@ -259,7 +261,7 @@ class _Loading:
         return found
 
     def _path(self, document: Document, href: str) -> Path | None:
-        """Where a relative href leads; None where it leads out of the folder."""
+        """Return the path of a relative href. None if it leaves the folder."""
         if "\0" in href or "\\" in href or _ADDRESS.match(href):
             return None
         path = (document.path.parent / href).resolve()
@@ -270,7 +272,7 @@ class _Loading:
         path = self._path(document, unquote(href)) if href else document.path
         other = None if path is None else self._documents.get(path)
         if other is None or other.root is None:
-            return  # reported where the file was looked for, or in the file
+            return  # reported at the first reference to the file, or in the file
         element, feature = reference.element, reference.feature
         target = _walk(other.root, fragment)
         shown = reference.target.removeprefix("#")
@@ -286,7 +288,7 @@ class _Loading:
 
 
 def _put(element: Any, feature: Any, value: object) -> None:
-    """Sets a feature, or adds to one with many values."""
+    """Set a feature, or append to one with many values."""
     if feature.many:
         getattr(element, feature.name).append(value)
     else:
@@ -294,7 +296,7 @@ def _put(element: Any, feature: Any, value: object) -> None:
 
 
 def a(metaclass: Any) -> str:
-    """The name of a class with its article."""
+    """Return the name of a class with its article."""
     return f"{'an' if metaclass.name[0] in 'AEIOU' else 'a'} {metaclass.name}"
 
 
@@ -309,7 +311,7 @@ def _classifier(uri: str | None, name: str) -> Any:
 
 
 def _walk(root: Any, fragment: str) -> Any:
-    """The element at a fragment path; None where there is none."""
+    """Return the element at a fragment path, or None."""
     if not _FRAGMENT.fullmatch(fragment):
         return None
     element = root

@@ -1,4 +1,4 @@
-"""Models to XMI text."""
+"""Writes models to XMI text."""
 
 import posixpath
 from collections.abc import Mapping
@@ -17,12 +17,11 @@ _DEEPEST_INDENT = 40
 
 
 def to_texts(roots: Mapping[str, Any]) -> dict[str, str]:
-    """The text of each file, given the root of its model; both by relative path, with `/`.
+    """Return the text of each file for the root of its model, both by relative path with `/`.
 
-    A reference to a model of another of these files becomes a relative href. The text depends on nothing but the
-    models and the paths between the files. Raises ModelError for what XML can't hold (a control character in a string,
-    more elements inside each other than any expression has), and ValueError for a reference to an element of none of
-    these models.
+    A reference to a model of another of these files becomes a relative href. The text depends only on the models and
+    the relative paths. Raises ModelError for contents that XML cannot hold: a control character in a string, or nesting
+    beyond that of any expression. Raises ValueError for a reference to an element outside of these models.
     """
     places: dict[Any, _Place] = {}
     for path, root in roots.items():
@@ -38,7 +37,7 @@ def to_texts(roots: Mapping[str, Any]) -> dict[str, str]:
 
 @dataclass(frozen=True, eq=False)
 class _Place:
-    """Where an element is: its file, the place of what contains it, and the step from there."""
+    """Place of an element: its file, the place of its container, and the step from there."""
 
     file: str
     container: "_Place | None"
@@ -46,7 +45,7 @@ class _Place:
 
     @property
     def fragment(self) -> str:
-        """The path from the root, which for most elements nobody asks for."""
+        """Path from the root, computed on demand because few elements need it."""
         steps = []
         where: _Place | None = self
         while where is not None:
@@ -64,7 +63,7 @@ class _Document:
     def text(self, root: Any) -> str:
         package = self._prefix(root)
         lines: list[str] = []
-        # Ends of elements wait among the elements still to be written, so that no depth needs recursion.
+        # End tags are in the same list as pending elements, so that no depth needs recursion.
         pending: list[tuple[int, str, Any]] = [(0, f"{package}:{root.eClass.name}", root)]
         while pending:
             depth, tag, element = pending.pop()
@@ -82,7 +81,7 @@ class _Document:
         return self._with_namespaces(lines, package, root)
 
     def _features(self, element: Any) -> tuple[list[tuple[str, str]], list[tuple[str, Any]]]:
-        """The XML attributes, and the child elements: a tag with the model element it holds, or a line and None."""
+        """Return the XML attributes and the children. A child is a tag and its model element, or a line and None."""
         attributes: list[tuple[str, str]] = self._type(element, element.eContainmentFeature())
         children: list[tuple[str, Any]] = []
         for name, feature in features(element.eClass).items():
@@ -115,8 +114,8 @@ class _Document:
         return f"<{name}{''.join(f' {key}={quoteattr(value)}' for key, value in attributes)}/>"
 
     def _type(self, element: Any, feature: Any) -> list[tuple[str, str]]:
-        """What says an element's class, where its feature does not."""
-        # A class of another metamodel is a proxy in the feature; the Python class behind it is the same.
+        """Return the attribute with an element's class, if its feature does not imply it."""
+        # A class of another metamodel is a proxy in the feature, but its Python class is the same.
         if feature is None or feature.eType.python_class is element.eClass.python_class:
             return []
         return [("xsi:type", f"{self._prefix(element)}:{element.eClass.name}")]
@@ -146,7 +145,10 @@ class _Document:
 
 
 def _indent(depth: int) -> str:
-    """No reader follows an expression of thousands of operators by its indentation, which would be most of the text."""
+    """Return the indentation of a line.
+
+    It is limited because it would be most of the text in an expression of thousands of operators.
+    """
     return "  " * min(depth, _DEEPEST_INDENT)
 
 

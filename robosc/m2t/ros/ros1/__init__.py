@@ -1,4 +1,4 @@
-"""Packages of ROS 1: catkin, launch files in XML, callback queues."""
+"""ROS 1 packages: catkin, launch files in XML, callback queues."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ if TYPE_CHECKING:
     from robosc.m2t.ros.node import Node
     from robosc.m2t.ros.packages import Used
 
-#: The topics of an action: what ROS 1 re-maps is these, not the action's own name.
+#: Topics of an action. ROS 1 remaps these, not the action's own name.
 _ACTION = ("goal", "cancel", "status", "feedback", "result")
 
 
 class Ros1:
-    """ROS 1, as `robosc.m2t.ros.packages.Middleware` asks for it."""
+    """ROS 1, as a `robosc.m2t.ros.packages.Middleware`."""
 
     version: ClassVar[int] = 1
     launch_file: ClassVar[str] = ".launch"
@@ -29,12 +29,12 @@ class Ros1:
     }
 
     def header(self, interface: rosgraph.Interface) -> str:
-        """The header of a type: `std_srvs/SetBool.h`, and of an action `nav2_msgs/NavigateToPoseAction.h`."""
+        """Return the header of a type: `std_srvs/SetBool.h`, or `nav2_msgs/NavigateToPoseAction.h` of an action."""
         action = "Action" if interface.kind == rosgraph.InterfaceKind.action else ""
         return f"{interface.package}/{interface.type}{action}.h"
 
     def controller(self, node: Node, configuration: Configuration, used: Used, *, tests: bool) -> dict[str, Any]:  # noqa: ARG002
-        """Values for the templates of a controller alone; see `Middleware`."""
+        """Return template values that only a controller has; see `Middleware`."""
         libraries = {"rosconsole", "roscpp", "xmlrpcpp", *(["actionlib"] if node.actions else [])}
         return {
             "headers": self._headers(node, used.reports),
@@ -47,14 +47,14 @@ class Ros1:
 
 
 def _build(dependencies: set[str], tested: Sequence[str]) -> dict[str, Any]:
-    """Values for the build files: the packages that a node is built and started with, and those of its tests."""
+    """Return values for the build files: packages needed to build and start a node, and packages of its tests."""
     built = sorted(dependencies)
     depends = [("build_", built), ("exec_", built), ("test_", tested)]
     return {"build_tool": "catkin", "dependencies": built, "package_depends": depends}
 
 
 def _names(node: Node) -> Iterator[tuple[str, str, str, list[str]]]:
-    """What a launch file re-maps, each name once: its kind, a word for it, the name, the ends of what it stands for."""
+    """Return the names that a launch file remaps, each once: kind, word, name, and suffixes of the topics."""
     topics = {topic.topic: topic.word for topic in node.subscriptions}
     topics |= {topic.topic: topic.word for topic in node.publishers}
     for topic, word in topics.items():

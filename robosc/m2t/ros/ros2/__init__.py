@@ -1,4 +1,4 @@
-"""Packages of ROS 2: ament, launch files in Python, components, qualities of service."""
+"""ROS 2 packages: ament, launch files in Python, components, quality of service."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from robosc.metamodel import rosgraph
 
 _FOLDERS = {"message": "msg", "service": "srv", "action": "action"}
-#: The services and topics of an action: what a layer re-maps is these, not the action's own name.
+#: Services and topics of an action. A layer remaps these, not the action's own name.
 _ACTION = [f"_action/{part}" for part in ("send_goal", "cancel_goal", "get_result", "feedback", "status")]
 _TESTED = ["launch_testing", "launch_testing_ament_cmake", "rclpy", "rosgraph_msgs"]
 _DURABILITY = {None: "", "volatile": ".durability_volatile()", "transient_local": ".transient_local()"}
 
 
 class Ros2:
-    """ROS 2, as `robosc.m2t.ros.packages.Middleware` asks for it."""
+    """ROS 2, as a `robosc.m2t.ros.packages.Middleware`."""
 
     version: ClassVar[int] = 2
     launch_file: ClassVar[str] = ".launch.py"
@@ -38,13 +38,13 @@ class Ros2:
     }
 
     def header(self, interface: rosgraph.Interface) -> str:
-        """The header of a type, in the spelling of rosidl (`LaserScan`: `sensor_msgs/msg/laser_scan.hpp`)."""
+        """Return the header of a type in rosidl's spelling (`LaserScan`: `sensor_msgs/msg/laser_scan.hpp`)."""
         words = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", interface.type)
         name = re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", words).lower()
         return f"{interface.package}/{_FOLDERS[interface.kind.name]}/{name}.hpp"
 
     def controller(self, node: Node, configuration: Configuration, used: Used, *, tests: bool) -> dict[str, Any]:
-        """Values for the templates of a controller alone; see `Middleware`."""
+        """Return template values that only a controller has; see `Middleware`."""
         types = set(used.types)
         libraries, started = ["rclcpp"], ["launch", "launch_ros"]
         if node.actions:
@@ -59,7 +59,7 @@ class Ros2:
             "headers": self._headers(node, used.reports),
             **_build(libraries, types, started, _TESTED if tests else []),
             "subscription_qos": lambda topic: _quality(_usual(topic), topic.topic, configuration),
-            # Where the configuration does not set the durability, it is that of who publishes.
+            # Without a setting, the durability is that of the publisher.
             "kept_qos": lambda topic: (
                 "" if _chosen(topic.topic, configuration).durability else _kept(topic, configuration)
             ),
@@ -68,7 +68,7 @@ class Ros2:
         }
 
     def layer(self, layer: LayerNode, configuration: Configuration, used: Used) -> dict[str, Any]:
-        """Values for the templates of a layer alone; see `Middleware`."""
+        """Return template values that only a layer has; see `Middleware`."""
         types = {*used.types, *(["action_msgs"] if layer.node.actions else [])}
         hands_on = layer.instead and layer.node.hands_on
         libraries = ["rclcpp", *(["rosidl_typesupport_introspection_cpp"] if hands_on else [])]
@@ -78,7 +78,7 @@ class Ros2:
             "names": layer.remapped(_ACTION),
             "launch_path": launch_path(configuration),
             "controller_side": lambda name: f"~/{below_layer(name)}",
-            # The durability of what is handed on is that of who publishes.
+            # Relayed messages have the durability of the publisher.
             "received_qos": lambda topic: _quality(_usual(topic), topic.topic, configuration, with_durability=False),
             "kept_qos": lambda topic: _kept(topic, configuration),
             "sent_qos": lambda topic: f"rclcpp::QoS({_chosen(topic.topic, configuration).depth or QUEUE_DEPTH})",
@@ -93,7 +93,7 @@ class Ros2:
 def _build(
     libraries: Sequence[str], types: set[str], started: Collection[str], tested: Sequence[str] = ()
 ) -> dict[str, Any]:
-    """What the build files read: the libraries of the node, the packages of its types, of its start, of its tests."""
+    """Return values for the build files: libraries of the node, packages of its types, its start and its tests."""
     dependencies = sorted({*libraries, "rclcpp_components", *types})
     return {
         "build_tool": "ament_cmake",
@@ -105,34 +105,34 @@ def _build(
 
 
 def _usual(topic: Subscription | Publisher) -> str:
-    """The quality of service in which messages of a topic are received, where the configuration says nothing."""
+    """Return the default quality of service for receiving messages of a topic."""
     return "rclcpp::SensorDataQoS()" if is_sensor_data(topic.interface.package) else f"rclcpp::QoS({QUEUE_DEPTH})"
 
 
 def _kept(topic: Subscription | Publisher, configuration: Configuration) -> str:
-    """The quality of service in which messages are received that their publishers keep: such come reliably."""
+    """Return the quality of service for receiving messages that publishers store: these are reliable."""
     unreliable = is_sensor_data(topic.interface.package) and not _chosen(topic.topic, configuration).reliability
     usual = f"{_usual(topic)}{'.reliable()' if unreliable else ''}"
     return f"{_quality(usual, topic.topic, configuration, with_durability=False)}.transient_local()"
 
 
 def _client(client: Client) -> str:
-    """The quality of service of calls, or of feedback, where the configuration says nothing."""
+    """Return the default quality of service of calls or feedback."""
     return f"rclcpp::QoS({QUEUE_DEPTH})" if client.cancel else "rclcpp::ServicesQoS()"
 
 
 def _chosen(name: str, configuration: Configuration) -> QualityOfService:
-    """The quality of service in the configuration of a topic, service or action."""
+    """Return the configured quality of service of a topic, service or action."""
     return configuration.qos.get(name.removeprefix("/")) or QualityOfService()
 
 
 def _sent(topic: Publisher) -> str:
-    """The usual quality of service of commands: those sent on change are kept for late subscribers."""
+    """Return the default quality of service of commands. Those sent on change are stored for late subscribers."""
     return f"rclcpp::QoS({QUEUE_DEPTH}){'.transient_local()' if topic.on_change else ''}"
 
 
 def _quality(usual: str, name: str, configuration: Configuration, *, with_durability: bool = True) -> str:
-    """A quality of service as C++: what is usual, and what the configuration says of this name."""
+    """Return a quality of service as C++: the default, changed by the configuration of this name."""
     chosen = _chosen(name, configuration)
     depth = f".keep_last({chosen.depth})" if chosen.depth else ""
     reliability = f".{chosen.reliability}()" if chosen.reliability else ""
