@@ -200,7 +200,7 @@ def test_warnings_of_synthesis(run: Run, courier: Path, form: str) -> None:
     else:
         rules = {finding["id"]: finding for finding in said["runs"][0]["tool"]["driver"]["rules"]}
         summary = rules["shared-topic-conflict"]["shortDescription"]["text"]
-        assert summary == "Two messages to one topic can be sent at the same time."
+        assert summary == "The controller can send two messages on one topic at the same time."
     assert Path("out/Courier.cif").exists()
 
 
