@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.runtime.core.node import StartError
-from robosc.runtime.core.port import CancelAnswer, Goal, GoalHandlers, Outcome
+from robosc.runtime.core.port import CancelAnswer, Goal, GoalHandlers
+from robosc.runtime.ros1.outcomes import outcome
 
 try:
     import actionlib
@@ -18,14 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from robosc.runtime.core.port import Message
-
-_OUTCOMES = {
-    GoalStatus.SUCCEEDED: Outcome.SUCCEEDED,
-    GoalStatus.PREEMPTED: Outcome.CANCELED,
-    GoalStatus.RECALLED: Outcome.CANCELED,
-    GoalStatus.LOST: Outcome.LOST,
-}
-
 
 #: Looks in which a server may be missing.
 _PATIENCE = 10
@@ -86,5 +79,4 @@ def _follow(handle: Any, handlers: GoalHandlers) -> None:
         if status == GoalStatus.REJECTED:
             handlers.rejected()
         else:
-            outcome = _OUTCOMES.get(status, Outcome.ABORTED)
-            handlers.ended(outcome, handle.get_result(), handle.get_goal_status_text())
+            handlers.ended(outcome(status), handle.get_result(), handle.get_goal_status_text())

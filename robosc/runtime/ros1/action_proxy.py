@@ -9,8 +9,9 @@ import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 
 from robosc.runtime.core.cancel_requests import GoalTimes
-from robosc.runtime.core.port import CancelAnswer, Failure, Outcome
+from robosc.runtime.core.port import CancelAnswer, Failure
 from robosc.runtime.core.proxies import ActionProxy, ProxiedGoal
+from robosc.runtime.ros1.outcomes import outcome
 
 if TYPE_CHECKING:
     from robosc.metamodel import rosgraph
@@ -18,11 +19,6 @@ if TYPE_CHECKING:
     from robosc.runtime.core.port import Message
     from robosc.runtime.ros1.node import Ros1Node
 
-_OUTCOMES = {
-    GoalStatus.SUCCEEDED: Outcome.SUCCEEDED,
-    GoalStatus.PREEMPTED: Outcome.CANCELED,
-    GoalStatus.RECALLED: Outcome.CANCELED,
-}
 _CANCELING = (GoalStatus.PREEMPTING, GoalStatus.RECALLING)
 _UNDER_WAY = (GoalStatus.PENDING, GoalStatus.ACTIVE, GoalStatus.PREEMPTING, GoalStatus.RECALLING)
 
@@ -89,7 +85,7 @@ class Ros1ActionProxy(ActionProxy[_Goal]):
             self._forget()
             self._layer.fail(self._action, Failure.REJECTED, "rejected", message.result)
         else:
-            self._receive_end(goal, _OUTCOMES.get(status, Outcome.ABORTED), message.result)
+            self._receive_end(goal, outcome(status), message.result)
         self._results.publish(message)
 
     def _on_status(self, message: Message) -> None:

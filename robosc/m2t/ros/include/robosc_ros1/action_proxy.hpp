@@ -151,8 +151,11 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::_action_goal_type
       case Status::REJECTED:
         this->reject(message.result);
         break;
-      default:
+      case Status::ABORTED:
         this->abort(message.result);
+        break;
+      default:
+        this->lose();
         break;
     }
     result_publisher_.publish(message);
