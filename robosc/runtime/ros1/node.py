@@ -163,8 +163,8 @@ class Ros1Node(Node):
     def type_name(self, interface: rosgraph.Interface) -> str:
         return f"{interface.package}/{interface.type}"
 
-    def other_servers(self, client: Client) -> dict[str, str]:  # noqa: ARG002  # ROS 1 has one server for a name
-        return {}
+    def serving_nodes(self, client: Client) -> list[tuple[str, str]]:  # noqa: ARG002  # nobody looks at them
+        return []
 
     def endpoints(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
         with suppress(OSError, MasterException):
