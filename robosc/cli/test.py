@@ -161,14 +161,14 @@ def _meant(
         return plain, {}
     text, _ = decode(path, files.read(path))
     assert plain.robosc is not None
-    span = plain.robosc.source.span  # a model from a text has a place
+    span = plain.robosc.source.span  # type: ignore[union-attr]  # a model from a text has a place
     longer = extended(text.content, text.offset(span.end_line, span.end_column), conditions)
     types = RosTypes(paths.interfaces)
     reading = read_text(path, paths.libraries, types, Documents({path: longer.text}))
     findings = [*reading.findings, *(check(reading.base, reading.findings, types) if reading.base else ())]
     report.add(finding for finding in map(longer.told, findings) if finding.rule == RULE)
     report.stop_on_errors()
-    robot: rsc.Robot = reading.base  # equal except for the properties
+    robot: rsc.Robot = reading.base  # type: ignore[assignment]  # equal except for the properties
     model = robosc.to_sct(robot)
     meant = dict(zip(conditions, longer.expressions(model), strict=True))
     return Models(model, robosc.to_rosgraph(robot, paths.interfaces), robot), meant
