@@ -25,7 +25,7 @@ def cancel_answer(response: Message, goal: bytes) -> CancelAnswer:
             return CancelAnswer.TERMINATED
         case response.ERROR_UNKNOWN_GOAL_ID:
             return CancelAnswer.UNKNOWN
-        case response.ERROR_NONE if any(uuid_bytes(one.goal_id) == goal for one in response.goals_canceling):
+        case response.ERROR_NONE if any(uuid_bytes(info.goal_id) == goal for info in response.goals_canceling):
             return CancelAnswer.ACCEPTED
     return CancelAnswer.REFUSED
 
