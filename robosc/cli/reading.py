@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import robosc
 from robosc.checks import check
-from robosc.cli import CallError
+from robosc.cli import CallError, say
 from robosc.cli.options import chosen_synthesizer
 from robosc.language import read as read_text
 from robosc.language.libraries import search_folders
@@ -90,6 +90,8 @@ def read_configuration(model: str, chosen: str | None, report: Report) -> Config
     file = Path(chosen) if chosen else config.find(Path(model).parent)
     if file is None:
         return config.Configuration()
+    if not chosen and file.parent != Path(model).parent:
+        say(f"the configuration is {file}: write --config to choose another one", err=True)
     report.may_quote(str(file))
     return config.read(file)
 

@@ -93,6 +93,47 @@ def test_a_call_that_fails_and_times(run_ros2: Runner, tmp_path: Path) -> None:
     assert (status, "1 scenario, 0 failed" in said) == (0, True), said
 
 
+LIFT = """
+robot Shared {
+  component Lift {
+    outgoing message wish with identifier: "/wish", type: boolean
+    service raise with identifier: "/lift/set", request: std_srvs/SetBool, response: std_srvs/SetBool
+    service lower with identifier: "/lift/set", request: std_srvs/SetBool, response: std_srvs/SetBool
+
+    behaviour {
+      variable up: boolean
+      on response from wish do up := value
+
+      initial marked state down { on request to raise if up goto rising }
+      state rising { on response from raise goto raised on error from raise goto down }
+      marked state raised { on request to lower if !up goto sinking }
+      state sinking { on response from lower goto down on error from lower goto raised }
+    }
+  }
+
+  provide raise with { data: true }
+  provide lower with { data: false }
+}
+"""
+LIFTS = """
+scenario "up and down"
+  wish with true
+  expect raise sent
+  response from raise
+  wish with false
+  expect lower sent
+  response from lower
+  expect Lift.down
+"""
+
+
+def test_two_services_of_one_server(run_ros2: Runner, tmp_path: Path) -> None:
+    model = tmp_path / "lift.rscd"
+    model.write_text(LIFT, encoding="utf-8")
+    status, said = played(run_ros2, run_ros2.ros.python, tmp_path, LIFTS, model=model)
+    assert (status, "1 scenario, 0 failed" in said) == (0, True), said
+
+
 CARRIER = """\
 robot Carrier {
   interface following use FollowWaypoints from nav2_msgs
