@@ -12,9 +12,11 @@ from jsonschema import Draft202012Validator
 from robosc.configuration import Configuration
 from robosc.configuration.parameters import layer_parameters
 from robosc.files.resources import locate
+from robosc.runtime.core.cancel_requests import GoalTimes
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.layer import Layer
-from robosc.runtime.core.port import Failure
+from robosc.runtime.core.port import Failure, Outcome
+from robosc.runtime.core.proxies import ActionProxy, ProxiedGoal
 from robosc.runtime.core.settings import SafeMessages, Settings
 from robosc.semantics.messages import message_named
 from tests.runtime.fake import FakePort, Record, supervised
@@ -136,6 +138,46 @@ def test_a_goal_that_someone_else_has_canceled_is_an_error(bench: Bench) -> None
     bench.layer.end_canceled(bench.action, Failure.CANCELED, "canceled")
     assert ("in", "action_go_to.u_error") in bench.directions()
     assert bench.port.said == ["/go_to: canceled"]
+
+
+class Proxy(ActionProxy[ProxiedGoal]):
+    """An action whose robot is always there."""
+
+    def _is_served(self, goal: ProxiedGoal) -> bool:  # noqa: ARG002
+        return True
+
+    def _send(self, goal: ProxiedGoal) -> bool:  # noqa: ARG002
+        return True
+
+    def _send_cancel(self, goal: ProxiedGoal) -> None:
+        pass
+
+    def _is_canceling(self, goal: ProxiedGoal) -> bool:  # noqa: ARG002
+        return False
+
+    def _end(self, goal: ProxiedGoal, why: str) -> None:
+        pass
+
+
+@pytest.mark.parametrize(
+    ("outcome", "late", "said"),
+    [
+        (Outcome.ABORTED, False, "aborted"),
+        (Outcome.ABORTED, True, "aborted"),
+        (Outcome.LOST, False, "the server has lost the goal"),
+        (Outcome.LOST, True, "the server has lost the goal"),
+    ],
+)
+def test_a_goal_without_an_end_is_lost(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch, outcome: Outcome, late: bool, said: str
+) -> None:
+    told: list[tuple[Any, ...]] = []
+    monkeypatch.setattr(bench.layer, "fail", lambda _, *reason: told.append(reason[:2]))
+    proxy = Proxy(bench.port, bench.event_loop, bench.action, bench.layer, GoalTimes(2.0, 2.0))
+    goal = ProxiedGoal("identifier", Record(), sent=True, accepted=True, late=late)
+    proxy._receive_end(goal, outcome, Record())
+    reason = {Outcome.LOST: Failure.LOST, Outcome.ABORTED: Failure.TIMEOUT if late else Failure.ABORTED}[outcome]
+    assert told == [(reason, said)]
 
 
 def test_answers_and_failures_move_the_supervisor_and_it_settles(bench: Bench) -> None:

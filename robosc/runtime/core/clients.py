@@ -22,6 +22,7 @@ POLL = 0.05
 #: Seconds without a word of a goal that was not accepted in time, after which it counts as lost.
 LOST = 30.0
 LOST_RESULT = "the goal has ended, but its result did not come"
+LOST_GOAL = "the server has lost the goal"
 UNKNOWN_GOAL = "the server does not know the goal"
 
 
@@ -342,7 +343,7 @@ class ActionClient:
             case Outcome.ABORTED:
                 self._fail(Failure.ABORTED, f"aborted{said}", result)
             case Outcome.LOST:
-                self._lose(f"the server has lost the goal{said}")
+                self._lose(f"{LOST_GOAL}{said}")
 
     def _end_canceled(self, why: str, result: Message) -> None:
         late = self._late

@@ -19,7 +19,7 @@ Client: TypeAlias = "rosgraph.ServiceClient | rosgraph.ActionClient"
 
 
 class Outcome(StrEnum):
-    """How a goal has ended. `LOST`: its server does not know it any more."""
+    """How a goal has ended. `LOST`: its server does not know it any more, or its end; the robot may still move."""
 
     SUCCEEDED = "succeeded"
     CANCELED = "canceled"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from robosc.runtime.core.cancel_requests import CANCELING, CancelRequests, GoalTimes
-from robosc.runtime.core.clients import LOST, LOST_RESULT, POLL, UNKNOWN_GOAL, Answers, ServiceClient
+from robosc.runtime.core.clients import LOST, LOST_GOAL, LOST_RESULT, POLL, UNKNOWN_GOAL, Answers, ServiceClient
 from robosc.runtime.core.port import CancelAnswer, Failure, Outcome
 
 if TYPE_CHECKING:
@@ -237,8 +237,10 @@ class ActionProxy(ABC, Generic[_Goal]):
                 self._layer.respond(self._action, result)
             case Outcome.CANCELED:
                 self._layer.end_canceled(self._action, late or Failure.CANCELED, "canceled", result)
-            case _:
+            case Outcome.ABORTED:
                 self._layer.fail(self._action, late or Failure.ABORTED, "aborted", result)
+            case Outcome.LOST:
+                self._layer.fail(self._action, Failure.LOST, LOST_GOAL)
 
     def _give_up(self, goal: _Goal, reason: Failure, why: str) -> None:
         """The goal has ended without a result, or nobody knows what becomes of it."""

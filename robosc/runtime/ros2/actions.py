@@ -13,8 +13,9 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from robosc.runtime.core.cancel_requests import GoalTimes
 from robosc.runtime.core.clients import LOST
-from robosc.runtime.core.port import CancelAnswer, Failure, GoalHandlers, Outcome
+from robosc.runtime.core.port import Failure, GoalHandlers, Outcome
 from robosc.runtime.core.proxies import ActionProxy, ProxiedGoal
+from robosc.runtime.ros2.answers import cancel_answer, outcome, uuid_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,19 +25,8 @@ if TYPE_CHECKING:
     from robosc.runtime.core.port import Message
     from robosc.runtime.ros2.node import Ros2Node
 
-_OUTCOMES = {GoalStatus.STATUS_SUCCEEDED: Outcome.SUCCEEDED, GoalStatus.STATUS_CANCELED: Outcome.CANCELED}
 #: How many looks for a server there are for each at the graph.
 LOOKS = 4
-
-
-def cancel_answer(response: Message) -> CancelAnswer:
-    """The answer of a server to a request to cancel one goal."""
-    match response.return_code:
-        case response.ERROR_GOAL_TERMINATED:
-            return CancelAnswer.TERMINATED
-        case response.ERROR_UNKNOWN_GOAL_ID:
-            return CancelAnswer.UNKNOWN
-    return CancelAnswer.ACCEPTED if response.goals_canceling else CancelAnswer.REFUSED
 
 
 def settle(answered: Callable[[Message], None], failed: Callable[[str], None], future: Any) -> None:
@@ -71,7 +61,8 @@ class SentGoal:
     def cancel(self) -> None:
         """Asks the server to cancel it."""
         answer = self._handle.cancel_goal_async()
-        answered = lambda response: self._handlers.cancel_answered(cancel_answer(response))  # noqa: E731
+        goal = uuid_bytes(self._handle.goal_id)
+        answered = lambda response: self._handlers.cancel_answered(cancel_answer(response, goal))  # noqa: E731
         answer.add_done_callback(partial(settle, answered, lambda _: None))
 
     def is_canceling(self) -> bool:
@@ -92,7 +83,7 @@ class SentGoal:
         handle.get_result_async().add_done_callback(partial(settle, self._ended, self._failed))
 
     def _ended(self, answer: Any) -> None:
-        self._handlers.ended(_OUTCOMES.get(answer.status, Outcome.ABORTED), answer.result, "")
+        self._handlers.ended(outcome(answer.status), answer.result, "")
 
     def _failed(self, why: str) -> None:
         self._handlers.ended(Outcome.LOST, None, why)
@@ -159,10 +150,10 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
     # From the controller
 
     def _on_goal(self, request: Message, answer: LateAnswer) -> None:
-        self._receive_goal(_Goal(_bytes(request.goal_id), request, answer=answer))
+        self._receive_goal(_Goal(uuid_bytes(request.goal_id), request, answer=answer))
 
     def _on_result_wanted(self, request: Message, answer: LateAnswer) -> None:
-        identifier = _bytes(request.goal_id)
+        identifier = uuid_bytes(request.goal_id)
         goal = self._at_hand(identifier)
         if goal is not None:
             goal.waiting.append(answer)
@@ -201,19 +192,19 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
                 self._give_up(goal, Failure.LOST, "its result can't be asked for")
 
     def _on_feedback(self, message: Message) -> None:
-        if self._receive_feedback(_bytes(message.goal_id), message.feedback):
+        if self._receive_feedback(uuid_bytes(message.goal_id), message.feedback):
             self._feedback.publish(message)
 
     def _on_result(self, goal: _Goal, response: Message) -> None:
         if self._goal is goal:
-            self._receive_end(goal, _OUTCOMES.get(response.status, Outcome.ABORTED), response.result)
+            self._receive_end(goal, outcome(response.status), response.result)
             self._finish(goal, response)
 
     def _on_status(self, message: Message) -> None:
         """That a goal has ended is told with its result, not before: the supervisor knows first."""
         self._statuses = self._types.GoalStatusMessage()
         for status in message.status_list:
-            identifier = _bytes(status.goal_info.goal_id)
+            identifier = uuid_bytes(status.goal_info.goal_id)
             goal = self._at_hand(identifier)
             running = goal is not None
             if goal is not None:
@@ -242,7 +233,8 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
     def _send_cancel(self, goal: _Goal) -> None:
         request = self._types.CancelGoalService.Request()
         request.goal_info.goal_id.uuid = list(goal.identifier)
-        self._ask_to_cancel(request, lambda response: self._cancel_answered(goal, cancel_answer(response)))
+        answered = lambda response: self._cancel_answered(goal, cancel_answer(response, goal.identifier))  # noqa: E731
+        self._ask_to_cancel(request, answered)
 
     def _is_canceling(self, goal: _Goal) -> bool:
         return bool(goal.status == GoalStatus.STATUS_CANCELING)
@@ -266,7 +258,7 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
         if goal.sent:
             self._ended = (goal.identifier, response)
         for status in self._statuses.status_list:
-            if _bytes(status.goal_info.goal_id) == goal.identifier:
+            if uuid_bytes(status.goal_info.goal_id) == goal.identifier:
                 status.status = response.status
         if goal.accepted:
             self._status.publish(self._statuses)
@@ -299,7 +291,3 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
         if seconds is not None:
             self._event_loop.call_later(seconds, give_up)
         return future
-
-
-def _bytes(identifier: Any) -> bytes:
-    return bytes(bytearray(identifier.uuid))

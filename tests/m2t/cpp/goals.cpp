@@ -1,6 +1,8 @@
 // Checks of the goal of an action, with a middleware that only counts. Prints what does not hold, as `headers.cpp`.
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <utility>
@@ -9,6 +11,7 @@
 #include "checks.hpp"
 #include "robosc/goal_client.hpp"
 #include "robosc/goal_proxy.hpp"
+#include "robosc_ros2/cancel_answer.hpp"
 
 namespace {
 
@@ -77,6 +80,7 @@ struct Client : GoalClient<Countdown, int, int> {
   using GoalClient::cancel_answered;
   using GoalClient::canceled;
   using GoalClient::hear;
+  using GoalClient::lose;
   using GoalClient::succeed;
 
   bool is_served() override { return served; }
@@ -122,6 +126,7 @@ void each_end_has_its_reason_and_result() {
   Client client;
   client.accepted().succeed(1);
   client.accepted().abort(": stuck", 2);
+  client.accepted().lose(": stuck");
   client.accepted().canceled(": stuck", 3);
   client.accepted().cancel();
   client.succeed(4);
@@ -135,6 +140,7 @@ void each_end_has_its_reason_and_result() {
   client.cancel();
   Countdown::expire(kPoll);
   CHECK((client.told == Client::Told{"response 1", "error aborted aborted: stuck 2",
+                                     "error lost the server has lost the goal: stuck 0",
                                      "canceled canceled canceled by someone else: stuck 3", "response 4",
                                      "error lost the server is gone 0", "error unavailable no server within 1000 ms 0",
                                      "canceled canceled canceled before it was sent 0"}));
@@ -198,6 +204,43 @@ void a_goal_that_is_accepted_late_is_told_when_it_has_ended() {
                                      "error lost neither accepted nor rejected 0"}));
 }
 
+void a_lost_goal_is_no_goal_that_was_accepted_late_and_has_ended() {
+  Client client;
+  client.begin();
+  Countdown::expire(kTimeout);
+  client.accept();
+  client.lose();
+  CHECK(client.told == Client::Told{"error lost the server has lost the goal 0"});
+}
+
+/// As `action_msgs/srv/CancelGoal` has it.
+struct CancelResponse {
+  static constexpr std::int8_t ERROR_NONE = 0, ERROR_REJECTED = 1, ERROR_UNKNOWN_GOAL_ID = 2, ERROR_GOAL_TERMINATED = 3;
+  struct Identifier {
+    std::array<std::uint8_t, 16> uuid;
+  };
+  struct Goal {
+    Identifier goal_id;
+  };
+  std::int8_t return_code;
+  std::vector<Goal> goals_canceling;
+};
+
+void only_an_answer_without_error_that_names_the_goal_accepts_a_cancel() {
+  const std::array<std::uint8_t, 16> own = {1}, other = {2};
+  const std::vector<CancelResponse::Goal> owns = {{{own}}}, others = {{{other}}}, both = {{{other}}, {{own}}};
+  CHECK(cancel_answer(CancelResponse{0, owns}, own) == CancelAnswer::accepted);
+  CHECK(cancel_answer(CancelResponse{0, both}, own) == CancelAnswer::accepted);
+  CHECK(cancel_answer(CancelResponse{0, {}}, own) == CancelAnswer::refused);
+  CHECK(cancel_answer(CancelResponse{0, others}, own) == CancelAnswer::refused);
+  for (const std::int8_t code : {std::int8_t{1}, std::int8_t{77}, std::int8_t{-1}}) {
+    CHECK(cancel_answer(CancelResponse{code, {}}, own) == CancelAnswer::refused);
+    CHECK(cancel_answer(CancelResponse{code, owns}, own) == CancelAnswer::refused);
+  }
+  CHECK(cancel_answer(CancelResponse{2, {}}, own) == CancelAnswer::unknown);
+  CHECK(cancel_answer(CancelResponse{3, {}}, own) == CancelAnswer::terminated);
+}
+
 struct Proxy : GoalProxy<Countdown, int, int, int> {
   using Told = std::vector<std::string>;
 
@@ -210,6 +253,7 @@ struct Proxy : GoalProxy<Countdown, int, int, int> {
   using GoalProxy::finish;
   using GoalProxy::hear;
   using GoalProxy::look;
+  using GoalProxy::lose;
   using GoalProxy::succeed;
 
   Handlers handlers() {
@@ -290,6 +334,8 @@ void a_layer_waits_for_the_end_of_a_goal_that_is_accepted_late() {
   proxy.finish();
   proxy.canceled(2);
   CHECK(proxy.told.back() == "canceled timeout canceled 2");
+  proxy.lose();
+  CHECK(proxy.told.back() == "error lost the server has lost the goal 0");
 
   CHECK(proxy.admit(1, [] {}));
   proxy.look();
@@ -327,6 +373,8 @@ int main() {
   a_refused_cancel_is_reported_once_and_asked_again();
   an_unknown_goal_is_lost_and_a_terminated_one_without_a_result();
   a_goal_that_is_accepted_late_is_told_when_it_has_ended();
+  a_lost_goal_is_no_goal_that_was_accepted_late_and_has_ended();
+  only_an_answer_without_error_that_names_the_goal_accepts_a_cancel();
   a_layer_follows_a_goal_that_it_cancels_to_its_end();
   a_layer_waits_for_the_end_of_a_goal_that_is_accepted_late();
   a_layer_hears_that_a_goal_is_lost();

@@ -154,8 +154,12 @@ class Peer:
         self.at_once |= {"accept": accept, "succeed": accept and succeed}
 
     def on_cancel(self, answer):
-        """What becomes of requests to cancel: `grant`, `ignore` (taken, but the goal goes on), `refuse`."""
+        """What becomes of requests to cancel: `grant`, `ignore` (taken, but the goal goes on), `refuse`, `mistake`.
+
+        By mistake another goal is canceled (ROS 2).
+        """
         self.at_once["cancel"] = answer
+        self.ros.mistaken = answer == "mistake"
 
     def decide(self, number, accept):
         """Accepts or rejects a goal."""
@@ -166,7 +170,10 @@ class Peer:
         self.goals[number].progress(fields)
 
     def end(self, number, how, fields=None):
-        """Ends a goal that was accepted: `succeeded`, `aborted`, `cancelled`; with fields of its result."""
+        """Ends a goal that was accepted: `succeeded`, `aborted`, `cancelled`; with fields of its result.
+
+        `open`: its result comes with a status that is no end, and it goes on.
+        """
         self.goals[number].end(how, fields or {})
 
     def cancel_elsewhere(self, number):

@@ -103,6 +103,10 @@ class _Goal:
 
     def end(self, how, fields=None):
         self.accepted.wait()
+        if how == "open":
+            status = GoalStatus(goal_id=self.handle.get_goal_id(), status=GoalStatus.ACTIVE)
+            self.handle.action_server.publish_result(status, self.result())
+            return
         set_end = {
             "succeeded": self.handle.set_succeeded,
             "aborted": self.handle.set_aborted,

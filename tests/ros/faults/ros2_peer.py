@@ -6,6 +6,7 @@ import time
 from queue import Queue
 
 import rclpy
+from action_msgs.msg import GoalInfo, GoalStatus
 from action_msgs.srv import CancelGoal
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
@@ -29,6 +30,7 @@ class Ros:
         self.executor = MultiThreadedExecutor(num_threads=8) if name == "server" else SingleThreadedExecutor()
         self.executor.add_node(self.node)
         self.actions = None
+        self.mistaken = False
         self.spinning = threading.Thread(target=self._spin, daemon=True)
         self.spinning.start()
 
@@ -98,7 +100,7 @@ class Ros:
 
         def accept(handle):
             goal = goals[bytes(handle.goal_id.uuid)] = waiting.get()
-            goal.handle = handle
+            goal.handle, goal.server = handle, server
             goal.accepted.set()
             handle.execute()
 
@@ -111,7 +113,8 @@ class Ros:
                 goal.ends.put(("cancelled", {}))
             return CancelResponse.REJECT if do == "refuse" else CancelResponse.ACCEPT
 
-        self.actions = ActionServer(
+        server = self.actions = _Server(
+            self,
             self.node,
             action,
             name,
@@ -122,6 +125,29 @@ class Ros:
             callback_group=self.group,
         )
         self.executor.wake()
+
+
+class _Server(ActionServer):
+    """Can do what no library's server does."""
+
+    def __init__(self, ros, *arguments, **options):
+        super().__init__(*arguments, **options)
+        self._ros = ros
+
+    async def _execute_cancel_request(self, request_header_and_message):
+        header, request = request_header_and_message
+        if not self._ros.mistaken:
+            await super()._execute_cancel_request(request_header_and_message)
+            return
+        self._cancel_callback(self._goal_handles[bytes(request.goal_info.goal_id.uuid)])
+        other = GoalInfo()
+        other.goal_id.uuid = [7] * 16
+        self._handle.send_cancel_response(header, CancelGoal.Response(goals_canceling=[other]))
+
+    def send_open_result(self, identifier):
+        """Answers whoever waits for a goal's result that it is executing."""
+        response = self._action_type.Impl.GetResultService.Response(status=GoalStatus.STATUS_EXECUTING)
+        self._result_futures[bytes(identifier.uuid)].set_result(response)
 
 
 class _Goal:
@@ -150,6 +176,9 @@ class _Goal:
 
     def end(self, how, fields=None):
         self.accepted.wait()
+        if how == "open":
+            self.server.send_open_result(self.handle.goal_id)
+            return
         if how == "cancelled" and not self.handle.is_cancel_requested:
             self.cancel_elsewhere()
         self.ends.put((how, fields or {}))

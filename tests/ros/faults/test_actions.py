@@ -48,6 +48,7 @@ def test_goal_rejected(scout: Scout, server: Peer) -> None:
     [
         ("aborted", "/travel: aborted", "aborted"),
         ("cancelled", "/travel: canceled by someone else", "canceled"),
+        ("open", "/travel: the server has lost the goal", "lost"),
     ],
 )
 def test_goal_ends_otherwise(scout: Scout, server: Peer, how: str, text: str, reason: str) -> None:
@@ -58,6 +59,8 @@ def test_goal_ends_otherwise(scout: Scout, server: Peer, how: str, text: str, re
     scout.until(lambda: scout.variable("Navigator", "why") == reason, "the reason is kept")
     scout.until_says(since, text)
     assert scout.events(since, RESPONSE) == scout.events(since, CANCEL) == []
+    if how == "open":
+        server.do("end", number=number, how="succeeded")
     succeed(scout, server, number + 1)
 
 
@@ -129,6 +132,22 @@ def test_cancel_refused(scout: Scout, server: Peer) -> None:
     assert scout.events(since, ERROR) == scout.events(since, CANCELED) == []
     if scout.version == 2:
         assert scout.says(since, "/travel: the server refuses to cancel the goal") == 1
+
+
+def test_other_goal_canceled_by_mistake(scout: Scout, server: Peer) -> None:
+    if scout.version == 1:
+        pytest.skip("a server of ROS 1 does not answer a request to cancel")
+    server.do("on_cancel", answer="mistake")
+    since, number = travel(scout, server)
+    scout.until_state("Navigator", "travelling")
+    scout.send("/stop")
+    server.wait("cancel", value=number)
+    scout.until_says(since, "/travel: the server refuses to cancel the goal")
+    heard = len(server.said)
+    server.wait("cancel", heard, value=number)
+    server.do("on_cancel", answer="grant")
+    scout.until_event(since, CANCELED)
+    assert scout.events(since, ERROR) == scout.events(since, RESPONSE) == []
 
 
 def travel(scout: Scout, server: Peer, accept: bool | None = True) -> tuple[Moment, int]:

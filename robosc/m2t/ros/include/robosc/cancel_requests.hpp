@@ -17,6 +17,8 @@ inline namespace ROBOSC_VERSION {
 /// the server does not know it.
 enum class CancelAnswer { accepted, refused, terminated, unknown };
 
+/// Why a goal is lost whose result comes without an end.
+inline constexpr const char* kLostGoal = "the server has lost the goal";
 /// How long the end of a node waits for the end of a goal whose server has accepted to cancel it.
 inline constexpr std::chrono::milliseconds kFarewell(500);
 

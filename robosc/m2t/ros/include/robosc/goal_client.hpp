@@ -168,6 +168,9 @@ class GoalClient {
     finish(handlers_.error, Failure::aborted, "aborted" + more, result);
   }
 
+  /// The server does not know the goal any more, or its end: the robot may still move.
+  void lose(const std::string& more = "") { fail(Failure::lost, kLostGoal + more); }
+
   /// Nothing is known of a result.
   void fail(Failure reason, const std::string& why) { finish(handlers_.error, reason, why, ResultType()); }
 

@@ -157,6 +157,8 @@ class GoalProxy {
     handlers_.canceled(late_ ? Failure::timeout : Failure::canceled, "canceled", result);
   }
   void abort(const Result& result) { handlers_.error(late_ ? Failure::timeout : Failure::aborted, "aborted", result); }
+  /// The server does not know the goal any more, or its end: the robot may still move.
+  void lose() { handlers_.error(Failure::lost, kLostGoal, Result()); }
 
   /// It has ended without a result, or nobody knows what becomes of it.
   void fail(Failure reason, const std::string& why) {

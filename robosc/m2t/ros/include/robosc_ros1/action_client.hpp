@@ -124,7 +124,7 @@ class ActionClient : public GoalClient<Countdown, typename Type::_action_feedbac
     const Result ended = result ? *result : Result();
     switch (state.state_) {
       case TerminalState::SUCCEEDED:
-        return result ? this->succeed(*result) : lose(text);
+        return result ? this->succeed(*result) : this->lose(text);
       case TerminalState::REJECTED:
         return this->fail(Failure::rejected, "rejected" + text);
       case TerminalState::ABORTED:
@@ -133,11 +133,9 @@ class ActionClient : public GoalClient<Countdown, typename Type::_action_feedbac
       case TerminalState::PREEMPTED:
         return this->canceled(text, ended);
       default:
-        return lose(text);
+        return this->lose(text);
     }
   }
-
-  void lose(const std::string& text) { this->fail(Failure::lost, "the server has lost the goal" + text); }
 
   const std::string name_;
   int missed_ = 0;

@@ -121,8 +121,10 @@ class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typen
         return this->succeed(*result.result);
       case rclcpp_action::ResultCode::CANCELED:
         return this->canceled("", *result.result);
-      default:
+      case rclcpp_action::ResultCode::ABORTED:
         return this->abort("", *result.result);
+      default:
+        return this->lose();
     }
   }
 
@@ -131,7 +133,7 @@ class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typen
     if (!handle_) return;
     try {
       client_->async_cancel_goal(handle_, mine<CancelGoal::Response::SharedPtr>([this](const auto& answer) {
-                                   this->cancel_answered(cancel_answer(*answer));
+                                   this->cancel_answered(cancel_answer(*answer, handle_->get_goal_id()));
                                  }));
     } catch (const rclcpp_action::exceptions::UnknownGoalHandleError&) {
       this->await_result();  // It has ended; its result is on the way.

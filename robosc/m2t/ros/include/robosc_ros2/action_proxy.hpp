@@ -166,8 +166,11 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
       case Status::STATUS_CANCELED:
         this->canceled(response.result);
         break;
-      default:
+      case Status::STATUS_ABORTED:
         this->abort(response.result);
+        break;
+      default:
+        this->lose();
         break;
     }
     conclude(response);
@@ -241,7 +244,7 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
     auto request = std::make_shared<typename CancelGoal::Request>();
     request->goal_info.goal_id.uuid = id;
     ask<CancelGoal>(*cancel_client_, request, [this, id](const typename CancelGoal::Response& response) {
-      if (is_running(id)) this->cancel_answered(cancel_answer(response));
+      if (is_running(id)) this->cancel_answered(cancel_answer(response, id));
     });
   }
 

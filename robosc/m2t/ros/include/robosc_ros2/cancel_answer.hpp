@@ -2,7 +2,7 @@
 #ifndef ROBOSC_ROS2_CANCEL_ANSWER_HPP_
 #define ROBOSC_ROS2_CANCEL_ANSWER_HPP_
 
-#include <action_msgs/srv/cancel_goal.hpp>
+#include <algorithm>
 
 #include "robosc/cancel_requests.hpp"
 #include "robosc/version.hpp"
@@ -10,12 +10,15 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// The answer to a request to cancel one goal.
-inline CancelAnswer cancel_answer(const action_msgs::srv::CancelGoal::Response& response) {
-  using Response = action_msgs::srv::CancelGoal::Response;
+/// The answer to a request to cancel the goal `id`; one that names only other goals is a refusal. `Response`: that of
+/// `action_msgs/srv/CancelGoal`.
+template <typename Response, typename Id>
+CancelAnswer cancel_answer(const Response& response, const Id& id) {
   if (response.return_code == Response::ERROR_GOAL_TERMINATED) return CancelAnswer::terminated;
   if (response.return_code == Response::ERROR_UNKNOWN_GOAL_ID) return CancelAnswer::unknown;
-  return response.goals_canceling.empty() ? CancelAnswer::refused : CancelAnswer::accepted;
+  const auto& goals = response.goals_canceling;
+  const bool named = std::any_of(goals.begin(), goals.end(), [&](const auto& goal) { return goal.goal_id.uuid == id; });
+  return response.return_code == Response::ERROR_NONE && named ? CancelAnswer::accepted : CancelAnswer::refused;
 }
 
 }  // namespace ROBOSC_VERSION
