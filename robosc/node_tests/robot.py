@@ -137,9 +137,9 @@ class Robot:
         """Do nothing: no test reads statuses."""
         return 0
 
-    def other_servers(self, client: rosgraph.ServiceClient | rosgraph.ActionClient) -> dict[str, str]:  # noqa: ARG002  # a trace has no other nodes
-        """No servers of other types."""
-        return {}
+    def serving_nodes(self, client: rosgraph.ServiceClient | rosgraph.ActionClient) -> list[tuple[str, str]]:  # noqa: ARG002  # a trace has no other nodes
+        """No other nodes."""
+        return []
 
     def endpoints(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
         """Return nothing: there is no other node."""

@@ -83,8 +83,8 @@ class FakePort:
     statuses: list[list[ComponentStatus]] = field(default_factory=list)
     said: list[str] = field(default_factory=list)
     others: dict[Any, list[Endpoint]] = field(default_factory=dict)
-    #: Of the wrong type: nodes to types.
-    servers: dict[str, str] = field(default_factory=dict)
+    #: Nodes and types, of each service and action.
+    servers: list[tuple[str, str]] = field(default_factory=list)
     hearing: int = 1
     #: What has arrived and was not handled yet.
     arrived: list[Callable[[], None]] = field(default_factory=list)
@@ -139,7 +139,7 @@ class FakePort:
     def status_listeners(self) -> int:
         return self.hearing
 
-    def other_servers(self, client: object) -> dict[str, str]:
+    def serving_nodes(self, client: object) -> list[tuple[str, str]]:
         return self.servers
 
     def endpoints(self) -> dict[Any, list[Endpoint]]:

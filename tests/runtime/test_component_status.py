@@ -103,7 +103,7 @@ def test_faults_of_the_graph_are_told_as_long_as_they_last(tmp_path: Path) -> No
 def test_a_server_of_another_type_is_told(tmp_path: Path) -> None:
     world = World(SCOUT, tmp_path / "events.jsonl", diagnostics_ms=100).start()
     world.port.served = False
-    world.port.servers = {"/switch": "std_srvs/Trigger"}
+    world.port.servers = [("/switch", "std_srvs/Trigger")]
     lamp = next(client for client in world.graph.serviceClients if client.identifier == "/lamp")
     fault = f"/switch serves std_srvs/Trigger, not {world.port.type_name(lamp.interface)}"
     world.hear("light", data=True)
@@ -111,11 +111,50 @@ def test_a_server_of_another_type_is_told(tmp_path: Path) -> None:
     assert world.port.said.count(f"/lamp: {fault}") == world.port.said.count("/lamp: the server has another type") == 1
     assert not [text for text in world.port.said if text.startswith("/lamp: no server")]
     assert status(world, "Lamp").message == f"dark; /lamp: {fault}; /lamp: the server has another type"
-    world.port.servers, world.port.served = {}, True
+    world.port.servers, world.port.served = [], True
     world.wait(2.0)
     world.port.calls[-1].answered(Record(success=True, message="on"))
     world.wait(0.2)
     assert not status(world, "Lamp").warns
+
+
+def test_several_servers_are_told_as_long_as_they_last(tmp_path: Path) -> None:
+    world = World(SCOUT, tmp_path / "events.jsonl", diagnostics_ms=100).start()
+    lamp = next(client for client in world.graph.serviceClients if client.identifier == "/lamp")
+    kind = world.port.type_name(lamp.interface)
+    fault = "/lamp: /rival and /switch serve it: only one answer counts"
+    for _ in range(2):
+        world.port.servers = [("/switch", kind), ("/rival", kind), ("/stranger", "std_srvs/Trigger")]
+        world.wait(2.0)
+        assert status(world, "Lamp").message == f"dark; {fault}"
+        world.port.servers = []
+        world.wait(2.0)
+        assert not status(world, "Lamp").warns
+    assert world.port.said.count(fault) == 1
+    assert not [text for text in world.port.said if "/stranger" in text]
+
+
+def test_a_failure_beside_several_servers_has_its_own_reason(tmp_path: Path) -> None:
+    world = World(SCOUT, tmp_path / "events.jsonl", diagnostics_ms=100).start()
+    lamp = next(client for client in world.graph.serviceClients if client.identifier == "/lamp")
+    world.port.servers = [(name, world.port.type_name(lamp.interface)) for name in ("/a", "/b")]
+    world.hear("light", data=True)
+    world.wait(12.0)
+    assert [text for text in world.port.said if text.startswith("/lamp: no answer")]
+    assert "/lamp: the server has another type" not in world.port.said
+
+
+def test_a_server_that_has_come_back_is_no_second_one_until_ros_must_know(tmp_path: Path) -> None:
+    world = World(SCOUT, tmp_path / "events.jsonl", diagnostics_ms=100).start()
+    lamp = next(client for client in world.graph.serviceClients if client.identifier == "/lamp")
+    twice = [("/switch", world.port.type_name(lamp.interface))] * 2
+    for servers in (twice, []):
+        world.port.servers = servers
+        world.wait(22.0)
+        assert not status(world, "Lamp").warns
+    world.port.servers = twice
+    world.wait(30.0)
+    assert status(world, "Lamp").message == "dark; /lamp: several nodes /switch serve it: only one answer counts"
 
 
 def test_commands_wait_for_the_topics_that_are_named(tmp_path: Path) -> None:

@@ -226,7 +226,7 @@ class Controller(EventHandler):
         self._failures[client].why = ""
 
     def _note_failure(self, client: Client, why: str) -> None:
-        if self._monitor.faults(client):
+        if self._monitor.has_other_type(client):
             why = OTHER_TYPE
         failure = self._failures[client]
         if failure.why != why:

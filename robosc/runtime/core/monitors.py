@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import rosgraph
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
 #: From one look at the graph to the next, in seconds, and after how many looks a topic should have a publisher.
 _PERIOD = 1.0
 _PATIENCE = 5
+#: Looks for which two nodes of one name may serve: one that was killed and started anew is there twice for 20 s.
+_LEASE = 25
 #: Why a call or goal has failed where only such a server is there.
 OTHER_TYPE = "the server has another type"
 
@@ -57,8 +60,8 @@ class GraphMonitor:
     """Looks every second at the other nodes on the node's topics, and at the servers of what it calls.
 
     Each fault is logged once, and `faults` has it as long as it lasts: another type, a quality of service that does not
-    fit, no publisher for five seconds, another publisher on a topic that the controller commands, and a server of
-    another type where there is none of the right one.
+    fit, no publisher for five seconds, another publisher on a topic that the controller commands, a server of another
+    type where there is none of the right one, and several servers of the right type.
     """
 
     def __init__(self, port: ControllerPort, loop: EventLoop, clients: Sequence[Client] = ()) -> None:
@@ -66,6 +69,8 @@ class GraphMonitor:
         self._loop = loop
         self._clients = clients
         self._missing: dict[str, int] = {}
+        self._twice: Counter[Client] = Counter()
+        self._other_types: set[Client] = set()
         self._reported: set[str] = set()
         self._faults: dict[rosgraph.Subscription | rosgraph.Publisher | Client, list[str]] = {}
 
@@ -77,8 +82,13 @@ class GraphMonitor:
         """The faults of a topic, service or action at the last look."""
         return self._faults.get(element, ())
 
+    def has_other_type(self, client: Client) -> bool:
+        """Whether the only servers at the last look were of another type."""
+        return client in self._other_types
+
     def _look(self) -> None:
         self._faults = {}
+        self._other_types = set()
         for element, endpoints in self._port.endpoints().items():
             if isinstance(element, rosgraph.Subscription):
                 self._check_subscription(element, endpoints)
@@ -106,10 +116,21 @@ class GraphMonitor:
                 self._note(publisher, f"{publisher.topic}: {endpoint.node} publishes it, too")
 
     def _check_servers(self, client: Client) -> None:
-        if not self._port.is_served(client):
-            expected = self._port.type_name(client.interface)
-            for node, other in self._port.other_servers(client).items():
-                self._note(client, f"{client.identifier}: {node} serves {other}, not {expected}")
+        expected, serving = self._port.type_name(client.interface), self._port.serving_nodes(client)
+        others = [] if self._port.is_served(client) else [server for server in serving if server[1] != expected]
+        for node, other in others:
+            self._other_types.add(client)
+            self._note(client, f"{client.identifier}: {node} serves {other}, not {expected}")
+        self._check_single(client, sorted(node for node, kind in serving if kind == expected))
+
+    def _check_single(self, client: Client, servers: list[str]) -> None:
+        """Note several servers of the right type: the first answer counts, whatever the others do."""
+        names = sorted(set(servers))
+        self._twice[client] = self._twice[client] + 1 if len(names) < len(servers) else 0
+        if len(names) > 1:
+            self._note(client, f"{client.identifier}: {' and '.join(names)} serve it: only one answer counts")
+        elif self._twice[client] > _LEASE:
+            self._note(client, f"{client.identifier}: several nodes {names[0]} serve it: only one answer counts")
 
     def _compare(self, own: rosgraph.Subscription | rosgraph.Publisher, other: Endpoint, does: str, has: str) -> None:
         topic, expected = own.topic, self._port.type_name(own.interface)

@@ -158,8 +158,11 @@ class ControllerPort(Port, Protocol):
     def send_goal(self, client: rosgraph.ActionClient, goal: Message, handlers: GoalHandlers) -> Goal:
         """Sends a goal; the handlers are not called before this returns."""
 
-    def other_servers(self, client: Client) -> Mapping[str, str]:
-        """The nodes that serve the name of a service or action with another type, and this type."""
+    def serving_nodes(self, client: Client) -> Sequence[tuple[str, str]]:
+        """Return the nodes that serve the name of a service or action, each with its type.
+
+        Where there is at most one server, of the right type, it may be left out.
+        """
 
     def endpoints(self) -> Mapping[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
         """The other publishers on the node's topics, and the subscriptions to what it publishes."""

@@ -277,22 +277,22 @@ class Ros2Node(Node):
     def type_name(self, interface: rosgraph.Interface) -> str:
         return f"{interface.package}/{FOLDERS[interface.kind.name]}/{interface.type}"
 
-    def other_servers(self, client: Client) -> dict[str, str]:
+    def serving_nodes(self, client: Client) -> list[tuple[str, str]]:
         part = ("/_action/send_goal", "_SendGoal") if isinstance(client, rosgraph.ActionClient) else ("", "")
         name = self.node.resolve_service_name(client.identifier + part[0])
         own = self.type_name(client.interface) + part[1]
         # The types of clients are among these; which nodes are servers takes longer to find out.
-        if set(dict(self.node.get_service_names_and_types()).get(name, ())) <= {own}:
-            return {}
-        found = {}
+        types = dict(self.node.get_service_names_and_types()).get(name, ())
+        if set(types) <= {own} and self.node.count_services(name) <= 1:
+            return []
+        found = []
         for node, space in self.node.get_node_names_and_namespaces():
             try:
                 served = dict(self.node.get_service_names_and_types_by_node(node, space))
             except NodeNameNonExistentError:
                 continue  # it has just gone
-            for kind in served.get(name, ()):
-                if kind != own:
-                    found[f"{space.rstrip('/')}/{node}"] = kind.removesuffix(part[1])
+            full_name = f"{space.rstrip('/')}/{node}"
+            found += [(full_name, kind.removesuffix(part[1])) for kind in served.get(name, ())]
         return found
 
     def endpoints(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:

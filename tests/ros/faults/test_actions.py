@@ -150,6 +150,31 @@ def test_other_goal_canceled_by_mistake(scout: Scout, server: Peer) -> None:
     assert scout.events(since, ERROR) == scout.events(since, RESPONSE) == []
 
 
+def test_second_server(scout: Scout, server: Peer) -> None:
+    if scout.version == 1:
+        pytest.skip("nodes of ROS 1 do not look at servers")
+    rival = scout.meet("rival")
+    since = scout.now()
+    rival.do("act", name="/travel", kind="nav2_msgs/NavigateToPose")
+    fault = "/travel: /rival and /server serve it: only one answer counts"
+    scout.until_says(since, fault)
+    scout.until_diagnosed("Navigator", f"home; {fault}")
+    # The rejection of one is the end of the goal, whatever the other one does.
+    _, number = travel(scout, server, accept=None)
+    scout.send("/travel_order", data=False)
+    scout.until_event(since, CANCEL)
+    rival.do("decide", number=rival.wait("goal")["goal"], accept=False)
+    assert scout.until_event(since, ERROR)["data"] == {"reason": "rejected"}
+    server.do("decide", number=number, accept=True)
+    server.do("end", number=number, how="succeeded")
+    scout.until_diagnosed("Navigator", f"home; {fault}; /travel: rejected")
+    assert rival.process.stdin is not None
+    rival.process.stdin.close()
+    rival.process.wait()
+    scout.until_diagnosed("Navigator", "home; /travel: rejected")
+    assert scout.says(since, fault) == 1
+
+
 def travel(scout: Scout, server: Peer, accept: bool | None = True) -> tuple[Moment, int]:
     """Has the robot set off; when that began, and the number of its goal. `accept`: None leaves the goal waiting."""
     since, heard = scout.now(), len(server.said)

@@ -56,6 +56,23 @@ def test_server_of_another_type(scout: Scout) -> None:
     assert scout.says(since, fault) == 1
 
 
+def test_second_server(scout: Scout) -> None:
+    if scout.version == 1:
+        pytest.skip("ROS 1 has one server for a name")
+    scout.serve()
+    rival = scout.meet("rival")
+    since = scout.now()
+    rival.do("serve", name="/lamp", kind="std_srvs/SetBool")
+    fault = "/lamp: /rival and /server serve it: only one answer counts"
+    scout.until_says(since, fault)
+    scout.until_diagnosed("Lamp", f"dark; {fault}")
+    assert rival.process.stdin is not None
+    rival.process.stdin.close()
+    rival.process.wait()
+    scout.until_diagnosed("Lamp", "dark")
+    assert scout.says(since, fault) == 1
+
+
 def test_dies_while_it_answers(scout: Scout) -> None:
     server = scout.serve()
     since = scout.now()

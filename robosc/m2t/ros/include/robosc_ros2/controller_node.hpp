@@ -108,7 +108,7 @@ class ControllerNode : public GuardedNode<Node> {
 
   /// Why a call or goal has failed: a server of another type is none to ROS.
   std::string explained(const std::string& name, const std::string& why) const {
-    return faults(name).empty() ? why : "the server has another type";
+    return monitor_ && monitor_->has_other_type(name) ? "the server has another type" : why;
   }
 
   /// Ticks from now on.

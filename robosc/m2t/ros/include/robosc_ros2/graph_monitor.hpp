@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <exception>
 #include <map>
 #include <set>
@@ -69,7 +70,13 @@ class GraphMonitor {
     return found == faults_.end() ? std::vector<std::string>() : found->second;
   }
 
+  /// Whether the only servers of a service or action at the last look were of another type.
+  bool has_other_type(const std::string& name) const { return other_types_.count(name) > 0; }
+
  private:
+  // Looks for which two nodes of one name may serve: one that was killed and started anew is there twice for 20 s.
+  static constexpr int kLease = 25;
+
   struct Topic {
     std::string name;
     std::string type;
@@ -82,14 +89,16 @@ class GraphMonitor {
     std::string name;
     std::string service;
     std::string type;
+    int twice = 0;  ///< For so many looks two nodes of one name have served it.
   };
 
   void look() {
     faults_.clear();
+    other_types_.clear();
     try {
       for (Topic& topic : heard_) look_at_publishers(topic);
       for (const Topic& topic : commanded_) look_at_listeners(topic);
-      for (const Called& called : called_) look_at_servers(called);
+      for (Called& called : called_) look_at_servers(called);
     } catch (const rclcpp::exceptions::RCLError&) {
       // The context is closed: the node is at its end.
     }
@@ -122,24 +131,61 @@ class GraphMonitor {
     }
   }
 
-  void look_at_servers(const Called& called) {
+  void look_at_servers(Called& called) {
     // The types of clients are among these; which nodes are servers takes longer to find out.
     const auto types = graph_->get_service_names_and_types()[called.service];
     const auto is_other = [&](const std::string& type) { return type != called.type; };
-    if (std::none_of(types.begin(), types.end(), is_other)) return;
-    std::vector<std::string> others;
+    const bool may_be_single = std::none_of(types.begin(), types.end(), is_other) && count(*graph_, called, 0) <= 1;
+    std::vector<std::string> servers, others;
+    if (!may_be_single) find_servers(called, servers, others);
+    if (servers.empty()) {
+      for (const std::string& other : others) {
+        other_types_.insert(called.name);
+        tell(called.name, other);
+      }
+    }
+    look_for_single(called, servers);
+  }
+
+  /// Several servers of the right type: the first answer counts, whatever the others do.
+  void look_for_single(Called& called, const std::vector<std::string>& servers) {
+    const std::set<std::string> names(servers.begin(), servers.end());
+    called.twice = names.size() < servers.size() ? called.twice + 1 : 0;
+    std::string text;
+    if (names.size() > 1) {
+      for (const std::string& server : names) text += (text.empty() ? "" : " and ") + server;
+    } else if (called.twice > kLease) {
+      text = "several nodes " + *names.begin();
+    }
+    if (!text.empty()) tell(called.name, text + " serve it: only one answer counts");
+  }
+
+  void find_servers(const Called& called, std::vector<std::string>& servers, std::vector<std::string>& others) const {
     for (const auto& [node, space] : graph_->get_node_names_and_namespaces()) {
       try {
         const auto served = graph_->get_service_names_and_types_by_node(node, space)[called.service];
         for (const std::string& type : served) {
-          if (!is_other(type)) return;
-          others.push_back(full_name(space, node) + " serves " + plain(type) + ", not " + plain(called.type));
+          const std::string server = full_name(space, node);
+          if (type == called.type) {
+            servers.push_back(server);
+          } else {
+            others.push_back(server + " serves " + plain(type) + ", not " + plain(called.type));
+          }
         }
       } catch (const std::exception&) {
         // The node has just gone.
       }
     }
-    for (const std::string& other : others) tell(called.name, other);
+  }
+
+  /// The number of servers; several may be there where rclcpp can't count them (before Iron).
+  template <typename Graph>
+  static auto count(const Graph& graph, const Called& called, int) -> decltype(graph.count_services(called.service)) {
+    return graph.count_services(called.service);
+  }
+  template <typename Graph>
+  static std::size_t count(const Graph&, const Called&, long) {
+    return 2;
   }
 
   /// Whether both sides mean the same type.
@@ -200,6 +246,7 @@ class GraphMonitor {
   std::vector<Topic> commanded_;
   std::vector<Called> called_;
   std::map<std::string, std::vector<std::string>> faults_;
+  std::set<std::string> other_types_;
   std::set<std::string> told_;
   bool stopped_ = false;
   rclcpp::TimerBase::SharedPtr timer_;
