@@ -19,7 +19,7 @@ def response(code: int, *goals: bytes) -> SimpleNamespace:
     return SimpleNamespace(return_code=code, goals_canceling=named, **constants)
 
 
-def test_any_other_status_of_ros2_leaves_the_end_open() -> None:
+def test_any_other_status_leaves_the_end_open() -> None:
     ends = {4: Outcome.SUCCEEDED, 5: Outcome.CANCELED, 6: Outcome.ABORTED}
     for status in range(-128, 128):
         assert answers.outcome(status) is ends.get(status, Outcome.LOST)
