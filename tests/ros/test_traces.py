@@ -118,7 +118,10 @@ def test_launch_testing_plays_the_trace(ros2_workspace: Workspace, package: str,
 def test_launch_testing_fails_where_the_node_leaves_the_trace(ros2_workspace: Workspace, tmp_path: Path) -> None:
     package = ros2_workspace.folder / "src" / "line_follower_controller" / "test"
     lines = (package / "traces" / "tour_1.jsonl").read_text(encoding="utf-8").splitlines()
-    sent = next(number for number, line in enumerate(lines) if json.loads(line)["direction"] == "out")
+    events = [json.loads(line) for line in lines]
+    # The player notices a missing line at the next one only if that one differs.
+    pairs = enumerate(zip(events, events[1:], strict=False))
+    sent = next(at for at, (line, later) in pairs if line["direction"] == "out" and line["event"] != later["event"])
     trace = tmp_path / "wrong.jsonl"
     trace.write_text("\n".join(lines[:sent] + lines[sent + 1 :]), encoding="utf-8")
     status, said = launch_test(ros2_workspace, package / "test_trace.py", tmp_path, trace)

@@ -32,6 +32,15 @@ class Alarm final : public Timeouts {
       if (simulated) return rclcpp::create_timer(&node, clock_, left, call);
       return node.create_wall_timer(left, call);
     };
+    // The times run from the start of the clock, also if nothing else happens at that moment.
+    if (!clock_->started()) {
+      begin_ = node.create_wall_timer(kLook, guard([this] {
+        if (!clock_->started()) return;
+        begin_->cancel();
+        at();
+        wait();
+      }));
+    }
   }
 
   Alarm(const Alarm&) = delete;
@@ -55,6 +64,7 @@ class Alarm final : public Timeouts {
   rclcpp::Clock::SharedPtr clock_;
   std::function<rclcpp::TimerBase::SharedPtr(std::chrono::milliseconds)> plan_;
   rclcpp::TimerBase::SharedPtr timer_;
+  rclcpp::TimerBase::SharedPtr begin_;
 };
 
 }  // namespace ROBOSC_VERSION
