@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import shutil
 import subprocess
@@ -120,7 +121,7 @@ def test_launch_testing_fails_where_the_node_leaves_the_trace(ros2_workspace: Wo
     lines = (package / "traces" / "tour_1.jsonl").read_text(encoding="utf-8").splitlines()
     events = [json.loads(line) for line in lines]
     # The player notices a missing line at the next one only if that one differs.
-    pairs = enumerate(zip(events, events[1:], strict=False))
+    pairs = enumerate(itertools.pairwise(events))
     sent = next(at for at, (line, later) in pairs if line["direction"] == "out" and line["event"] != later["event"])
     trace = tmp_path / "wrong.jsonl"
     trace.write_text("\n".join(lines[:sent] + lines[sent + 1 :]), encoding="utf-8")
