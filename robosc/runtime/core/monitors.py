@@ -116,7 +116,11 @@ class GraphMonitor:
                 self._note(publisher, f"{publisher.topic}: {endpoint.node} publishes it, too")
 
     def _check_servers(self, client: Client) -> None:
-        expected, serving = self._port.type_name(client.interface), self._port.serving_nodes(client)
+        serving = self._port.serving_nodes(client)
+        if not serving:
+            self._twice[client] = 0
+            return
+        expected = self._port.type_name(client.interface)
         others = [] if self._port.is_served(client) else [server for server in serving if server[1] != expected]
         for node, other in others:
             self._other_types.add(client)
