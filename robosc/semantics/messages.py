@@ -1,8 +1,8 @@
-"""Which data of messages a node reads, and which headers it fills: one answer for all nodes, run and generated.
+"""Message data that a node reads, and headers that it fills: shared by interpreted and generated nodes.
 
-Read is only what the transitions need that are tried in the present state: guards up to the first that holds, and what
-is assigned there. Where any of that can't be read, the event happens for no component. An input of the supervisor that
-can't be read and that no transition needs has its first value.
+A node reads only the data that the transitions of the present state need: guards up to the first that holds, and the
+values assigned there. If any of that cannot be read, the event happens for no component. An input of the supervisor
+that cannot be read and that no transition needs has its first value.
 """
 
 from __future__ import annotations
@@ -23,15 +23,16 @@ if TYPE_CHECKING:
 
 #: Names of fields and positions in arrays, from the message inwards.
 Path: TypeAlias = tuple[str, ...]
-#: In the place of a position: each of them.
+#: Stands for every position of an array.
 EACH = "*"
 
 
 @dataclass(frozen=True)
 class Read:
-    """What is read somewhere in a message: a value of a type, or what a conversion makes of it.
+    """A part of a message that is read: a value of a type, or the argument of a conversion.
 
-    `reference` is the first that reads it; without type and conversion it is an object of which nothing is read.
+    `reference` is the first expression that reads it. Without type and conversion the part is an object, and none
+    of its fields is read.
     """
 
     reference: ex.Expression
@@ -40,22 +41,22 @@ class Read:
 
     @property
     def is_value(self) -> bool:
-        """Whether it is no object."""
+        """Whether the part is a value, not an object."""
         return self.type is not None or self.conversion is not None
 
 
-#: What is read of a message: values, and of arrays whose elements are all read what is read of each.
+#: Parts read of a message. An array whose elements are all read has the parts of an element.
 Shown: TypeAlias = "dict[Path, Read | Shown]"
 
 
 def receptions(graph: rosgraph.RosGraph) -> list[rosgraph.Reception]:
-    """All data that comes in, and the errors of services, which bring a reason."""
+    """Return all receptions of data, and the errors of services, which have a reason."""
     errors = [service.error for service in graph.serviceClients]
     return [*(reception for _, _, several in received(graph) for reception in several), *errors]
 
 
 def received(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Interface, Section, Sequence[rosgraph.Reception]]]:
-    """Each kind of ROS message that comes in: its type, the section of that, and what is received with it."""
+    """Yield each kind of incoming ROS message: its interface, the section, and its receptions."""
     for topic in graph.subscriptions:
         yield topic.interface, Section.MESSAGE, topic.receptions
     for service in graph.serviceClients:
@@ -67,7 +68,7 @@ def received(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Interface, Sec
 
 
 def sections(graph: rosgraph.RosGraph) -> dict[str, tuple[str, str, Section]]:
-    """Package, type and section of the data of each event that brings some, by the name of the event.
+    """Return package, type and section of each event with data, by the name of the event.
 
     The error of a service has the data of an answer that cannot be read.
     """
@@ -81,9 +82,9 @@ def sections(graph: rosgraph.RosGraph) -> dict[str, tuple[str, str, Section]]:
 
 
 def reads_elements(expression: ex.Expression) -> bool:
-    """Whether an element of an array is read, which need not be there, or what need not have a value otherwise.
+    """Return whether an expression reads array elements or partial operators, which can fail.
 
-    What rules of enumerations read is theirs, and what a value of `IfReadable` reads may be missing.
+    The rules of enumerations are not considered, nor are values within `IfReadable`.
     """
     return any(
         isinstance(part, rosgraph.IndexStep | rosgraph.SliceStep) or _is_partial(part)
@@ -92,7 +93,7 @@ def reads_elements(expression: ex.Expression) -> bool:
 
 
 def _unconditional(expression: ex.Expression) -> Iterator[ex.Located]:
-    """All parts of an expression that have no other value where something is missing."""
+    """Yield all parts of an expression except those within an `IfReadable`."""
     pending: list[ex.Located] = [expression]
     while pending:
         part = pending.pop()
@@ -102,7 +103,7 @@ def _unconditional(expression: ex.Expression) -> Iterator[ex.Located]:
 
 
 def reads_parameters(conversion: rosgraph.Conversion) -> bool:
-    """Whether a rule of an enumeration reads what is set on the robot, by itself or by another enumeration."""
+    """Return whether a rule of an enumeration reads a parameter, directly or through another enumeration."""
     for rule in conversion.rules:
         for _, part in tree(rule.condition):
             if isinstance(part, rosgraph.NodeVariableReference):
@@ -118,7 +119,7 @@ def _is_partial(part: ex.Located) -> bool:
 
 
 def first_value(kind: ex.Type) -> Value:
-    """The value of an input before any data has come: `false`, the first literal, zero or the integer next to it."""
+    """Return the value of an input before any data: `false`, the first literal, or the integer nearest to zero."""
     match kind:
         case ex.EnumerationType():
             return kind.first or kind.enumeration.literals[0]
@@ -128,26 +129,26 @@ def first_value(kind: ex.Type) -> Value:
 
 
 def is_structured(kind: ex.Type) -> bool:
-    """Whether it is that of an array or an object: reports do not show what is kept of these."""
+    """Return whether a type is an array or an object. Reports omit variables of these types."""
     return isinstance(kind, rosgraph.ArrayType | rosgraph.ObjectType)
 
 
 def holds_objects(kind: ex.Type) -> bool:
-    """Whether it is that of an object or of an array of objects: the node hands these on as they came."""
+    """Return whether a type is an object or an array of objects, which the node forwards unchanged."""
     if isinstance(kind, rosgraph.ArrayType):
         return kind.element is None or isinstance(kind.element, rosgraph.ObjectType)
     return isinstance(kind, rosgraph.ObjectType)
 
 
 def source_of(access: rosgraph.WireAccess) -> rosgraph.NodeVariable | None:
-    """The variable that an access reads, an element of an array within; None: what came in."""
+    """Return the variable that an access reads, also within an element of an array; None for incoming data."""
     while access.quantifier is not None:
         access = access.quantifier.array
     return access.variable
 
 
 def path_of(access: rosgraph.WireAccess) -> Path:
-    """The way that an access takes; EACH where it may read any element of an array."""
+    """Return the path of an access, with EACH if it may read any element of an array."""
     path: list[str] = [*path_of(access.quantifier.array), EACH] if access.quantifier else []
     sliced = False
     for step in access.steps:
@@ -161,12 +162,15 @@ def path_of(access: rosgraph.WireAccess) -> Path:
 
 
 def whole(value: ex.Expression) -> ex.Expression:
-    """Return a value without the one that takes its place where something is missing."""
+    """Return a value without its replacement for missing data."""
     return value.value if isinstance(value, rosgraph.IfReadable) else value
 
 
 def origins(graph: rosgraph.RosGraph) -> dict[rosgraph.NodeVariable, dict[tuple[rosgraph.Reception, Path], None]]:
-    """Of which data, and where in there, each array and object is that the node keeps, in one step or several."""
+    """Return the incoming data, with the path in it, that each stored array or object may be a copy of.
+
+    Copies of copies count, too.
+    """
     known = {reception.event: reception for reception in receptions(graph)}
     stored = [
         (reaction.event, given.variable, value)
@@ -187,7 +191,7 @@ def origins(graph: rosgraph.RosGraph) -> dict[rosgraph.NodeVariable, dict[tuple[
 
 
 def kept_reads(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Reception, Path, Read]]:
-    """What expressions read of data that the node has kept, as what is read where it came in."""
+    """Yield the reads of stored data, as reads of the message that the data came in."""
     known = origins(graph)
     for _, part in tree(graph):
         if isinstance(part, rosgraph.WireAccess | rosgraph.ConversionCall):
@@ -202,14 +206,14 @@ def kept_reads(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Reception, P
 
 
 def reads_reason(values: Iterable[ex.Expression]) -> bool:
-    """Whether an expression reads why a service or an action has failed."""
+    """Return whether an expression reads the failure reason of a service or action."""
     return any(isinstance(part, rosgraph.ErrorReason) for value in values for _, part in tree(value))
 
 
 def reads(values: Iterable[ex.Expression]) -> Iterator[tuple[Path, Read]]:
-    """What expressions read of a message; of a conversion's argument that it converts it.
+    """Yield the paths of a message that expressions read. The argument of a conversion is one read, its conversion.
 
-    Of an object that the node keeps all fields are read that are known: later they may be read, or handed on.
+    A stored object counts as a read of all its known fields: they may be read or sent later.
     """
     for value in map(whole, values):
         owner = value.eContainer()
@@ -234,7 +238,7 @@ def reads(values: Iterable[ex.Expression]) -> Iterator[tuple[Path, Read]]:
 
 
 def parts_of(kind: ex.Type | None, path: Path = ()) -> Iterator[tuple[Path, ex.Type]]:
-    """What is known of a type at the end of a path: the way to each basic value, and its type."""
+    """Yield the known basic values of a type at the end of a path: the path to each, and its type."""
     if isinstance(kind, rosgraph.ArrayType):
         inner = parts_of(kind.element, path[1:])
         yield from inner if path else (((EACH, *way), part) for way, part in inner)
@@ -249,7 +253,7 @@ def parts_of(kind: ex.Type | None, path: Path = ()) -> Iterator[tuple[Path, ex.T
 
 
 def access_to(path: Path, kind: ex.Type | None = None) -> rosgraph.WireAccess:
-    """What reads the end of a path, a value of a type, out of a message."""
+    """Return the expression that reads the value at a path of a message."""
     steps: list[rosgraph.WireStep] = [
         rosgraph.IndexStep(index=int(step)) if step.isdigit() else rosgraph.FieldStep(name=step) for step in path
     ]
@@ -257,7 +261,10 @@ def access_to(path: Path, kind: ex.Type | None = None) -> rosgraph.WireAccess:
 
 
 def shown(values: Iterable[ex.Expression]) -> Shown:
-    """What the event log shows of the data that expressions read: where any element may be read, all of them."""
+    """Return the data that expressions read, as the event log shows it.
+
+    A read of an element at any position shows the whole array.
+    """
     found: dict[Path, Read] = {}
     for path, read in reads(values):
         if path not in found or not found[path].is_value:
@@ -287,16 +294,15 @@ def _in_arrays(found: dict[Path, Read]) -> Shown:
 
 
 def paths_set(sending: rosgraph.Sending) -> list[Path]:
-    """The fields that the model sets, `()` for the whole, in the order of the model."""
+    """Return the fields that the model sets, in the order of the model; `()` is the whole message."""
     return list(dict.fromkeys(tuple(field.path) for data in sending.alternatives for field in data.fields))
 
 
 def parts_with_headers(sending: rosgraph.Sending) -> list[tuple[str, ...]]:
-    """The data as a whole, `()`, and its parts on the way to fields that the model sets, by their path, sorted.
+    """Return the paths of all parts on the way to fields that the model sets, sorted; `()` is the whole message.
 
-    A goal of `pose.pose.position.x` has `pose`, `pose.pose` and `pose.pose.position`: each gets the time and the frame,
-    where it has a field `header`. A part of which the model sets some field of `header` is not among them: that header
-    is the model's.
+    A goal with `pose.pose.position.x` has `pose`, `pose.pose` and `pose.pose.position`: each part with a field `header`
+    gets the time and the frame. A part is left out if the model sets a field of its `header`.
     """
     paths = paths_set(sending)
     parts = {()} | {path[:length] for path in paths for length in range(1, len(path))}
@@ -305,7 +311,7 @@ def parts_with_headers(sending: rosgraph.Sending) -> list[tuple[str, ...]]:
 
 
 def message_named(graph: rosgraph.RosGraph, name: str) -> rosgraph.Sending | None:
-    """The message that the node sends by this name, or by `Component.name`; None where there is none, or several."""
+    """Return the message that the node sends with this name or `Component.name`; None unless there is exactly one."""
     sendings = [sending for publisher in graph.publishers for sending in publisher.sendings]
     found = [sending for sending in sendings if name in (sending.name, sending.event.eContainer().origin)]
     return found[0] if len(found) == 1 else None
