@@ -1,4 +1,4 @@
-"""Listens to what running nodes report, over the ROS that is there."""
+"""Subscriptions to the reports of running nodes, with the installed ROS."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ if TYPE_CHECKING:
 
 
 def listen(heard: Sequence[tuple[Sequence[str], Listener]]) -> ReportSubscriber:
-    """Listen to `~/state` and `~/definition` of nodes whenever they are there, as one node of ROS 2.
+    """Subscribe to `~/state` and `~/definition` of nodes as they appear, as one node of ROS 2.
 
-    `heard`: the full names of nodes, each with the listener that is called with their reports. Raises StartError where
-    there is no ROS.
+    `heard`: pairs of full node names and the listener that is called with their reports. Raises StartError if there is
+    no ROS.
     """
-    import robosc.runtime.ros2.node  # noqa: F401, PLC0415  # says what is missing
+    import robosc.runtime.ros2.node  # noqa: F401, PLC0415  # reports what is missing
     from robosc.runtime.ros2.listening import Ros2Subscriber  # noqa: PLC0415
 
     return Ros2Subscriber(heard)

@@ -1,4 +1,4 @@
-"""Starts a controller or a layer as a node."""
+"""Start a controller or a layer as a node."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ def run_controller(
     arguments: Sequence[str],
     safe: SafeMessages,
 ) -> None:
-    """Runs the controller of a graph whose model has a supervisor, until the user interrupts it.
+    """Run the controller of a graph whose model has a supervisor, until the user interrupts it.
 
-    `arguments` are those of ROS. Raises StartError where it can't start.
+    `arguments` are those of ROS. Raises StartError if the node can't start.
     """
 
     def make(node: Node, log: str) -> tuple[Controller, Settings]:
@@ -43,9 +43,9 @@ def run_layer(
     arguments: Sequence[str],
     safe: SafeMessages,
 ) -> None:
-    """Runs the supervisory layer of a graph whose model has a supervisor, until the user interrupts it.
+    """Run the supervisory layer of a graph whose model has a supervisor, until the user interrupts it.
 
-    No two communications of the graph are on one topic. Raises StartError where it can't start.
+    Precondition: no two communications of the graph share a topic. Raises StartError if the node can't start.
     """
 
     def make(node: Node, log: str) -> tuple[Layer, Settings]:
@@ -82,13 +82,13 @@ def _run(
 
 
 def _node(name: str, graph: rosgraph.RosGraph, configuration: Configuration, arguments: Sequence[str]) -> Node:
-    from robosc.runtime.ros2.node import Ros2Node  # noqa: PLC0415  # says what is missing where there is no ROS
+    from robosc.runtime.ros2.node import Ros2Node  # noqa: PLC0415  # reports what is missing if there is no ROS
 
     return Ros2Node(name, graph, configuration, arguments)
 
 
 def _started(name: str, graph: rosgraph.RosGraph, *, shows: bool) -> str:
-    """Return the lines for the user who starts a node: its connections, where to look, how it ends."""
+    """Return the start message for the user: connections of the node, how to view it, how to stop it."""
     parts = (
         ("hears", [subscription.topic for subscription in graph.subscriptions]),
         ("sends", [publisher.topic for publisher in graph.publishers]),

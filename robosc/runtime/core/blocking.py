@@ -1,4 +1,4 @@
-"""Why a command can't be sent in the present state."""
+"""Reasons why a command cannot be sent in the present state."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from robosc.metamodel import engine as executed
     from robosc.metamodel import sct
 
-#: What each kind of reason is called in `~/blocked`, in the order in which they are told.
+#: Name of each kind of reason in `~/blocked`, in order of precedence.
 _KINDS = {Origin.requirement: "requirement", Origin.plants: "state", Origin.synthesis: "synthesis"}
-#: How a sentence on each kind of reason begins; the texts of the reasons follow.
+#: Start of the sentence for each kind of reason, and the separator before the texts of the reasons.
 _SAID = {
     "requirement": ("forbidden", ": "),
     "state": ("not possible", " in "),
@@ -27,7 +27,7 @@ _SAID = {
 
 @dataclass(frozen=True)
 class Reason:
-    """The reason on `~/blocked`: a kind, and the texts of that kind."""
+    """Reason on `~/blocked`: a kind, and the texts of that kind."""
 
     kind: str
     because: Sequence[str]
@@ -38,7 +38,7 @@ class Reason:
 
 
 class Blocking:
-    """Looks for reasons: requirements that fail; else plants without a transition; else what synthesis prevents."""
+    """Find the reasons: violated requirements, else plants without a transition, else the guards of synthesis."""
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
@@ -46,7 +46,7 @@ class Blocking:
         self._conditions: dict[executed.Reason, Callable[[], bool]] = {}
 
     def reason(self, event: sct.Event) -> Reason:
-        """Why an event is blocked that the supervisor does not let happen now."""
+        """Return why the supervisor does not allow an event now."""
         reasons = self._events[event_name(event)].reasons
         for origin, kind in _KINDS.items():
             texts = [self._text(reason) for reason in reasons if reason.kind == origin and self._applies(reason)]

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from robosc.runtime.core.event_loop import EventLoop, Timer
 
-#: Seconds that the end of a node waits for the end of a goal whose server has accepted to cancel it.
+#: Seconds that a stopping node waits for the end of a goal whose server has accepted to cancel it.
 FAREWELL = 0.5
 REFUSED = "the server refuses to cancel the goal"
 CANCELING = "the server cancels the goal"
@@ -19,10 +19,10 @@ CANCELING = "the server cancels the goal"
 
 @dataclass(frozen=True)
 class GoalTimes:
-    """Seconds that a goal may take, but for its work.
+    """Time limits of a goal in seconds, without the time for its work.
 
-    `timeout` bounds the search for a server together with the wait for acceptance, the wait for the answer to a cancel,
-    and the wait for the result of a goal that has ended. A refused cancel is repeated after `retry`.
+    `timeout` bounds the search for a server together with the wait for acceptance, the wait for the answer to a cancel
+    request, and the wait for the result of a goal that has ended. A refused cancel request is repeated after `retry`.
     """
 
     timeout: float
@@ -54,34 +54,34 @@ class CancelRequests:
         self._until = 0.0
         #: Whether a request was sent, and whether the server has accepted one.
         self.sent = self.accepted = False
-        #: Why the goal is not being canceled; empty where the server has accepted, or may still.
+        #: Why the goal is not being canceled; empty if the server has accepted, or may still accept.
         self.trouble = ""
 
     @property
     def waits(self) -> bool:
-        """Whether the end of the node waits: for an answer, then a little for the end of the goal."""
+        """Whether the stopping node waits: for an answer, then briefly for the end of the goal."""
         return self.sent and not self._stopped and time.monotonic() < self._until
 
     def extend(self) -> None:
-        """The end of the node waits for the answer as long as for one to a first request."""
+        """Restart the time that a stopping node waits for the answer to a request."""
         if not self.accepted:
             self._until = time.monotonic() + self._times.timeout
 
     def ask(self) -> None:
-        """Sends a request, unless one was sent."""
+        """Send a request, unless one was sent before."""
         if not self.sent and not self.accepted and not self._stopped:
             self.sent = True
             self.extend()
             self._ask()
 
     def accept(self) -> None:
-        """The server cancels the goal."""
+        """Record that the server cancels the goal."""
         self._set_timer(None)
         self.accepted, self.trouble = True, ""
         self._until = time.monotonic() + FAREWELL
 
     def refuse(self, why: str = REFUSED) -> None:
-        """The server does not cancel the goal; `why` is reported."""
+        """Record that the server does not cancel the goal, report `why`, and plan the next request."""
         if self.accepted or self._stopped:
             return
         self._set_timer(self._ask, self._times.retry)
@@ -91,7 +91,7 @@ class CancelRequests:
             self._warn(why)
 
     def stop(self) -> None:
-        """The goal has ended, or its end is known to come."""
+        """Send no more requests: the goal has ended, or its end is imminent."""
         self._stopped, self.trouble = True, ""
         self._set_timer(None)
 

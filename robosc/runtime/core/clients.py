@@ -1,4 +1,4 @@
-"""Clients of services and actions: every call and goal comes to exactly one end, in time."""
+"""Clients of services and actions: every call and goal has exactly one end, in bounded time."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from robosc.runtime.core.event_loop import EventLoop, Timer
     from robosc.runtime.core.port import ControllerPort, Goal, Message, Port
 
-#: Seconds from one look for a server to the next.
+#: Seconds between two looks for a server.
 POLL = 0.05
-#: Seconds without a word of a goal that was not accepted in time, after which it counts as lost.
+#: Seconds without a message of a goal that was not accepted in time, after which it counts as lost.
 LOST = 30.0
 LOST_RESULT = "the goal has ended, but its result did not come"
 LOST_GOAL = "the server has lost the goal"
@@ -30,8 +30,8 @@ UNKNOWN_GOAL = "the server does not know the goal"
 class Answers:
     """Callbacks of a client, after the request has returned: any number of `feedback`, then one of the others.
 
-    `error` gets the reason, a text, and the result that came with the end of a goal, None where none came. `canceled`
-    gets the same, with the reason that counts where the model did not cancel the goal.
+    `error` gets the reason, a text, and the result of the goal, None if there is none. `canceled` gets the same; its
+    reason applies if the model did not cancel the goal.
     """
 
     response: Callable[[Message], None]
@@ -41,7 +41,7 @@ class Answers:
 
 
 class ServiceClient:
-    """A client of one service: no server, a failed call, no answer in time are errors; what comes late is dropped.
+    """Client of one service. No server, a failed call and no answer in time are errors; late answers are dropped.
 
     `timeout`, in seconds, bounds the search for a server together with the wait for the answer.
     """
@@ -60,11 +60,11 @@ class ServiceClient:
 
     @property
     def waiting(self) -> bool:
-        """Whether an answer is still to come."""
+        """Whether an answer is pending."""
         return self._deadline is not None
 
     def call(self, request: Message) -> None:
-        """Calls the service; a call that is still under way is given up."""
+        """Call the service; abandon a call that is still under way."""
         self.give_up()
         number = self._number
         self._missing = (Failure.UNAVAILABLE, "no server")
@@ -72,7 +72,7 @@ class ServiceClient:
         self._poll(number, request)
 
     def _poll(self, number: int, request: Message) -> None:
-        """Sends the request as soon as there is a server."""
+        """Send the request as soon as there is a server."""
         if number != self._number:
             return
         if not self._port.is_served(self._client):
@@ -87,18 +87,18 @@ class ServiceClient:
         )
         try:
             self._port.call(self._client, request, handlers)
-        except Exception as error:  # whatever the middleware raises is a failed call
+        except Exception as error:  # any exception of the middleware is a failed call
             handlers.failed(str(error))
 
     def give_up(self) -> None:
-        """Abandons the call that is under way: whatever comes of it is dropped."""
+        """Abandon the call under way: its answer is dropped."""
         self._number += 1
         if self._deadline is not None:
             self._deadline.cancel()
             self._deadline = None
 
     def fail(self, reason: Failure, why: str) -> None:
-        """Fail the call that is under way, for a reason that no answer of a server brings about."""
+        """Fail the call under way for a reason other than an answer of a server."""
         number = self._number
         self._event_loop.post(lambda: self._fail(number, reason, why))
 
@@ -126,7 +126,7 @@ class _Phase(Enum):
 
 
 class ActionClient:
-    """A client of one action, with one goal at a time. Each goal comes to one end, which is told once it is known."""
+    """Client of one action, with one goal at a time. Each goal has exactly one end, reported when it is known."""
 
     def __init__(
         self,
@@ -167,12 +167,12 @@ class ActionClient:
 
     @property
     def trouble(self) -> str:
-        """Why the goal has not ended though it should have; empty where nothing is wrong."""
+        """Why the goal has not ended though it should have; empty if nothing is wrong."""
         return self._not_accepted if self._late and self._phase is _Phase.SENT else self._requests.trouble
 
     @property
     def waits(self) -> bool:
-        """Whether the end of the node waits: for the goal's acceptance, for the answer to a cancel, for its end."""
+        """Whether the stopping node waits: for the goal's acceptance, the answer to a cancel request, or the end."""
         if self._phase is _Phase.ACCEPTED:
             return self._requests.waits
         return self.busy and time.monotonic() < self._until
@@ -182,7 +182,7 @@ class ActionClient:
         return f"not accepted {self._times.within}"
 
     def start(self, goal: Message) -> None:
-        """Sends a goal as soon as there is a server. No other goal may be under way."""
+        """Send a goal as soon as there is a server. Precondition: no other goal is under way."""
         assert not self.busy
         self._phase = _Phase.LOOKING
         self._until = time.monotonic() + self._times.timeout
@@ -190,7 +190,7 @@ class ActionClient:
         self._poll(self._number, goal)
 
     def cancel(self) -> None:
-        """Cancels the goal, where it was not accepted yet as soon as it is."""
+        """Cancel the goal, as soon as it is accepted."""
         if not self.busy:
             return
         self._canceling = True
@@ -203,12 +203,12 @@ class ActionClient:
             self._requests.extend()
 
     def fail(self, reason: Failure, why: str, result: Message = None) -> None:
-        """Fail the goal at hand, for a reason that no answer of a server brings about."""
+        """Fail the present goal for a reason other than an answer of a server."""
         number = self._number
         self._event_loop.post(lambda: self._if_current(number, lambda: self._fail(reason, why, result), over=True))
 
     def leave(self) -> None:
-        """Abandons the goal as the node ends, and reports what becomes of it."""
+        """Abandon the goal as the node stops, and report its state."""
         if self._phase in (_Phase.SENT, _Phase.ACCEPTED):
             running = "the goal may still begin" if self._phase is _Phase.SENT else "the goal has not ended"
             why = CANCELING if self._requests.accepted else self.trouble or "the server has not answered"
@@ -237,7 +237,7 @@ class ActionClient:
         return number == self._number and self.busy
 
     def _poll(self, number: int, goal: Message) -> None:
-        """Sends the goal as soon as there is a server; then watches that it stays."""
+        """Send the goal as soon as there is a server; then watch that the server stays."""
         if not self._is_current(number):
             return
         if self._phase is _Phase.LOOKING:
@@ -252,7 +252,7 @@ class ActionClient:
         self._phase = _Phase.SENT
         try:
             self._goal = self._port.send_goal(self._client, goal, self._handlers(number))
-        except Exception as error:  # whatever the middleware raises is a goal that was not sent
+        except Exception as error:  # any exception of the middleware means that the goal was not sent
             why = f"the goal can't be sent: {error}"
             fail = lambda: self._fail(Failure.UNAVAILABLE, why)  # noqa: E731
             self._event_loop.post(lambda: self._if_current(number, fail))
@@ -273,7 +273,7 @@ class ActionClient:
         )
 
     def _if_current(self, number: int, action: Callable[[], None], *, over: bool = False) -> None:
-        """Does something with the goal at hand; a goal that counted as lost is canceled, unless it is `over`."""
+        """Run an action for the present goal. Cancel a goal that counted as lost, unless it is `over`."""
         if self._is_current(number):
             action()
             return
@@ -289,7 +289,7 @@ class ActionClient:
                 self._requests.ask()
 
     def _feedback(self, feedback: Message) -> None:
-        self._accept()  # feedback may overtake the acceptance
+        self._accept()  # feedback may arrive before the acceptance
         self._answers.feedback(feedback)
 
     def _cancel_answered(self, answer: CancelAnswer) -> None:
@@ -313,7 +313,7 @@ class ActionClient:
 
     def _result_missing(self) -> None:
         if self._goal is not None and self._goal.is_canceling():
-            # Somebody else had it canceled before: a server calls that terminated, too.
+            # Another client canceled it before: a server calls that terminated, too.
             self._phase = _Phase.ACCEPTED
             self._requests = self._new_requests()
             self._requests.accept()
@@ -328,7 +328,7 @@ class ActionClient:
         self._warn(self._not_accepted)
         self._late = self._canceling = True
         if self._goal is not None:
-            self._goal.cancel()  # it may have accepted it already
+            self._goal.cancel()  # the server may have accepted it already
         self._set_deadline(lambda: self._lose("neither accepted nor rejected"), LOST)
 
     def _finish(self, outcome: Outcome, result: Message, text: str) -> None:
@@ -360,7 +360,7 @@ class ActionClient:
         self._answers.error(reason, why, result)
 
     def _lose(self, why: str) -> None:
-        """End with `lost`: the fate of the goal is unknown. A goal that is heard of again is canceled."""
+        """End with `lost`: the fate of the goal is unknown. If the goal appears again, it is canceled."""
         if self._goal is not None:
             self._lost[self._number] = self._goal
         self._fail(Failure.LOST, why)

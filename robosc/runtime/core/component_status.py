@@ -24,16 +24,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Own:
-    """The knowledge of a controller or a layer beside its engine."""
+    """Knowledge of a controller or layer beyond its engine."""
 
-    #: What it says of a command that the supervisor allows: None where it can be sent.
+    #: Return why a command that the supervisor allows is held back; None if it can be sent.
     held_back: Callable[[sct.Event], str | None]
-    #: What is wrong with a component.
+    #: Return the faults of a component.
     faults: Callable[[Parts], Sequence[str]]
 
 
 class StatusReporter:
-    """Publishes the states of all components once in a number of ticks, for whoever listens; none with 0."""
+    """Publish the states of all components once in a number of ticks if somebody subscribes; 0 disables it."""
 
     def __init__(self, graph: rosgraph.RosGraph, port: Port, data: NodeData, blocking: Blocking, own: Own) -> None:
         self._components = components(graph)
@@ -45,11 +45,11 @@ class StatusReporter:
         self._passed = 0
 
     def report_every(self, milliseconds: int, period: int) -> None:
-        """Publishes every so many milliseconds from now on, in whole periods, one at least; never with 0."""
+        """Set the interval in milliseconds, rounded down to whole periods, at least one; 0 disables reports."""
         self._every = max(1, milliseconds // period) if milliseconds else 0
 
     def publish(self) -> bool:
-        """A tick is over: publishes, if it is time and somebody listens. Whether it was time."""
+        """Count a tick; publish if a report is due and has subscribers. Return whether it was due."""
         if self._every == 0:
             return False
         due = self._passed == 0
@@ -77,7 +77,7 @@ class StatusReporter:
 
 
 def _text(value: Json) -> str:
-    """A value as people and plots read it."""
+    """Return the text of a value for people and plots."""
     if isinstance(value, str):
         return value.encode(errors="replace").decode()
     return str(value) if isinstance(value, float) and not isfinite(value) else json_text(value)

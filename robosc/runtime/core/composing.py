@@ -1,4 +1,4 @@
-"""The data of messages, requests and goals, as `provide` statements say."""
+"""Data of messages, requests and goals, from `provide` statements."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Composer:
-    """Makes data of ROS with a port. `data`: what the node knows."""
+    """Create data of ROS with a port. `data`: the data of the node."""
 
     port: ControllerPort
     data: NodeData
@@ -30,7 +30,7 @@ class Composer:
     def default(
         self, sending: rosgraph.Sending, interface: rosgraph.Interface, section: Section, frame: str
     ) -> Message:
-        """Data with ROS's defaults; unset headers get the time and a frame."""
+        """Return data with the defaults of ROS; headers that the model does not set get the time and a frame."""
         message = self.port.create(interface, section)
         for part in parts_with_headers(sending):
             self.port.stamp(reduce(getattr, part, message), frame)
@@ -39,9 +39,9 @@ class Composer:
     def compose(
         self, sending: rosgraph.Sending, interface: rosgraph.Interface, section: Section, frame: str
     ) -> tuple[Message, Mapping[str, Json] | None]:
-        """The data by the `provide` statement that holds, else defaults; and what the event log has of them.
+        """Return the data of the `provide` statement that holds, else defaults, and the data for the event log.
 
-        Raises NotFiniteError or UnreadableError where they can't be sent.
+        Raises NotFiniteError or UnreadableError if the data can't be sent.
         """
         message = self.default(sending, interface, section, frame)
         fields: dict[tuple[str, ...], Json] = {}

@@ -1,4 +1,4 @@
-"""The controller of a robot, as a node of some ROS: what comes in becomes events, and what happens goes out."""
+"""Controller of a robot as a ROS node: incoming data becomes events, and events become outgoing data."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class _Sender:
-    """How the data of one trigger is sent; `message` and `logged` are what was made last."""
+    """Sender of the data of one trigger. `message` and `logged` hold the data prepared last."""
 
     sending: rosgraph.Sending
     interface: rosgraph.Interface
@@ -45,12 +45,12 @@ class _Sender:
     send: Callable[[Message], None]
     message: Message = None
     logged: Mapping[str, Json] | None = None
-    #: What was handed over last, as long as it could have been sent again; of what is sent on change.
+    #: Message sent last, as long as it could be repeated; only for data sent on change.
     handed: Message = None
 
     @property
     def unchanged(self) -> bool:
-        """Whether what was made last is what was handed over last."""
+        """Whether the data prepared last equals the data sent last."""
         return self.handed is not None and all(
             _plain(reduce(getattr, path, self.handed)) == _plain(reduce(getattr, path, self.message))
             for path in paths_set(self.sending)
@@ -59,14 +59,14 @@ class _Sender:
 
 @dataclass
 class _Failure:
-    """The last failure of a service or action, until it responds, and the timer of the pause after it."""
+    """Last failure of a service or action, until it responds, and the timer of the pause after it."""
 
     why: str = ""
     pause: Timer | None = None
 
 
 class Controller(EventHandler):
-    """A robot's controller. `safe`: the messages that are sent whatever is required of them."""
+    """Controller of a robot. `safe`: the messages that are sent regardless of requirements."""
 
     def __init__(
         self,
@@ -88,7 +88,7 @@ class Controller(EventHandler):
         self._withheld: set[str] = set()
         self._monitor = GraphMonitor(port, event_loop, [*graph.serviceClients, *graph.actionClients])
         awaited = {topic.removeprefix("/") for topic in settings.configuration.wait_for}
-        #: The topics that were not heard yet, of those that commands wait for.
+        #: Topics that commands wait for and that have not been received yet.
         self._unheard = [topic for topic in graph.subscriptions if topic.topic.removeprefix("/") in awaited]
         self._watchdogs: dict[rosgraph.Subscription, Watchdog] = {}
         self._watchdog_stops = bool(settings.parameters["watchdog_stops"])
@@ -115,7 +115,7 @@ class Controller(EventHandler):
             self._starters[action] = self.goals[action.cancel] = starter
 
     def _ends(self, client: Client) -> tuple[Callable[[Message], None], Callable[[Failure, str, Message], None]]:
-        """The handlers of a response of a service or action, and of a failure."""
+        """Return the handlers of a response and of a failure of a service or action."""
         self._failures[client] = self._resets[client.reset] = _Failure()
         return partial(self.respond, client), partial(self.fail, client)
 
@@ -135,7 +135,7 @@ class Controller(EventHandler):
     # The node's life
 
     def start(self) -> None:
-        """Publishes its definition and begins to act: the first tick comes after one period."""
+        """Publish the definition and begin to act: the first tick comes after one period."""
         self._reports.publish_definition()
         self._times.start()
         self._monitor.start()
@@ -172,7 +172,7 @@ class Controller(EventHandler):
         self._statuses.publish()
 
     def stop(self) -> None:
-        """Stops the robot, before the node ends and while it can still send. Nothing more starts."""
+        """Stop the robot before the node ends, while it can still send. Nothing starts after that."""
         if not self._stopping:
             self._stopping = True
             self._halt()
@@ -190,7 +190,7 @@ class Controller(EventHandler):
         return self._stopping or (self._watchdog_stops and any(dog.tripped for dog in self._watchdogs.values()))
 
     def _halt(self) -> None:
-        """Cancels running actions, then sends the last messages, whatever the requirements on them say."""
+        """Cancel running actions, then send the last messages regardless of their requirements."""
         with self._batch():
             for event, client in self.goals.items():
                 self._control.perform(event_name(event))
@@ -198,7 +198,7 @@ class Controller(EventHandler):
         self._send_outside(self._safe.on_shutdown)
 
     def _send_outside(self, messages: Sequence[rosgraph.Sending]) -> None:
-        """Sends messages whatever the requirements on them say."""
+        """Send messages regardless of their requirements."""
         for sending in messages:
             sender = self._senders[sending.event]
             if self._prepare(sender):
@@ -239,7 +239,7 @@ class Controller(EventHandler):
         self._react()
 
     def _react(self) -> None:
-        """Lets happen what was withheld until now."""
+        """Perform the events that were withheld until now."""
         with self._batch():
             pass
 
@@ -288,7 +288,7 @@ class Controller(EventHandler):
         ]
 
     def _prepare(self, sender: _Sender) -> bool:
-        """Makes the data of a trigger; False where it can't be sent."""
+        """Prepare the data of a trigger; return False if it can't be sent."""
         try:
             sender.message, sender.logged = self._composer.compose(
                 sender.sending, sender.interface, sender.section, sender.frame
@@ -303,7 +303,7 @@ class Controller(EventHandler):
         return True
 
     def _after(self, name: str) -> None:
-        # What may no longer be sent is no longer withheld.
+        # A command that is disabled is no longer withheld.
         self._withheld = {command for command in self._withheld if self._control.engine.enabled(command)}
         super()._after(name)
         for sender in self._on_change:
@@ -328,6 +328,6 @@ def _topics(subscriptions: Sequence[rosgraph.Subscription]) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """A value to be compared: an array, of numpy or not, as a list."""
+    """Return a value for comparison: an array, also of numpy, as a list."""
     is_array = hasattr(value, "__len__") and not isinstance(value, (str, bytes))
     return list(value) if is_array else value

@@ -1,4 +1,4 @@
-"""The common part of controller and layer: data that come in become events, which are logged."""
+"""Common base of controller and layer: incoming data becomes events, which are logged."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 def _unset_objects(graph: rosgraph.RosGraph, port: Port) -> dict[rosgraph.NodeVariable, Message]:
-    """The objects that a node keeps, before anything is stored in them: each is new data of its ROS type."""
+    """Return the initial objects of a node's variables, each new data of its ROS type."""
     sources = {
         reception: (interface, section) for interface, section, several in received(graph) for reception in several
     }
@@ -47,27 +47,27 @@ def _unset_objects(graph: rosgraph.RosGraph, port: Port) -> dict[rosgraph.NodeVa
 
 
 class Goals(Protocol):
-    """The goals of one action, one at a time."""
+    """Goals of one action, one at a time."""
 
     def cancel(self) -> object:
-        """Cancel the goal at hand."""
+        """Cancel the present goal."""
 
     @property
     def trouble(self) -> str:
-        """The reason why the goal has not ended though it should have; empty where nothing is wrong."""
+        """Why the goal has not ended though it should have; empty if nothing is wrong."""
 
     @property
     def waits(self) -> bool:
-        """Whether the end of the node waits for the acceptance of the goal, the answer to its cancel, or its end."""
+        """Whether the stopping node waits: for the goal's acceptance, the answer to a cancel request, or the end."""
 
     def leave(self) -> None:
         """Report a goal that was to be canceled and has not ended when the node ends."""
 
 
 class EventHandler:
-    """Lets the events of one graph happen, with their data; one whose data can't be read does not.
+    """Perform the events of one graph with their data. An event whose data can't be read does not happen.
 
-    All its functions belong to the event loop's thread. Raises OSError where the event log can't be written.
+    Call all functions in the event loop's thread. Raises OSError if the event log can't be written.
     """
 
     def __init__(
@@ -99,20 +99,20 @@ class EventHandler:
         self._warn = Throttle(port.warn, event_loop.clock)
         self._events = {event_name(event): event for plant in graph.model.plants for event in plant.events}
         self._incoming = self._of_role(engine.Role.incoming)
-        #: The goals of the actions, by the event that cancels them.
+        #: Goals of the actions, by the event that cancels them.
         self.goals: dict[sct.Event, Goals] = {}
-        #: The message that the event at hand came with, and the event that would have been made of it.
+        #: Message of the present event, and the event that it was received as.
         self._received: tuple[sct.Event, Message] | None = None
         self._logged = {reception.event: self._read(reception) for reception in receptions(graph)}
         clients: list[Client] = [*graph.serviceClients, *graph.actionClients]
-        #: What the log has of an answer that can't be read, and so is an error.
+        #: Logged data of answers that can't be read and so are errors.
         self._unread = {
             client.response.event: ReceivedData([*self._values(client.response), *self._values(client.error)])
             for client in clients
         }
 
     def _of_role(self, *roles: engine.Role) -> set[sct.Event]:
-        """The events for which the control loop does one of these."""
+        """Return the events with one of these roles in the control loop."""
         executed = self._control.engine.executed
         return {self._events[event.name] for event in executed.events if event.role in roles}
 
@@ -125,7 +125,7 @@ class EventHandler:
     # The node's life
 
     def set_parameters(self, values: Mapping[str, Value]) -> None:
-        """Takes the values of parameters that the model declares, by their names on the robot; never within a batch."""
+        """Set parameters of the model, by their names on the robot. Do not call this within a batch."""
         for name, value in values.items():
             if name in self._parameters:
                 parameter = self._parameters[name]
@@ -134,27 +134,27 @@ class EventHandler:
                     self._control.timers.set_duration(duration, set_milliseconds(float(value), duration.unit))
 
     def log_to(self, log: EventLog) -> None:
-        """Has the event log written there; before the start."""
+        """Replace the event log; only before the start."""
         self._log = log
 
     def flush_log(self) -> None:
-        """Waits until all events so far are in the log."""
+        """Wait until all events so far are in the log."""
         self._log.flush()
 
     def start(self) -> None:
-        """Begins to act."""
+        """Begin to act."""
         raise NotImplementedError
 
     def stop(self) -> None:
-        """Is called before the node ends, while it can still send."""
+        """Prepare the end of the node, while it can still send."""
 
     @property
     def busy(self) -> bool:
-        """Whether the node's end waits for the fate of a goal."""
+        """Whether the stopping node waits for the fate of a goal."""
         return any(goals.waits for goals in self.goals.values())
 
     def close(self) -> None:
-        """Abandon all goals and close the log; nothing may happen any more."""
+        """Abandon all goals and close the log; no event may happen after that."""
         for goals in self.goals.values():
             goals.leave()
         self._log.close()
@@ -163,45 +163,45 @@ class EventHandler:
 
     @contextmanager
     def _batch(self) -> Iterator[None]:
-        """A batch: its events happen with nothing in between; events that become possible follow."""
+        """Group events that happen without others in between; the events that they enable follow."""
         with self._times:
             yield
             self._control.settle()
 
     def _expire(self) -> None:
-        """Some time may be up. What arrived before is handled before it."""
+        """Handle expired timers, after the messages that arrived before."""
         self._port.hear()
         with self._times:
             while self._control.expire() is not None:
                 self._follow_up()
 
     def _follow_up(self) -> None:
-        """Does what a time that was up made possible, if the control loop has not."""
+        """Perform the events that an expired timer enabled, unless the control loop does that."""
 
     def receive(self, subscription: rosgraph.Subscription, message: Message) -> None:
-        """A message on a topic: a batch of events. One that can't be read counts as not received."""
+        """Handle a message on a topic as a batch of events. A message that can't be read counts as not received."""
         with self._batch():
             read = [self._receive(reception, subscription.topic, message) for reception in subscription.receptions]
             if all(read):
                 self._note_received(subscription)
 
     def _note_received(self, subscription: rosgraph.Subscription) -> None:
-        """All of a message was read."""
+        """Note that all of a message was read."""
 
     def feed_back(self, client: rosgraph.ActionClient, message: Message) -> None:
-        """Feedback of the goal at hand."""
+        """Handle feedback of the present goal."""
         with self._batch():
             self._receive(client.feedback, client.identifier, message)
 
     def _receive(self, reception: rosgraph.Reception, name: str, message: Message) -> bool:
-        """A message or feedback, as an event; False where it can't be read, which is reported."""
+        """Handle a message or feedback as an event; report data that can't be read and return False."""
         fault = self._perform(reception.event, reception.inputs, message)
         if fault is not None:
             self._warn(reception.event, f"{name}: {fault}")
         return fault is None
 
     def respond(self, client: Client, message: Message) -> None:
-        """The response of a service, or the result of a goal that succeeded; one that can't be read is an error."""
+        """Handle the response of a service or the result of a goal that succeeded. Unreadable data is an error."""
         with self._batch():
             response = client.response.event
             fault = self._perform(response, client.response.inputs, message)
@@ -212,13 +212,13 @@ class EventHandler:
                 self._note_success(client)
 
     def fail(self, client: Client, reason: Failure, why: str, result: Message = None) -> None:
-        """A call or goal has failed. `result` is what came with the end of a goal, None where nothing came."""
+        """Handle a failed call or goal. `result` came with the end of the goal; None if there is none."""
         self._note_failure(client, why)
         with self._batch():
             self._end(client.error, reason, result)
 
     def end_canceled(self, client: rosgraph.ActionClient, reason: Failure, why: str, result: Message = None) -> None:
-        """A goal has ended because of a cancel: an error, for a reason, where the model has not canceled it."""
+        """Handle the end of a canceled goal: an error with this reason unless the model canceled the goal."""
         if not self._control.enabled(event_name(client.canceled.event)):
             self.fail(client, reason, why, result)
             return
@@ -229,7 +229,7 @@ class EventHandler:
     def _end(
         self, reception: rosgraph.Reception, reason: Failure, result: Message, source: sct.Event | None = None
     ) -> None:
-        """Lets an end happen whose data can always be read; without a result it is one with ROS's defaults.
+        """Perform an end of a call or goal whose data can always be read; a missing result has the defaults of ROS.
 
         `source` is the response whose data could not be read.
         """
@@ -240,10 +240,10 @@ class EventHandler:
         self._data.reason = None
 
     def _note_success(self, client: Client) -> None:
-        """A call or goal has come to a response that can be read."""
+        """Note a response of a call or goal that can be read."""
 
     def _note_failure(self, client: Client, why: str) -> None:
-        """A call or goal has failed."""
+        """Note that a call or goal has failed."""
         self._port.warn(f"{client.identifier}: {why}")
 
     def _perform(
@@ -253,9 +253,9 @@ class EventHandler:
         message: Message = None,
         source: sct.Event | None = None,
     ) -> UnreadableError | None:
-        """Lets an event of the robot happen, if it can now; returns what keeps its data from being read.
+        """Perform an event of the robot if it is enabled; return why its data can't be read, else None.
 
-        `source` is the event that the message came with; None: it is the event itself.
+        `source` is the event that the message came with; None means the event itself.
         """
         if not self._control.enabled(event_name(event)):
             return None
@@ -278,7 +278,7 @@ class EventHandler:
         self._received = None
 
     def _changes(self, event: sct.Event) -> bool:
-        """Changes the node's variables as an event without data does; False where these can't be read: as reported."""
+        """Change the node's variables for an event without data; if they can't be read, report it and return False."""
         try:
             self._data.variables.update(self._data.received(event).variables)
         except UnreadableError as fault:
@@ -294,12 +294,12 @@ class EventHandler:
             return False
         return event in self._incoming or self._changes(event) or not self._may_wait(event)
 
-    def _may_wait(self, event: sct.Event) -> bool:  # noqa: ARG002  # what a controller does by itself may
-        """Whether an event that nobody in the robot has told of need not happen."""
+    def _may_wait(self, event: sct.Event) -> bool:  # noqa: ARG002  # internal events of a controller may wait
+        """Return whether an enabled event that the robot did not cause may be postponed."""
         return False
 
     def _may_happen(self, event: sct.Event) -> bool:  # noqa: ARG002  # a controller withholds some
-        """Whether an enabled event may happen now, so that it is not withheld."""
+        """Return whether an enabled event may happen now, so that it is not withheld."""
         return True
 
     def _after(self, name: str) -> None:
@@ -312,11 +312,11 @@ class EventHandler:
         self._reports.add_transition(name)
 
     def _act(self, event: sct.Event) -> tuple[str, Mapping[str, Json] | None] | None:
-        """Does what an event that has happened asks for; the direction and data of its line in the log, if it sends."""
+        """Send the data of an event that has happened; if any, return the direction and data of its log line."""
         raise NotImplementedError
 
     def _logged_data(self, event: sct.Event) -> Mapping[str, Json] | None:
-        """The data of an event that happens now, for the event log."""
+        """Return the data of the present event for the event log."""
         if self._received is None:
             return None
         source, message = self._received
@@ -325,10 +325,10 @@ class EventHandler:
             return {**read, **self._logged[event].reason(self._data)}
         return self._logged[event].read(self._data, message) if event in self._logged else None
 
-    # What `/diagnostics` tells
+    # Contents of `/diagnostics`
 
-    def _held_back(self, event: sct.Event) -> str | None:  # noqa: ARG002  # a layer hands on what is allowed
-        """Why a command is not sent that the supervisor allows; None where it can be."""
+    def _held_back(self, event: sct.Event) -> str | None:  # noqa: ARG002  # a layer forwards all allowed commands
+        """Return why a command that the supervisor allows is not sent; None if it can be sent."""
         return None
 
     def _faults(self, parts: Parts) -> list[str]:

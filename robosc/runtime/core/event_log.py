@@ -1,4 +1,4 @@
-"""The event log, and the data of events in it, as JSON: the generated nodes write the same bytes for the same data."""
+"""Event log and the data of its events as JSON: the generated nodes write the same bytes for the same data."""
 
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ _Path = tuple[str, ...]
 
 
 def default_log(node: str, package: str) -> str:
-    """Where a log goes that nobody named: the folder of ROS's own logs.
+    """Return the default path of a log: in the log folder of ROS.
 
-    `node` is the node's full name, such as `/left/base`; where it was renamed, its package is told, too.
+    `node` is the node's full name, such as `/left/base`. The file name of a renamed node has its package, too.
     """
     folder = os.environ.get("ROS_LOG_DIR")
     if not folder:
         home = os.environ.get("ROS_HOME")
         folder = str(Path(home) / "log" if home else Path.home() / ".ros" / "log")
-    with suppress(OSError):  # the log itself complains
+    with suppress(OSError):  # opening the log reports the error
         Path(folder).mkdir(parents=True, exist_ok=True)
     parts = node.strip("/").split("/")
     if parts[-1] != package:
@@ -45,14 +45,14 @@ def default_log(node: str, package: str) -> str:
     return str(Path(folder) / f"{'.'.join(parts)}-events.jsonl")
 
 
-#: From one flush of a log to the next, in seconds, and what it keeps of what the disk does not take, in characters.
+#: Seconds between two flushes of a log, and the number of buffered characters after which lines are lost.
 _FLUSH, _KEPT = 0.02, 8 << 20
 
 
 class EventLog:
-    """A line of JSON for each event, written to the end of a file; an empty path: none is written.
+    """Log with a line of JSON for each event, appended to a file; an empty path disables it.
 
-    A thread of its own writes, so that a slow disk delays nobody. Raises OSError where the file can't be opened.
+    A separate thread writes, so that a slow disk delays no event. Raises OSError if the file can't be opened.
     """
 
     def __init__(self, path: str) -> None:
@@ -70,13 +70,14 @@ class EventLog:
 
     @property
     def active(self) -> bool:
-        """Whether anything is written."""
+        """Whether the log is written."""
         return self._thread is not None
 
     def write(self, time: float, direction: str, event: str, data: Mapping[str, Json] | None = None) -> None:
-        """Has a line written, soon. `time` is in seconds, `direction` `in`, `out`, `internal`, `outside` or `blocked`.
+        """Append the line of an event, soon. `time` is in seconds.
 
-        `data` is what came in or went out with the event, as `{"value": ...}`.
+        `direction` is `in`, `out`, `internal`, `outside` or `blocked`. `data` came in or went out with the event,
+        as `{"value": ...}`.
         """
         if self.active:
             entry: dict[str, Json] = {"time": time, "direction": direction, "event": event}
@@ -85,7 +86,7 @@ class EventLog:
             self.append(json_text(entry) + "\n")
 
     def append(self, line: str) -> None:
-        """Has a line written, which ends with a line feed; where too much waits already, it is lost."""
+        """Append a line, which ends with a line feed; if the buffer is full, the line is lost."""
         with self._changed:
             if self._size + len(line) > _KEPT:
                 self._lost += 1
@@ -96,7 +97,7 @@ class EventLog:
                 self._changed.notify_all()
 
     def lost(self) -> int:
-        """How many lines were lost since this last said so, at most once a second; else 0."""
+        """Return the number of lines lost since the last report, at most once a second; else 0."""
         with self._changed:
             if not self._lost or time.monotonic() < self._last_told + 1:
                 return 0
@@ -105,12 +106,12 @@ class EventLog:
             return lost
 
     def flush(self) -> None:
-        """Waits until all is written that can be."""
+        """Wait until all lines that can be written are written."""
         with self._changed:
             self._changed.wait_for(lambda: not self._lines and not self._busy)
 
     def close(self) -> None:
-        """Waits until all is written; nothing more will be."""
+        """Write all lines and close the log."""
         with self._changed:
             self._ending = True
             self._changed.notify_all()
@@ -145,20 +146,20 @@ class EventLog:
 class ReceivedData:
     """Data of one event that the node reads, in the shape of the message, and the reason of an error.
 
-    Basic data is the value itself. `has_reason`: it is an error.
+    Basic data is the value itself. `has_reason`: the event is an error.
     """
 
     def __init__(self, values: Iterable[ex.Expression], *, has_reason: bool = False) -> None:
         values = list(values)
-        #: What is read, by the names and indices on the way to it.
+        #: The parts that are read, by the names and indices on the way to them.
         self.parts = all_shown(values)
-        # An answer that can't be read is an error, too: the reason tells whose data this is.
+        # An answer that can't be read is an error, too: the reason shows whose data this is.
         self._reads_reason = has_reason and (reads_reason(values) or bool(self.parts))
         found = self.parts
         self._found = {(): found["data",]} if list(found) == [("data",)] else found
 
     def read(self, data: NodeData, message: Message) -> Mapping[str, Json] | None:
-        """The data for the log, without what can't be read; None where that is nothing."""
+        """Return the data for the log without what can't be read; None if nothing remains."""
         values: dict[_Path, Json] = {}
         for path, part in self._found.items():
             with suppress(UnreadableError):
@@ -173,12 +174,12 @@ class ReceivedData:
         return {"value": values[()] if () in values else nested(values), **self.reason(data)}
 
     def reason(self, data: NodeData) -> Mapping[str, Json]:
-        """The reason of an error, where the node reads it."""
+        """Return the reason of an error if the node reads it."""
         return {"reason": str(data.reason)} if self._reads_reason and data.reason else {}
 
 
 def _inside(element: Any, parts: Shown, data: NodeData) -> Json:
-    """What is shown of an element of an array."""
+    """Return the logged data of an element of an array."""
     values: dict[_Path, Json] = {}
     for path, part in parts.items():
         reached = data.at(element, path)
@@ -192,7 +193,7 @@ def _inside(element: Any, parts: Shown, data: NodeData) -> Json:
 
 
 def nested(values: Mapping[_Path, Json]) -> dict[str, Json]:
-    """Objects in objects, from paths of names to values."""
+    """Return nested objects from paths of names to values."""
     made: dict[str, Json] = {}
     for path, value in values.items():
         owner = made
@@ -203,7 +204,7 @@ def nested(values: Mapping[_Path, Json]) -> dict[str, Json]:
 
 
 def shown(value: Value) -> Json:
-    """A value as reports show it: a literal by its name."""
+    """Return a value as reports show it: a literal by its name."""
     if isinstance(value, ex.EnumerationLiteral):
         return value.name
     assert isinstance(value, (bool, int, float, str))

@@ -1,4 +1,4 @@
-"""The event loop of a node: one thing at a time, posted from any thread or planned for a given time."""
+"""Event loop of a node: runs one call at a time, posted from any thread or planned for a given time."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ if TYPE_CHECKING:
 
 
 class Timer:
-    """A call that is made once, at its time, unless it is cancelled before."""
+    """Call that is made once, at its time, unless it is canceled before."""
 
     def __init__(self, action: Callable[[], None]) -> None:
         self._action: Callable[[], None] | None = action
 
     def cancel(self) -> None:
-        """The call will not be made."""
+        """Cancel the call."""
         self._action = None
 
     def fire(self) -> None:
-        """Makes the call, at most once."""
+        """Make the call, at most once."""
         action, self._action = self._action, None
         if action is not None:
             action()
 
 
 class EventLoop:
-    """Makes calls one at a time, in the thread that calls `run_pending`.
+    """Make calls one at a time, in the thread that calls `run_pending`.
 
-    `clock` gives the time in seconds; one that `starts_late` stands at 0 until it is told the time, as the clock of a
-    simulation does.
+    `clock` returns the time in seconds. A clock that `starts_late` stands at 0 until it receives the time, as the clock
+    of a simulation does.
     """
 
     def __init__(self, clock: Callable[[], float], *, starts_late: bool = False) -> None:
@@ -45,24 +45,24 @@ class EventLoop:
         self._at_start: deque[Callable[[], None]] = deque()
 
     def post(self, action: Callable[[], None]) -> None:
-        """Makes a call after all that were posted before; from any thread."""
+        """Make a call after all that were posted before; from any thread."""
         self._posted.append(action)
 
     def call_later(self, seconds: float, action: Callable[[], None]) -> Timer:
-        """Makes a call so many seconds from now; only from the loop's own thread."""
+        """Make a call after some seconds; only from the loop's own thread."""
         timer = Timer(action)
-        now = self._time()  # may move what is planned
+        now = self._time()  # may move planned calls
         heapq.heappush(self._timers, (now + seconds, next(self._numbers), timer))
         return timer
 
     def at_start(self, action: Callable[[], None]) -> None:
-        """Makes a call as soon as the clock has started; only from the loop's own thread."""
+        """Make a call as soon as the clock has started; only from the loop's own thread."""
         self._at_start.append(action)
 
     def run_pending(self) -> float | None:
-        """Makes all calls that are due; returns the seconds until the next is, None where none is planned.
+        """Make all calls that are due; return the seconds until the next one, None if none is planned.
 
-        What is posted meanwhile is done too, once: a call that posts itself does not keep others from their turn.
+        Calls posted before the start of this run are made once: a call that posts itself does not delay others.
         """
         for _ in range(len(self._posted)):
             self._posted.popleft()()
@@ -76,7 +76,7 @@ class EventLoop:
         return max(0.0, self._timers[0][0] - now) if self._timers else None
 
     def _time(self) -> float:
-        """The time. Where the clock was set back, or started late, timers stay as far away as they were."""
+        """Return the time. If the clock was set back or started late, keep the remaining time of all timers."""
         now = self.clock()
         shift = now - self._last
         if shift < 0 or not self._started:

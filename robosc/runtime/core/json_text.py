@@ -9,15 +9,15 @@ from typing import TypeAlias
 
 from robosc.diagnostics.visible import HIDDEN_PATTERN, code
 
-#: What can be written as JSON.
+#: Values that can be written as JSON.
 Json: TypeAlias = bool | int | float | str | Mapping[str, "Json"] | Sequence["Json"] | None
 
-#: Nothing that a reader could take for the end of a line, and nothing that a terminal obeys, goes out as it is.
+#: Characters to escape: line separators, and control characters that a terminal obeys.
 _ESCAPED = re.compile(r'["\\]|' + HIDDEN_PATTERN)
 
 
 def json_text(value: Json) -> str:
-    """The JSON text of a value, without blanks; no number stands for what is not finite: null."""
+    """Return the JSON text of a value, without blanks; a number that is not finite becomes null."""
     match value:
         case None:
             return "null"
@@ -35,7 +35,7 @@ def json_text(value: Json) -> str:
 
 
 def _number(value: float) -> str:
-    """The shortest text of 15 to 17 digits that reads back as the same number."""
+    """Return the shortest text of 15 to 17 digits that reads back as the same number."""
     if not math.isfinite(value):
         return "null"
     texts = (f"{value:.{digits}g}" for digits in (15, 16, 17))

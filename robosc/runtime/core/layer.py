@@ -1,4 +1,4 @@
-"""The supervisory layer between a controller and its robot: what passes and what is blocked (thesis section 4.7)."""
+"""Supervisory layer between a controller and its robot: passes or blocks messages (thesis section 4.7)."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 
 
 class Layer(EventHandler):
-    """The layer of a robot. It decides, others forward. Of `safe` it sends `on_blocked`.
+    """Layer of a robot. It decides; others forward. Of `safe` it sends `on_blocked`.
 
-    What the robot sends moves the supervisor before it is forwarded (`receive`, `respond`, `fail`, `feed_back`); what
-    the controller sends is forwarded where `passes` allows it. The proxies of actions add their `goals`.
+    Messages of the robot move the supervisor before they are forwarded (`receive`, `respond`, `fail`, `feed_back`).
+    Messages of the controller are forwarded if `passes` allows it. The proxies of actions add their `goals`.
     """
 
     def __init__(
@@ -45,18 +45,18 @@ class Layer(EventHandler):
         self._period = settings.seconds("period_ms")
         self._outgoing = self._of_role(engine.Role.trigger, engine.Role.cancel)
         self._data_events = self._of_role(engine.Role.data)
-        #: What was blocked since the last report on `/diagnostics`.
+        #: Events blocked since the last report on `/diagnostics`.
         self._blocked: set[sct.Event] = set()
         self._composer = Composer(port, self._data)
         instead = (safe or SafeMessages()).on_blocked
         self._publishers = {
             sending: publisher for publisher in graph.publishers for sending in publisher.sendings if sending in instead
         }
-        #: Of `on_blocked`, the messages that the layer forwarded last: it sends one when it blocks the next.
+        #: Messages of `on_blocked` that were forwarded last: the layer sends one when it blocks the next.
         self._forwarded: set[rosgraph.Sending] = set()
 
     def start(self) -> None:
-        """Publishes its definition, and its state from now on."""
+        """Publish the definition, and the state from now on."""
         self._reports.publish_definition()
         self._times.start()
         with self._times:
@@ -72,7 +72,7 @@ class Layer(EventHandler):
     # From the controller
 
     def passes(self, sending: rosgraph.Sending) -> bool:
-        """Whether what the controller sends may go on; its event has then happened. Else it is reported as blocked."""
+        """Perform the event of a controller's message and return True; report it as blocked if it is not allowed."""
         with self._times:
             if self._control.perform(event_name(sending.event)):
                 self._control.settle()
@@ -87,7 +87,7 @@ class Layer(EventHandler):
         return False
 
     def _send_instead(self, sending: rosgraph.Sending) -> None:
-        """Sends a message in the place of blocked ones; one with default data where its own can't be sent."""
+        """Send a message in place of blocked ones, with default data if its own can't be sent."""
         publisher = self._publishers[sending]
         frame = self._settings.configuration.frame_id.get(publisher.topic.removeprefix("/"), "")
         target = sending, publisher.interface, Section.MESSAGE, frame
@@ -101,7 +101,7 @@ class Layer(EventHandler):
         self._log.write(self._port.now(), "outside", event_name(sending.event), logged)
 
     def reject(self, sending: rosgraph.Sending) -> None:
-        """A call or goal is rejected because another one has not ended."""
+        """Reject a call or goal because another one has not ended."""
         self._report_blocked(sending.event, "busy", [])
 
     def _report_blocked(self, event: sct.Event, reason: str, because: Sequence[str]) -> None:

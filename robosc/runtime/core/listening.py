@@ -1,30 +1,30 @@
-"""What listens to a node's reports needs of the middleware."""
+"""Interface between the middleware and subscribers to a node's reports."""
 
 from __future__ import annotations
 
 from typing import Protocol
 
-#: Seconds between two looks at who is there.
+#: Seconds between two counts of publishers.
 LOOK = 0.5
-#: So many reports wait to be heard.
+#: Queue depth for reports.
 WAITING = 1000
 
 
 class Listener(Protocol):
-    """What is called, from a thread of the middleware's, with what nodes tell."""
+    """Callbacks for the reports of nodes, called from a thread of the middleware."""
 
     def defined(self, text: str) -> None:
-        """Receives the JSON text of a definition on `~/definition`."""
+        """Receive the JSON text of a definition on `~/definition`."""
 
     def told(self, text: str) -> None:
-        """Receives the JSON text of one report on `~/state`."""
+        """Receive the JSON text of one report on `~/state`."""
 
     def heard(self, publishers: int) -> None:
-        """Receives the number of nodes that publish their state; called every now and then."""
+        """Receive the number of nodes that publish their state, at regular intervals."""
 
 
 class ReportSubscriber(Protocol):
-    """What listens, until it is closed."""
+    """Subscription to reports, until it is closed."""
 
     def close(self) -> None:
-        """Nothing is heard any more."""
+        """End the subscription."""

@@ -13,19 +13,19 @@ if TYPE_CHECKING:
     from robosc.runtime.core.event_loop import EventLoop
     from robosc.runtime.core.port import Client, ControllerPort, Endpoint
 
-#: From one look at the graph to the next, in seconds, and after how many looks a topic should have a publisher.
+#: Seconds between two looks at the graph, and looks after which a topic should have a publisher.
 _PERIOD = 1.0
 _PATIENCE = 5
-#: Looks for which two nodes of one name may serve: one that was killed and started anew is there twice for 20 s.
+#: Looks for which two nodes of one name may serve: a killed and restarted node is listed twice for 20 s.
 _LEASE = 25
-#: Why a call or goal has failed where only such a server is there.
+#: Why a call or goal has failed if only such a server exists.
 OTHER_TYPE = "the server has another type"
 
 
 class Watchdog:
-    """Calls `silent` when nothing was received for so many seconds, and `resumed` when something is again.
+    """Call `silent` after some seconds without a message, and `resumed` at the next message.
 
-    `tripped` says whether the topic is silent.
+    `tripped`: whether the topic is silent.
     """
 
     def __init__(
@@ -40,7 +40,7 @@ class Watchdog:
         loop.call_later(seconds, self._check)
 
     def reset(self) -> None:
-        """A message was received: the seconds count from now."""
+        """Note a message: the seconds count from now."""
         self._received = self._loop.clock()
         if self.tripped:
             self.tripped = False
@@ -57,11 +57,11 @@ class Watchdog:
 
 
 class GraphMonitor:
-    """Looks every second at the other nodes on the node's topics, and at the servers of what it calls.
+    """Check the other nodes on the node's topics, and the servers that it calls, every second.
 
     Each fault is logged once, and `faults` has it as long as it lasts: another type, a quality of service that does not
     fit, no publisher for five seconds, another publisher on a topic that the controller commands, a server of another
-    type where there is none of the right one, and several servers of the right type.
+    type if there is none of the right one, and several servers of the right type.
     """
 
     def __init__(self, port: ControllerPort, loop: EventLoop, clients: Sequence[Client] = ()) -> None:
@@ -75,15 +75,15 @@ class GraphMonitor:
         self._faults: dict[rosgraph.Subscription | rosgraph.Publisher | Client, list[str]] = {}
 
     def start(self) -> None:
-        """Looks from now on."""
+        """Begin to check."""
         self._loop.call_later(_PERIOD, self._look)
 
     def faults(self, element: rosgraph.Subscription | rosgraph.Publisher | Client) -> Sequence[str]:
-        """The faults of a topic, service or action at the last look."""
+        """Return the faults of a topic, service or action at the last check."""
         return self._faults.get(element, ())
 
     def has_other_type(self, client: Client) -> bool:
-        """Whether the only servers at the last look were of another type."""
+        """Return whether all servers at the last check were of another type."""
         return client in self._other_types
 
     def _look(self) -> None:
@@ -102,7 +102,7 @@ class GraphMonitor:
         topic = subscription.topic
         self._missing[topic] = 0 if endpoints else self._missing.get(topic, 0) + 1
         if self._missing[topic] >= _PATIENCE:
-            # A publisher that comes late is usual while a robot starts. So this is no warning in the log.
+            # A late publisher is usual while a robot starts: information, not a warning.
             text = f"{topic}: nobody publishes it after {_PATIENCE} s"
             self._note(subscription, f"{topic}: nobody publishes it", text, self._port.info)
         for publisher in endpoints:
@@ -128,7 +128,7 @@ class GraphMonitor:
         self._check_single(client, sorted(node for node, kind in serving if kind == expected))
 
     def _check_single(self, client: Client, servers: list[str]) -> None:
-        """Note several servers of the right type: the first answer counts, whatever the others do."""
+        """Note several servers of the right type: only the first answer counts."""
         names = sorted(set(servers))
         self._twice[client] = self._twice[client] + 1 if len(names) < len(servers) else 0
         if len(names) > 1:
@@ -152,7 +152,7 @@ class GraphMonitor:
         text: str | None = None,
         report: Callable[[str], None] | None = None,
     ) -> None:
-        """Notes a fault until the next look; logs a text, else the fault, the first time."""
+        """Note a fault until the next check; log the text, else the fault, the first time."""
         found = self._faults.setdefault(element, [])
         if fault not in found:
             found.append(fault)

@@ -1,4 +1,4 @@
-"""A ROS node without its middleware, and the error of a node that can't start."""
+"""ROS node without its middleware, and the error of a node that can't start."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ if TYPE_CHECKING:
     from robosc.runtime.core.proxies import ActionProxy
     from robosc.runtime.core.settings import Settings
 
-#: Seconds that a node waits at most before it looks whether it was interrupted, and for what it sent at its end.
+#: Seconds between two checks for an interrupt at most, and seconds for the last messages to arrive.
 LONGEST_WAIT = 0.1
 FAREWELL = 0.5
-#: Where monitors of robots listen.
+#: Topic of robot monitors.
 DIAGNOSTICS = "/diagnostics"
 
 
 class StartError(Exception):
-    """A node can't start, for a reason that its user can do something about: what to do is the second argument."""
+    """Error of a node that can't start. `hint` describes how the user can fix it."""
 
     def __init__(self, message: str, hint: str | None = None) -> None:
         super().__init__(message)
@@ -44,12 +44,12 @@ class StartError(Exception):
 
 
 class Node(ControllerPort, ABC):
-    """A running node, for a controller or a layer. Raises StartError for a type that is not there.
+    """Running node for a controller or a layer. Raises StartError for a missing type.
 
-    The subclass makes publishers, subscriptions and clients with its middleware.
+    The subclass creates publishers, subscriptions and clients with its middleware.
     """
 
-    #: What to do where a ROS type is not there, and what is raised where ROS refuses a name or value.
+    #: Hint for a missing ROS type, and the exceptions of a ROS that rejects a name or value.
     type_hint: ClassVar[str]
     refusals: ClassVar[tuple[type[Exception], ...]]
     event_loop: EventLoop
@@ -79,7 +79,7 @@ class Node(ControllerPort, ABC):
         return made
 
     def _load_type(self, interface: rosgraph.Interface) -> Any:
-        """The Python class of a ROS type. Raises StartError where there is none."""
+        """Return the Python class of a ROS type. Raises StartError if there is none."""
         folder = FOLDERS[interface.kind.name]
         package = interface.package
         try:
@@ -94,7 +94,7 @@ class Node(ControllerPort, ABC):
     # The node's life
 
     def parameters(self, declared: Sequence[Parameter]) -> dict[str, Value]:
-        """The values of the node's parameters. Raises StartError for one that does not fit."""
+        """Return the values of the node's parameters. Raises StartError for a value that does not fit."""
         values = {}
         for parameter in declared:
             try:
@@ -109,7 +109,7 @@ class Node(ControllerPort, ABC):
         return values
 
     def connect(self, handler: Controller | Layer, settings: Settings) -> None:
-        """Makes what is sent with, then what is listened to. Raises StartError where ROS refuses a name."""
+        """Create publishers and clients, then subscriptions. Raises StartError if ROS rejects a name."""
         try:
             if isinstance(handler, Layer):
                 self._connect_layer(handler, settings)
@@ -130,7 +130,7 @@ class Node(ControllerPort, ABC):
             self._subscribe(subscription, partial(controller.receive, subscription))
 
     def _connect_layer(self, layer: Layer, settings: Settings) -> None:
-        """Stands between the controller and the robot: each of its names has a private one for the controller."""
+        """Connect a layer between controller and robot: each name has a private counterpart for the controller."""
         for topic in self._graph.subscriptions:
             self._relay(topic, topic.topic, self.inside(topic.topic), partial(_forwarded, layer, topic))
         for publisher in self._graph.publishers:
@@ -146,7 +146,7 @@ class Node(ControllerPort, ABC):
             layer.goals[action.cancel] = self._proxy(action, layer, settings.seconds("action_timeout_ms"))
 
     def spin(self, handler: EventHandler) -> None:
-        """Lets somebody act until the user interrupts it; it stops before the node ends."""
+        """Run a handler until the user interrupts it; stop it before the node ends."""
         interrupted: list[int] = []
 
         def interrupt(number: int, _: object) -> None:
@@ -166,64 +166,64 @@ class Node(ControllerPort, ABC):
         self._take_leave()
         self.close()
 
-    # What the middleware does
+    # Interface to the middleware
 
     @abstractmethod
     def _follow_parameters(self, handler: EventHandler) -> None:
-        """Reports parameters that change while the node runs to the handler, between batches."""
+        """Report parameters that change while the node runs to the handler, between batches."""
 
     @property
     @abstractmethod
     def full_name(self) -> str:
-        """The node's name with its namespace, such as `/left/base`."""
+        """Name of the node with its namespace, such as `/left/base`."""
 
     @abstractmethod
     def open_reports(self, names: Sequence[str]) -> None:
-        """Makes what `publish_report` publishes on; the definition is kept for those who come later."""
+        """Create the publishers of `publish_report`; the definition is kept for late subscribers."""
 
     @abstractmethod
     def _diagnostics_publisher(self, kind: Any) -> Any:
-        """Publishes arrays of statuses."""
+        """Return a publisher of arrays of statuses."""
 
     @abstractmethod
     def close(self) -> None:
-        """Nothing more is sent or received."""
+        """End the node: nothing more is sent or received."""
 
     @abstractmethod
     def inside(self, name: str) -> str:
-        """The layer's name for the controller in the place of a topic, service or action of the robot."""
+        """Return the layer's name for the controller in place of a topic, service or action of the robot."""
 
     @abstractmethod
     def _parameter(self, parameter: Parameter) -> object:
-        """The value that the node was started with. Raises one of `refusals`."""
+        """Return the start value of a parameter. Raises one of `refusals`."""
 
     @abstractmethod
     def _is_up(self) -> bool:
-        """Whether ROS runs: the node may go on."""
+        """Return whether ROS runs, so that the node may go on."""
 
     @abstractmethod
     def _spin_once(self) -> None:
-        """Does what is due, and waits for more, at most `LONGEST_WAIT` seconds."""
+        """Do what is due, and wait for more, at most `LONGEST_WAIT` seconds."""
 
     @abstractmethod
     def _take_leave(self) -> None:
-        """Lets what was sent last arrive, as far as that is soon."""
+        """Wait briefly until the last messages have arrived."""
 
     @abstractmethod
     def _publisher(self, publisher: rosgraph.Publisher) -> Any:
-        """Publishes the controller's messages."""
+        """Return a publisher of the controller's messages."""
 
     @abstractmethod
     def _subscribe(self, subscription: rosgraph.Subscription, receive: Callable[[Message], None]) -> None:
-        """Calls `receive` in the event loop's thread for every message."""
+        """Call `receive` in the event loop's thread for every message."""
 
     @abstractmethod
     def _service_client(self, service: rosgraph.ServiceClient) -> Any:
-        """Calls a service of the robot."""
+        """Return a client of a service of the robot."""
 
     @abstractmethod
     def _action_client(self, action: rosgraph.ActionClient) -> Any:
-        """Sends goals to the robot."""
+        """Return a client that sends goals to the robot."""
 
     @abstractmethod
     def _relay(
@@ -233,34 +233,34 @@ class Node(ControllerPort, ABC):
         target: str,
         passes: Callable[[Message], bool],
     ) -> Any:
-        """Forwards messages from one topic to another where `passes` says so; what it returns publishes there, too."""
+        """Forward messages from one topic to another if `passes` returns True; return the publisher of the target."""
 
     @abstractmethod
     def serve(self, kind: Any, name: str, called: Callable[[Message, Any], None]) -> None:
-        """A service whose calls are answered later.
+        """Offer a service whose calls are answered later.
 
         `called` is called in the event loop's thread, with the request and its `Answer`.
         """
 
     @abstractmethod
     def _proxy(self, action: rosgraph.ActionClient, layer: Layer, timeout: float) -> ActionProxy[Any]:
-        """An action for the controller behind which stands the robot's one; `timeout` in seconds."""
+        """Offer an action to the controller as a proxy of the robot's action; `timeout` in seconds."""
 
     @abstractmethod
     def _stamp_now(self) -> Any:
-        """The node's time, as ROS has it in headers."""
+        """Return the node's time, as ROS has it in headers."""
 
-    # What needs no middleware
+    # Independent of the middleware
 
     def stamp(self, message: Message, frame: str) -> None:
-        """Gives a header the node's time and a frame."""
+        """Set the time and the frame of a header."""
         header: Any = getattr(message, "header", None)
         if hasattr(header, "stamp"):
             header.stamp = self._stamp_now()
             header.frame_id = frame
 
     def open_diagnostics(self) -> None:
-        """Makes what `publish_statuses` publishes on; where its types are not there, a warning says so."""
+        """Create the publisher of `publish_statuses`; warn if its types are missing."""
         try:
             self._statuses = import_module("diagnostic_msgs.msg")
         except ImportError as error:
@@ -269,7 +269,7 @@ class Node(ControllerPort, ABC):
             self._reports["diagnostics"] = self._diagnostics_publisher(self._statuses.DiagnosticArray)
 
     def publish_statuses(self, statuses: Sequence[ComponentStatus]) -> None:
-        """Publishes statuses on `/diagnostics`, named by the node and the component."""
+        """Publish statuses on `/diagnostics`, named by the node and the component."""
         kinds = self._statuses
         report = kinds.DiagnosticArray()
         report.header.stamp = self._stamp_now()
@@ -286,11 +286,11 @@ class Node(ControllerPort, ABC):
         self._reports["diagnostics"].publish(report)
 
     def status_listeners(self) -> int:
-        """How many subscriptions there are to it."""
+        """Return the number of subscriptions to `/diagnostics`."""
         return self.report_listeners("diagnostics") if "diagnostics" in self._reports else 0
 
     def publish(self, publisher: rosgraph.Publisher, message: Message) -> None:
-        """Sends a message."""
+        """Send a message."""
         self._publishers[publisher].publish(message)
 
     @property

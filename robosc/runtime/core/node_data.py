@@ -1,4 +1,4 @@
-"""The data that a node keeps beside its supervisor, the values of expressions over it, and data for messages."""
+"""Data that a node keeps beside its supervisor, values of expressions over it, and data for messages."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ if TYPE_CHECKING:
     from robosc.runtime.core.json_text import Json
     from robosc.runtime.core.port import ControllerPort, Message
 
-#: What whole numbers of a node are kept in.
+#: Range of the whole numbers of a node.
 LEAST, MOST = INTEGER_RANGES["int64"]
 _FLOATS = {"float32": "f", "float": "f", "float64": "d", "double": "d"}
-#: An array's type, and of it the type of its elements: `float64[]`, in ROS 2 `sequence<double, 9>`.
+#: Type of an array, with the type of its elements: `float64[]`, in ROS 2 `sequence<double, 9>`.
 _ELEMENT = re.compile(r"(?:sequence<)?([\w/]+).*")
 #: ROS 2 calls its `byte` an octet.
 _RANGES = {**INTEGER_RANGES, "octet": INTEGER_RANGES["uint8"]}
 
 
 class _Blank:
-    """An object that nothing was stored in: of its fields, too."""
+    """Unset object, whose fields are unset, too."""
 
     def __getattr__(self, name: str) -> _Blank:
         if name.startswith("__"):
@@ -44,7 +44,7 @@ class _Blank:
 
 
 BLANK: Any = _Blank()
-#: What is read of it.
+#: Values read of an unset object.
 _BLANK: dict[type[ex.Type], Any] = {
     ex.BooleanType: False,
     ex.IntegerType: 0,
@@ -55,38 +55,38 @@ _BLANK: dict[type[ex.Type], Any] = {
 
 
 def element_type(kind: str) -> str:
-    """The type of an array's elements, or a type that is none, as a node's `wire_types` have it."""
+    """Return the type of an array's elements, or the type itself if it is no array, as in `wire_types`."""
     return _ELEMENT.sub(r"\1", kind)
 
 
 class PastEndError(UnreadableError):
-    """An element that an array does not have."""
+    """Access to a missing element of an array."""
 
     def __init__(self, index: int, length: int) -> None:
         super().__init__(f"there is no element {index} in an array of {length}")
 
 
 class Received(NamedTuple):
-    """The data of an event, computed in the state before it: its inputs by name, and the node's new values."""
+    """Data of an event, computed in the state before it: its inputs by name, and the node's new values."""
 
     inputs: dict[str, Any]
     variables: dict[rosgraph.NodeVariable, Value]
 
 
 def fit(number: int) -> int:
-    """The nearest number of 64 bits."""
+    """Return the nearest number of 64 bits."""
     return saturate(number, LEAST, MOST)
 
 
 class NodeData:
-    """The variables of one node, and the values of expressions over them, the supervisor's state and data that came in.
+    """Variables of one node, and values of expressions over them, the supervisor's state and incoming data.
 
     An enumeration's value is its literal.
     """
 
     def __init__(self, graph: rosgraph.RosGraph, engine: Engine) -> None:
         self._engine = engine
-        #: Why the service or action of the error at hand has failed.
+        #: Failure reason of the service or action of the present error.
         self.reason: str | None = None
         self._programs: dict[ex.Expression, Program[Value]] = {}
         self.variables: dict[rosgraph.NodeVariable, Value] = {}
@@ -103,7 +103,7 @@ class NodeData:
             self._reactions.setdefault(reaction.event, []).append(reaction)
 
     def value(self, expression: ex.Expression, data: Message = None) -> Value:
-        """The value of an expression; `data` is what came in. Raises UnreadableError."""
+        """Return the value of an expression; `data` is the incoming data. Raises UnreadableError."""
         program = self._programs.get(expression)
         if program is None:
             program = Program[Value](expression, lambda reference: partial(self._read, reference), fit)
@@ -111,22 +111,22 @@ class NodeData:
         return program(data)
 
     def is_in(self, location: sct.Location) -> bool:
-        """Whether its plant is in a location."""
+        """Return whether the plant of a location is in it."""
         plant: sct.Plant = location.eContainer()
         return plant.locations[self._engine.location(plant)] is location
 
     def received(
         self, event: sct.Event, inputs: Sequence[rosgraph.InputAssignment] = (), data: Message = None
     ) -> Received:
-        """Return the inputs and new values that the event brings in the present state; change nothing.
+        """Return the inputs and new values of an event in the present state; change nothing.
 
-        Raises UnreadableError where one of them can't read what it needs: then the event must not happen.
+        Raises UnreadableError if one of them can't be read: then the event must not happen.
         """
         variables = self._assigned(event, data)
         return Received({given.input.name: self.input(given, data) for given in inputs}, variables)
 
     def input(self, assigned: rosgraph.InputAssignment, data: Message) -> Any:
-        """The value of an input; its first one where it can't be read: no transition that is taken needs it then."""
+        """Return the value of an input; its first value if it can't be read, as then no taken transition needs it."""
         try:
             value = self.value(assigned.value, data)
         except UnreadableError:
@@ -146,15 +146,15 @@ class NodeData:
         return assigned
 
     def reactions(self, event: sct.Event) -> list[rosgraph.Reaction]:
-        """The reactions of the node to the event in the present state, where guards hold."""
+        """Return the reactions of the node to the event in the present state, if their guards hold."""
         return [reaction for reaction in self._reactions.get(event, ()) if any(map(self.is_in, reaction.locations))]
 
     def values_read(self, event: sct.Event) -> list[ex.Expression]:
-        """All values that the event may give to variables."""
+        """Return all values that the event may assign to variables."""
         return [assigned.value for reaction in self._reactions.get(event, ()) for assigned in reaction.assignments]
 
     def convert(self, conversion: rosgraph.Conversion, argument: Any) -> ex.EnumerationLiteral:
-        """The literal of the first rule that holds; one that can't be read does not."""
+        """Return the literal of the first rule that holds; a rule that can't be read does not hold."""
         for rule in conversion.rules:
             try:
                 if self.value(rule.condition, argument):
@@ -164,7 +164,7 @@ class NodeData:
         return conversion.default
 
     def _read(self, reference: ex.Expression, *given: Any) -> Value:
-        """The value of a reference; `given` is the element that it reads, its indices, and what came in."""
+        """Return the value of a reference; `given` is the element that it reads, its indices, and the incoming data."""
         match reference:
             case rosgraph.NodeVariableReference():
                 return self.variables[reference.variable]
@@ -185,7 +185,7 @@ class NodeData:
         raise TypeError(f"a ROS graph holds no {type(reference).__name__}")
 
     def _reach(self, access: rosgraph.WireAccess, *given: Any) -> Any:
-        """The value that an access reads of a message or an element, with these indices. Raises UnreadableError."""
+        """Return the value that an access reads of a message or an element at these indices. Raises UnreadableError."""
         start = given[-1] if access.variable is None else self.variables[access.variable]
         rest = iter(given if access.quantifier else (start, *given[:-1]))
         reached = next(rest)
@@ -202,7 +202,7 @@ class NodeData:
         return reached
 
     def at(self, data: Any, path: Sequence[str]) -> Any:
-        """The value at a path of names and positions. Raises UnreadableError."""
+        """Return the value at a path of names and positions. Raises UnreadableError."""
         for step in path:
             data = self._element(data, int(step)) if step.isdigit() else self._field(data, step)
         return data
@@ -221,7 +221,7 @@ class NodeData:
         return array[first : last + 1] if last >= first else []
 
     def leaf(self, value: Any, kind: ex.Type | None) -> Value:
-        """A value of ROS as one of the model: numpy's scalars and ROS 2's `byte` become plain numbers."""
+        """Convert a value of ROS to one of the model: numpy's scalars and ROS 2's `byte` become plain numbers."""
         if value is BLANK and kind is not None:
             blank: Value = _BLANK[type(kind)]
             return blank
@@ -244,7 +244,7 @@ class NodeData:
 
 
 def bounded(value: Value, kind: ex.Type) -> Value:
-    """The value as a variable of the type keeps it: an integer within its range."""
+    """Return the value as a variable of the type holds it: an integer within its range."""
     if isinstance(kind, ex.IntegerType):
         assert isinstance(value, int)
         return saturate(fit(value), kind.minimum, kind.maximum)
@@ -255,16 +255,16 @@ def bounded(value: Value, kind: ex.Type) -> Value:
 
 
 class NotFiniteError(Exception):
-    """A field whose value would be no finite number."""
+    """Field whose value would not be finite."""
 
     def __init__(self, path: Sequence[str]) -> None:
         super().__init__(".".join(path))
 
 
 def fill(port: ControllerPort, message: Message, path: Sequence[str], value: Value) -> Json:
-    """Sets a field, named by the fields on the way to it; what it then holds. Raises NotFiniteError.
+    """Set a field at a path and return the value that it then holds. Raises NotFiniteError.
 
-    A number outside the field's range becomes its nearest one; a double becomes one of the field's precision.
+    A number outside the field's range becomes the nearest one in it. A double is rounded to the field's precision.
     """
     owner = message
     for name in path[:-1]:
@@ -278,9 +278,9 @@ def fill(port: ControllerPort, message: Message, path: Sequence[str], value: Val
 
 
 def hand_on(port: ControllerPort, message: Message, path: Sequence[str], data: Any) -> None:
-    """Sets a field to an object, or to an array of objects, as it came in; no path: the whole message.
+    """Set a field to an object, or to an array of objects, unchanged; an empty path means the whole message.
 
-    Raises NotFiniteError where a number in it is not finite.
+    Raises NotFiniteError if a number in it is not finite.
     """
     owner = message
     if data is BLANK:
@@ -294,7 +294,7 @@ def hand_on(port: ControllerPort, message: Message, path: Sequence[str], data: A
 
 
 def _is_finite(port: ControllerPort, data: Any) -> bool:
-    """Whether an object, or an array of objects, holds finite numbers only."""
+    """Return whether all numbers in an object, or in an array of objects, are finite."""
     if data is BLANK:
         return True
     if isinstance(data, Sequence):
@@ -309,7 +309,7 @@ def _is_finite(port: ControllerPort, data: Any) -> bool:
 
 
 def _fill_array(owner: Message, kind: str, values: Sequence[Value], path: Sequence[str]) -> Json:
-    """Sets the elements of an array; one of a fixed length keeps the elements behind them."""
+    """Set the elements of an array; an array of fixed length keeps its further elements."""
     element, length = _array(kind)
     held = [_held(element, value, path) for value in values[:length]]
     rest = [] if length is None else list(getattr(owner, path[-1]))[len(held) :]
@@ -319,7 +319,7 @@ def _fill_array(owner: Message, kind: str, values: Sequence[Value], path: Sequen
 
 
 def _array(kind: str) -> tuple[str, int | None]:
-    """The type of the elements, and the length if it is fixed; ROS 2 also has `sequence<double, 9>`."""
+    """Return the type of the elements, and the length if it is fixed; ROS 2 also has `sequence<double, 9>`."""
     bounds = re.fullmatch(r"(?:sequence<)?(\w+(?:<\d+>)?)(?:\[(\d*)\]|(?:, *\d+)?>)", kind)
     assert bounds is not None
     return bounds[1], int(bounds[2]) if bounds[2] else None

@@ -1,4 +1,4 @@
-"""The services and actions that a layer offers its controller in the place of the robot's."""
+"""Services and actions that a layer offers its controller in place of the robot's."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 
 class Answer(Protocol):
-    """The answer that a caller of the layer waits for."""
+    """Answer that a caller of the layer waits for."""
 
     def give(self, response: Message = None) -> None:
-        """Answers, once; without a response, the one in which nothing was set: services of ROS 2 have no errors."""
+        """Answer, once; without a response, with an unset one: services of ROS 2 have no errors."""
 
 
 class ServiceProxy:
-    """A service for the controller behind which stands the robot's one; `timeout` in seconds."""
+    """Service offered to the controller as a proxy of the robot's service; `timeout` in seconds."""
 
     def __init__(
         self, port: Port, event_loop: EventLoop, service: rosgraph.ServiceClient, layer: Layer, timeout: float
@@ -36,7 +36,7 @@ class ServiceProxy:
         self._client = ServiceClient(port, event_loop, service, timeout, Answers(self._respond, self._fail))
 
     def call(self, request: Message, answer: Answer) -> None:
-        """A call of the controller's, which is forwarded where the layer lets it pass."""
+        """Handle a call of the controller: forward it if the layer lets it pass."""
         if self._waiting is not None:
             self._layer.reject(self._service.request)
             answer.give()
@@ -61,10 +61,10 @@ class ServiceProxy:
 
 @dataclass(eq=False)
 class ProxiedGoal:
-    """A goal of the controller's: `request` is what it sent.
+    """Goal of the controller; `request` is the message that it sent.
 
     `canceled`: the layer cancels it. `late`: the robot has not accepted it in time. `over`: it has ended, and its
-    result is yet to come.
+    result is pending.
     """
 
     identifier: Any
@@ -80,7 +80,7 @@ _Goal = TypeVar("_Goal", bound=ProxiedGoal)
 
 
 class ActionProxy(ABC, Generic[_Goal]):
-    """An action for the controller behind which stands the robot's one, with one goal at a time.
+    """Action offered to the controller as a proxy of the robot's action, with one goal at a time.
 
     Goals keep their identity. The timeout also bounds how long the server may be gone while it has the goal.
     """
@@ -109,32 +109,32 @@ class ActionProxy(ABC, Generic[_Goal]):
 
         return CancelRequests(self._event_loop, self._times, send, self._warn)
 
-    # What the middleware does
+    # Interface to the middleware
 
     @abstractmethod
     def _is_served(self, goal: _Goal) -> bool:
-        """Whether the robot's server is there, as far as the goal needs it now."""
+        """Return whether the robot's server is available, as far as the goal needs it now."""
 
     @abstractmethod
     def _send(self, goal: _Goal) -> bool:
-        """Sends the goal to the robot; whether it could be sent."""
+        """Send the goal to the robot; return whether it could be sent."""
 
     @abstractmethod
     def _send_cancel(self, goal: _Goal) -> None:
-        """Asks the robot to cancel the goal."""
+        """Send a request to cancel the goal to the robot."""
 
     @abstractmethod
     def _is_canceling(self, goal: _Goal) -> bool:
-        """Whether the robot says that the goal is being canceled."""
+        """Return whether the robot reports that the goal is being canceled."""
 
     @abstractmethod
     def _end(self, goal: _Goal) -> None:
-        """Tells the controller of the end of a goal that the robot says nothing of."""
+        """Report the end of a goal to the controller if the robot sends none."""
 
-    # What the layer does
+    # Interface to the layer
 
     def cancel(self) -> None:
-        """Cancels the goal at hand, before the robot has accepted it as soon as it does."""
+        """Cancel the present goal, as soon as the robot has accepted it."""
         goal = self._goal
         if goal is not None:
             goal.canceled = True
@@ -143,20 +143,20 @@ class ActionProxy(ABC, Generic[_Goal]):
 
     @property
     def trouble(self) -> str:
-        """Why the goal has not ended though it should have; empty where nothing is wrong."""
+        """Why the goal has not ended though it should have; empty if nothing is wrong."""
         waiting = self._goal is not None and self._goal.late and not self._goal.accepted
         return self._not_accepted if waiting else self._requests.trouble
 
     @property
     def waits(self) -> bool:
-        """Whether the end of the layer waits: for the acceptance of a goal that it cancels, the answer, the end."""
+        """Whether the stopping layer waits: for the acceptance of a goal that it cancels, the answer, or the end."""
         goal = self._goal
         if goal is None or not goal.canceled or goal.over:
             return False
         return self._requests.waits or (not goal.accepted and not goal.late)
 
     def leave(self) -> None:
-        """Reports a goal that the layer has canceled and that has not ended when the layer ends."""
+        """Report a goal that the layer has canceled and that has not ended when the layer ends."""
         goal = self._goal
         if goal is not None and goal.canceled and not goal.over:
             running = "the goal has not ended" if goal.accepted else "the goal may still begin"
@@ -168,7 +168,7 @@ class ActionProxy(ABC, Generic[_Goal]):
         return f"not accepted {self._times.within}"
 
     def _receive_goal(self, goal: _Goal) -> None:
-        """A goal of the controller's, which is forwarded where the layer lets it pass."""
+        """Handle a goal of the controller: forward it if the layer lets it pass."""
         if self._goal is not None:
             self._layer.reject(self._action.request)
             self._end(goal)
@@ -183,11 +183,11 @@ class ActionProxy(ABC, Generic[_Goal]):
             self._end(goal)
 
     def _at_hand(self, identifier: Any) -> _Goal | None:
-        """The goal at hand, if it is the one with this identifier."""
+        """Return the present goal if it has this identifier, else None."""
         return self._goal if self._goal is not None and self._goal.identifier == identifier else None
 
     def _accept(self, goal: _Goal) -> None:
-        """The robot has accepted the goal."""
+        """Record that the robot has accepted the goal."""
         if not goal.accepted:
             goal.accepted = True
             self._deadline = self._event_loop.clock() + self._times.timeout
@@ -195,7 +195,7 @@ class ActionProxy(ABC, Generic[_Goal]):
                 self._requests.ask()
 
     def _cancel_answered(self, goal: _Goal, answer: CancelAnswer) -> None:
-        """The robot has answered a request of the layer's to cancel a goal."""
+        """Handle the robot's answer to a request of the layer to cancel a goal."""
         if self._goal is not goal:
             return
         if answer is CancelAnswer.ACCEPTED:
@@ -210,26 +210,26 @@ class ActionProxy(ABC, Generic[_Goal]):
                     self._give_up(goal, Failure.LOST, UNKNOWN_GOAL)
 
     def _await_result(self, goal: _Goal) -> None:
-        """The goal has ended; its result is yet to come."""
+        """Wait for the result of a goal that has ended."""
         if not goal.over:
             goal.over = True
             self._requests.stop()
             self._deadline = self._event_loop.clock() + self._times.timeout
 
     def _resume(self, goal: _Goal) -> None:
-        """The goal has not ended after all."""
+        """Record that the goal has not ended after all."""
         goal.over = False
         self._requests = self._new_requests()
 
     def _receive_feedback(self, identifier: Any, feedback: Message) -> bool:
-        """Feedback of the robot's; whether it is forwarded."""
+        """Handle feedback of the robot; return whether it is forwarded."""
         goal = self._at_hand(identifier)
         if goal is not None:
             self._layer.feed_back(self._action, feedback)
         return goal is not None
 
     def _receive_end(self, goal: _Goal, outcome: Outcome, result: Message) -> None:
-        """The robot has ended the goal at hand."""
+        """Handle the end of the present goal by the robot."""
         self._forget()
         late = Failure.TIMEOUT if goal.late else None
         match outcome:
@@ -243,7 +243,7 @@ class ActionProxy(ABC, Generic[_Goal]):
                 self._layer.fail(self._action, Failure.LOST, LOST_GOAL)
 
     def _give_up(self, goal: _Goal, reason: Failure, why: str) -> None:
-        """The goal has ended without a result, or nobody knows what becomes of it."""
+        """End a goal without a result, or with an unknown fate."""
         self._forget()
         if reason is Failure.CANCELED:
             self._layer.end_canceled(self._action, reason, why)
@@ -256,7 +256,7 @@ class ActionProxy(ABC, Generic[_Goal]):
         self._requests.stop()
 
     def _poll(self, goal: _Goal) -> None:
-        """Sends the goal as soon as there is a server; then watches that it is accepted and stays."""
+        """Send the goal as soon as there is a server; then watch that it is accepted and that the server stays."""
         if self._goal is not goal:
             return
         now = self._event_loop.clock()
@@ -274,7 +274,7 @@ class ActionProxy(ABC, Generic[_Goal]):
 
     def _expire(self, goal: _Goal, now: float) -> None:
         if goal.over and self._is_canceling(goal):
-            # Somebody else had it canceled before: a server calls that terminated, too.
+            # Another client canceled it before: a server calls that terminated, too.
             self._resume(goal)
             self._requests.accept()
         elif goal.over:
@@ -288,7 +288,7 @@ class ActionProxy(ABC, Generic[_Goal]):
             self._warn(self._not_accepted)
             goal.late = goal.canceled = True
             self._deadline = now + LOST
-            self._send_cancel(goal)  # it may have accepted it already
+            self._send_cancel(goal)  # the robot may have accepted it already
         else:
             self._give_up(goal, Failure.UNAVAILABLE, f"no server {self._times.within}")
 

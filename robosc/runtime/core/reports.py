@@ -1,4 +1,4 @@
-"""What a node publishes about itself on `~/state` and `~/definition`, and warnings that would come too often."""
+"""Reports of a node about itself on `~/state` and `~/definition`, and limits on repeated warnings."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _PAUSE = 5.0
 
 
 class StateReporter:
-    """Publishes the state on every change, and for every new subscription; does nothing while there is none."""
+    """Publish the state on every change, and for every new subscription; do nothing without subscriptions."""
 
     def __init__(
         self, graph: rosgraph.RosGraph, engine: Engine, data: NodeData, port: Port, configuration: Configuration
@@ -43,17 +43,17 @@ class StateReporter:
         ]
 
     def publish_definition(self) -> None:
-        """Publishes the model's definition: once, as it is kept for those who subscribe later."""
+        """Publish the model's definition once; it is kept for late subscribers."""
         if self._publishes:
             self._port.publish_report("definition", definition_text(self._graph))
 
     def add_transition(self, event: str) -> None:
-        """Has the next report of the state name an event that has happened."""
+        """Add an event that has happened to the next report of the state."""
         if self._publishes:
             self._transitions.append(event)
 
     def publish_state(self, time: float) -> None:
-        """Publishes the state, where it has changed or somebody is new, and somebody subscribes; `time` in seconds."""
+        """Publish the state if it has changed or has a new subscription; `time` in seconds."""
         if not self._publishes:
             return
         listeners = self._port.report_listeners("state")
@@ -69,7 +69,7 @@ class StateReporter:
         self._transitions.clear()
 
     def components(self) -> dict[str, Json]:
-        """The state and the variables of each component."""
+        """Return the state and the variables of each component."""
         return {
             name: {
                 "state": plant.locations[self._engine.location(plant)].name,
@@ -83,7 +83,7 @@ class StateReporter:
 
 
 class Throttle:
-    """Passes on at most one warning in five seconds of each kind."""
+    """Pass on at most one warning of each kind in five seconds."""
 
     def __init__(self, warn: Callable[[str], None], clock: Callable[[], float]) -> None:
         self._warn = warn
@@ -91,7 +91,7 @@ class Throttle:
         self._last: dict[Hashable, float] = {}
 
     def __call__(self, kind: Hashable, text: str) -> None:
-        """Warns, unless there was a warning of this kind too recently."""
+        """Warn, unless the last warning of this kind was too recent."""
         now = self._clock()
         if now - self._last.get(kind, -_PAUSE * 2) >= _PAUSE:
             self._last[kind] = now

@@ -1,4 +1,4 @@
-"""The values of a node's parameters, and the messages that are sent whatever is required of them."""
+"""Parameter values of a node, and the messages that it sends regardless of requirements."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def check(parameter: Parameter, value: object) -> Value:
-    """A value for the parameter. Raises ValueError, in words for the user, where it does not fit."""
+    """Return the value converted for the parameter. Raises ValueError, worded for the user, if it does not fit."""
     expected = type(parameter.default)
     if expected is float and type(value) is int:
         value = float(value)
@@ -35,8 +35,8 @@ def check(parameter: Parameter, value: object) -> Value:
 class SafeMessages:
     """Messages that are sent in spite of requirements.
 
-    A controller sends `on_shutdown` when it stops the robot and `on_withheld` when a command's data can't be sent. A
-    layer sends one of `on_blocked` when it blocks it after it forwarded one.
+    A controller sends `on_shutdown` when it stops the robot, and `on_withheld` when a command's data can't be sent. A
+    layer sends a message of `on_blocked` when it blocks that message after it forwarded one.
     """
 
     on_shutdown: Sequence[rosgraph.Sending] = ()
@@ -46,17 +46,17 @@ class SafeMessages:
 
 @dataclass(frozen=True)
 class Settings:
-    """How one node runs: the values of its parameters, and the configuration."""
+    """Settings of one node: the values of its parameters, and the configuration."""
 
     parameters: Mapping[str, Value]
     configuration: Configuration
 
     def number(self, name: str) -> int:
-        """A parameter that is a whole number."""
+        """Return the value of an integer parameter."""
         value = self.parameters[name]
         assert isinstance(value, int)
         return value
 
     def seconds(self, name: str) -> float:
-        """A parameter that counts milliseconds, in seconds."""
+        """Return the value of a parameter in milliseconds, converted to seconds."""
         return self.number(name) / 1000

@@ -1,4 +1,4 @@
-"""The times of a model on the clock of a node, and the one timer that waits for the next of them."""
+"""Timers of a model on the clock of a node, and the one alarm for the next of them."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ RESOLUTION_MS = 1
 
 
 class Times:
-    """Within a `with` block the control loop acts: it knows what time it is, and afterwards is called when it wants.
+    """Set the control loop's clock on entry of a `with` block, and the alarm for its next timer on exit.
 
-    `expire` is what is then called. A clock that stands at 0 has not begun; its first other time starts all times.
+    The alarm calls `expire`. A clock that stands at 0 has not begun; its first other time starts all timers.
     """
 
     def __init__(self, timers: Timers, event_loop: EventLoop, expire: Callable[[], None]) -> None:
@@ -29,7 +29,7 @@ class Times:
         self._begun = False
 
     def start(self) -> None:
-        """Starts all times: the node begins to work."""
+        """Start all timers as the node begins to work."""
         self._begun = False
         self._go_on()
         self._event_loop.at_start(self._go_on)

@@ -1,1 +1,1 @@
-"""The node on ROS 2, with rclpy, and the tool that builds the modules of types without colcon."""
+"""Node on ROS 2 with rclpy, and the builder of Python modules for ROS types without colcon."""

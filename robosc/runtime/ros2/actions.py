@@ -1,4 +1,4 @@
-"""Actions of ROS 2: the goals that a controller sends, and the action that a layer offers its controller."""
+"""Actions of ROS 2: goals that a controller sends, and actions that a layer offers its controller."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
     from robosc.runtime.core.port import Message
     from robosc.runtime.ros2.node import Ros2Node
 
-#: How many looks for a server there are for each at the graph.
+#: Number of looks for a server for each look at the graph.
 LOOKS = 4
 
 
 def settle(answered: Callable[[Message], None], failed: Callable[[str], None], future: Any) -> None:
-    """Calls one of two functions with what has become of a future; neither where it was cancelled."""
+    """Call the matching function with the result of a future; neither if it was canceled."""
     if future.cancelled():
         return
     if future.exception() is not None:
@@ -40,9 +40,9 @@ def settle(answered: Callable[[Message], None], failed: Callable[[str], None], f
 
 
 class SentGoal:
-    """A goal that a controller has sent to an action server.
+    """Goal that a controller has sent to an action server.
 
-    `servers` gives the servers that are there, as the graph knows them.
+    `servers` returns the present servers in the ROS graph.
     """
 
     def __init__(
@@ -59,18 +59,18 @@ class SentGoal:
         sent.add_done_callback(partial(settle, self._decided, self._failed))
 
     def cancel(self) -> None:
-        """Asks the server to cancel it."""
+        """Send a request to cancel the goal to the server."""
         answer = self._handle.cancel_goal_async()
         goal = uuid_bytes(self._handle.goal_id)
         answered = lambda response: self._handlers.cancel_answered(cancel_answer(response, goal))  # noqa: E731
         answer.add_done_callback(partial(settle, answered, lambda _: None))
 
     def is_canceling(self) -> bool:
-        """Whether the server says that the goal is being canceled."""
+        """Return whether the server reports that the goal is being canceled."""
         return bool(self._handle.status == GoalStatus.STATUS_CANCELING)
 
     def is_gone(self) -> bool:
-        """Whether none of the servers is left that were there for the goal: one that dies can't say so."""
+        """Return whether all servers of the time of sending are gone: a server that dies can't report it."""
         self._looks += 1
         return self._looks % LOOKS == 0 and not self._sent_to & self._servers()
 
@@ -90,7 +90,7 @@ class SentGoal:
 
 
 class LateAnswer:
-    """The answer to one call of a service of the layer's, given before or after the caller is known."""
+    """Answer to one call of a service of the layer, given before or after the caller is known."""
 
     def __init__(self, response: Message) -> None:
         self.response = response
@@ -98,13 +98,13 @@ class LateAnswer:
         self._given = False
 
     def give(self, response: Message = None) -> None:
-        """Answers; without a response, the one in which nothing was set."""
+        """Answer; without a response, with an unset one."""
         self.response, self._given = response or self.response, True
         if self._send is not None:
             self._send(self.response)
 
     def send_with(self, send: Callable[[Message], None]) -> None:
-        """The caller is known from now on."""
+        """Set the function that sends the answer to the caller."""
         self._send = send
         if self._given:
             send(self.response)
@@ -112,7 +112,7 @@ class LateAnswer:
 
 @dataclass(eq=False)
 class _Goal(ProxiedGoal):
-    """A goal of the controller's: `answer` accepts or rejects it, `waiting` are its calls for the result."""
+    """Goal of the controller: `answer` accepts or rejects it, `waiting` holds its calls for the result."""
 
     answer: LateAnswer | None = None
     result: Any = None
@@ -124,7 +124,7 @@ class _Goal(ProxiedGoal):
 
 
 class Ros2ActionProxy(ActionProxy[_Goal]):
-    """`types` has the types of the action's services and topics."""
+    """Proxy of an action on ROS 2. `types` has the types of the action's services and topics."""
 
     def __init__(self, port: Ros2Node, types: Any, action: rosgraph.ActionClient, layer: Layer, timeout: float) -> None:
         super().__init__(port, port.event_loop, action, layer, GoalTimes(timeout, timeout))
@@ -163,7 +163,7 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
             answer.give()
 
     def _on_cancel(self, request: Message, answer: LateAnswer) -> None:
-        """The controller's own requests always pass."""
+        """Forward a cancel request of the controller; these always pass."""
 
         def reject() -> None:
             answer.response.return_code = answer.response.ERROR_REJECTED
@@ -201,7 +201,7 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
             self._finish(goal, response)
 
     def _on_status(self, message: Message) -> None:
-        """That a goal has ended is told with its result, not before: the supervisor knows first."""
+        """Forward the status, but hide the end of a goal until its result, which the supervisor must get first."""
         self._statuses = self._types.GoalStatusMessage()
         for status in message.status_list:
             identifier = uuid_bytes(status.goal_info.goal_id)
@@ -215,13 +215,13 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
                 self._statuses.status_list.append(status)
         self._status.publish(self._statuses)
 
-    # What the layer does
+    # Interface to the layer
 
     def _is_served(self, goal: _Goal) -> bool:
         if not goal.accepted:
             return bool(self._goals.service_is_ready())
         goal.looks += 1
-        # A server that has died and one that has come in its place offer the same services.
+        # A server that has died and its successor offer the same services.
         if goal.looks % LOOKS == 0:
             goal.served = bool(goal.sent_to & self._servers())
         return goal.served
@@ -273,13 +273,13 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
         seconds: float | None = None,
         late: Callable[[], None] = lambda: None,
     ) -> Any:
-        """Sends a request; the future of its answer, or None where it can't be sent.
+        """Send a request; return the future of its answer, or None if it can't be sent.
 
-        Calls `answered`, or after so many seconds without an answer `late`, after which an answer is dropped.
+        Calls `answered` with the answer, or `late` after `seconds` without one. Later answers are dropped.
         """
         try:
             future = client.call_async(request)
-        except Exception:  # whatever the middleware raises
+        except Exception:  # any exception of the middleware
             return None
         future.add_done_callback(lambda future: answered(future.result()))
 

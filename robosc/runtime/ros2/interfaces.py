@@ -1,7 +1,7 @@
-"""Builds the Python modules of ROS 2 interface packages with the generators in the wheels and a C compiler, no colcon.
+"""Build the Python modules of ROS 2 interface packages with the generators in the wheels and a C compiler, no colcon.
 
-For the Python of the wheels. A package becomes its modules, an extension with their type support, and libraries that
-the extension and the middleware find beside it.
+The result is for the Python of the wheels. A package consists of its modules, an extension with their type support,
+and libraries that the extension and the middleware find beside it.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 PREFIX = Path(sys.prefix)
 SHARE = PREFIX / "share"
 CONVERTERS = {"msg": convert_msg_to_idl, "srv": convert_srv_to_idl, "action": convert_action_to_idl}
-#: What each service and action depends on, and does not say.
+#: Implicit dependencies of each service and action.
 IMPLIED = ("action_msgs", "builtin_interfaces", "service_msgs", "unique_identifier_msgs")
 #: Libraries of each package, and of the generators.
 KINDS = ("generator_c", "generator_py", "typesupport_c", "typesupport_fastrtps_c", "typesupport_introspection_c")
@@ -52,25 +52,25 @@ _INCLUDED = re.compile(r'^#include "(\w+)/', re.MULTILINE)
 
 
 class BuildError(Exception):
-    """What keeps packages from being built: a definition, a package that is missing, a compiler."""
+    """Error that prevents the build: a definition, a missing package, a compiler."""
 
 
 @dataclass(frozen=True)
 class _Package:
-    """A package whose definitions were converted."""
+    """Package whose definitions were converted."""
 
     name: str
     #: Its definitions in IDL, by their paths below the folder of all packages: `msg/Bool.idl`.
     files: Sequence[str]
-    #: The packages whose types these name.
+    #: Packages whose types these definitions name.
     named: frozenset[str]
 
 
 def build(folders: Iterable[Path], out: Path) -> list[str]:
-    """Builds all packages below some folders into a folder for PYTHONPATH; their names, in the order of building.
+    """Build all packages below some folders into a folder for PYTHONPATH; return their names in build order.
 
-    A package is there when all of its files are: it takes the place of what was built before. Raises BuildError, and
-    OSError where `out` can't be written.
+    A package replaces its former version only when all of its files are built. Raises BuildError, and OSError if `out`
+    can't be written.
     """
     sources: dict[str, Path] = {}
     for folder in folders:
@@ -84,7 +84,7 @@ def build(folders: Iterable[Path], out: Path) -> list[str]:
     if not (SHARE / "rosidl_generator_c").is_dir():
         raise BuildError("this ROS 2 does not come from wheels: build the packages with its own tool, colcon")
     out.mkdir(parents=True, exist_ok=True)
-    # The generators print what they read and write.
+    # The generators print the files that they read and write.
     with tempfile.TemporaryDirectory(prefix=".robosc-", dir=out) as temporary, redirect_stdout(StringIO()):
         work, made = Path(temporary, "work"), Path(temporary, "made")
         packages = {name: _converted(name, root, work) for name, root in sorted(sources.items())}
@@ -97,7 +97,7 @@ def build(folders: Iterable[Path], out: Path) -> list[str]:
 
 
 def _converted(name: str, package: Path, work: Path) -> _Package:
-    """A package with its definitions in IDL, in `work/idl`."""
+    """Return a package with its definitions converted to IDL, in `work/idl`."""
     idl = work / "idl" / name
     files = []
     for kind, convert in CONVERTERS.items():
@@ -105,7 +105,7 @@ def _converted(name: str, package: Path, work: Path) -> _Package:
             try:
                 convert(package, name, path.relative_to(package), idl / kind)
             except Exception as error:
-                # Whatever the generators make of a text that is none: they have no error of their own.
+                # The generators have no exception of their own for an invalid text.
                 raise BuildError(f"{path}: {str(error) or type(error).__name__}") from error
             files.append(f"{kind}/{path.stem}.idl")
     named = {other for file in files for other in _INCLUDED.findall((idl / file).read_text(encoding="utf-8"))}
@@ -113,7 +113,7 @@ def _converted(name: str, package: Path, work: Path) -> _Package:
 
 
 def _ordered(packages: Mapping[str, _Package]) -> list[str]:
-    """Each package after those whose types it names."""
+    """Return the packages in an order in which each follows those whose types it names."""
     for package in packages.values():
         for other in sorted(package.named - packages.keys()):
             if not any((SHARE / other).glob("*/*.idl")):
@@ -129,7 +129,7 @@ def _ordered(packages: Mapping[str, _Package]) -> list[str]:
 
 
 def _needed(package: _Package, packages: Mapping[str, _Package]) -> tuple[list[str], list[str]]:
-    """The packages that a package depends on, also by others: those that are built with it, and those installed."""
+    """Return the direct and indirect dependencies of a package: those built with it, and those installed."""
     built: dict[str, None] = {}
     installed: dict[str, None] = {}
     waiting = [*IMPLIED, *sorted(package.named)]
@@ -148,7 +148,7 @@ def _needed(package: _Package, packages: Mapping[str, _Package]) -> tuple[list[s
 
 
 def _generate(package: _Package, packages: Mapping[str, _Package], out: Path, work: Path) -> None:
-    """Writes all sources of a package, those of one generator in one folder."""
+    """Write all sources of a package, those of one generator in one folder."""
     name, files = package.name, package.files
     idl, descriptions = work / "idl", work / "rosidl_generator_type_description"
     built, installed = _needed(package, packages)
@@ -194,7 +194,7 @@ def _generate(package: _Package, packages: Mapping[str, _Package], out: Path, wo
 
 
 def _build(package: _Package, packages: Mapping[str, _Package], out: Path, work: Path) -> None:
-    """The modules of one package, ready to be imported; those that it depends on are built."""
+    """Build the modules of one package. Precondition: its dependencies are built."""
     name = package.name
     try:
         _generate(package, packages, out, work)
@@ -212,7 +212,7 @@ def _build(package: _Package, packages: Mapping[str, _Package], out: Path, work:
 
     def library(file: str, sources: Iterable[Path], linked: Sequence[Path] = ()) -> Path:
         objects = _compiled(sorted(sources), include, work / "objects" / name / file)
-        # The middleware asks for a type support by its library's name: it has to be loaded already, used or not.
+        # The middleware looks up a type support by its library's name: it has to be loaded already, used or not.
         options = ["-shared", f"-Wl,-soname,{file}", "-Wl,--no-as-needed", f"-Wl,-rpath,{runpath}"]
         made = out / name / file
         _run("g++", *options, "-o", made, *objects, *linked, *others, f"-L{PREFIX / 'lib'}", *libraries)
@@ -234,7 +234,7 @@ def _sources(folder: Path) -> list[Path]:
 
 
 def _compiled(sources: Iterable[Path], include: Sequence[str], objects: Path) -> list[Path]:
-    """The object files of sources, compiled side by side."""
+    """Compile the sources in parallel; return the object files."""
     objects.mkdir(parents=True)
     made = {source: objects / f"{number}.o" for number, source in enumerate(sources)}
 

@@ -1,4 +1,4 @@
-"""Listens to what nodes of ROS 2 tell of themselves."""
+"""Subscriptions to the reports of ROS 2 nodes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Ros2Subscriber:
-    """A node of ROS 2 that only listens."""
+    """Node of ROS 2 that only listens."""
 
     def __init__(self, heard: Sequence[tuple[Sequence[str], Listener]]) -> None:
         self._node = start(f"robosc_view_{os.getpid()}", [])
@@ -36,7 +36,7 @@ class Ros2Subscriber:
         self._thread.start()
 
     def close(self) -> None:
-        """Ends the node."""
+        """End the node."""
         self._closed.set()
         self._thread.join(2 * LOOK)
         self._executor.shutdown()

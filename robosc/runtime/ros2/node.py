@@ -1,4 +1,4 @@
-"""A node of ROS 2 on rclpy."""
+"""Node of ROS 2 on rclpy."""
 
 from __future__ import annotations
 
@@ -65,17 +65,17 @@ if TYPE_CHECKING:
     from robosc.runtime.core.port import Client, Goal, Message
     from robosc.runtime.core.proxies import ActionProxy
 
-#: What parameters may set of the quality of a subscription that gets what was kept.
+#: QoS policies that parameters may set of a subscription that receives kept messages.
 _KEPT_POLICIES = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH)
-#: From one look at the publishers of topics to the next, in seconds.
+#: Seconds between two looks at the publishers of topics.
 _LOOK = 0.05
-#: Messages of a topic that are heard before a time that is up, and before the next topic has its turn.
+#: Messages of a topic handled before an expired timer, and before the turn of the next topic.
 MOST_HEARD = 1000
 MOST_AT_ONCE = 10
 
 
 class Ros2Node(Node):
-    """A node of ROS 2 named `name`; `arguments` are those of ROS, such as `--ros-args`."""
+    """Node of ROS 2 named `name`; `arguments` are those of ROS, such as `--ros-args`."""
 
     type_hint = (
         "build the package with colcon and source its install/setup, with this same Python; or, without colcon, build"
@@ -102,7 +102,7 @@ class Ros2Node(Node):
         self._pending: dict[rosgraph.ServiceClient, Any] = {}
         self._qualities: dict[rosgraph.Subscription | rosgraph.Publisher, Any] = {}
         self._durabilities = _Durabilities(self.node)
-        #: How many messages came on each topic, for those that `_take` took.
+        #: Number of messages on each topic that `_take` handled.
         self._heard: Counter[str] = Counter()
 
     def _load_type(self, interface: rosgraph.Interface) -> Any:
@@ -149,7 +149,7 @@ class Ros2Node(Node):
         return value
 
     def _follow_parameters(self, handler: EventHandler) -> None:
-        """Services of parameters are called between batches, in the thread of the event loop."""
+        """Accept changed parameters between batches, in the thread of the event loop."""
 
         def accept(given: Sequence[Any]) -> SetParametersResult:
             try:
@@ -170,7 +170,7 @@ class Ros2Node(Node):
     def _spin_once(self) -> None:
         left = self.event_loop.run_pending()
         wait = LONGEST_WAIT if left is None or self.simulated else min(left, LONGEST_WAIT)
-        # The executor hears of what else there is, one at a time, also of each message that was taken here.
+        # The executor sees all other work, one item at a time, also for each message that was taken here.
         self._executor.spin_once(timeout_sec=0 if self._take(MOST_AT_ONCE) else wait)
 
     def _take_leave(self) -> None:
@@ -201,7 +201,7 @@ class Ros2Node(Node):
     # Topics
 
     def quality(self, name: str, usual: Any = None) -> Any:
-        """The quality of service of a topic, service or action: what the configuration does not say is as usual."""
+        """Return the quality of service of a topic, service or action: the configuration, completed by `usual`."""
         usual = usual or QoSProfile(depth=QUEUE_DEPTH)
         chosen = self._configuration.qos.get(name.removeprefix("/"))
         if chosen is None:
@@ -214,7 +214,7 @@ class Ros2Node(Node):
         return made
 
     def _chosen(self, element: rosgraph.Subscription | rosgraph.Publisher) -> QualityOfService:
-        """The quality of service in the configuration of a topic."""
+        """Return the configured quality of service of a topic."""
         return self._configuration.qos.get(element.topic.removeprefix("/")) or QualityOfService()
 
     def _received_quality(self, element: rosgraph.Subscription | rosgraph.Publisher) -> Any:
@@ -230,7 +230,7 @@ class Ros2Node(Node):
             publisher.topic,
             self._qualities[publisher],
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-            # The graph monitor says what does not fit.
+            # The graph monitor reports mismatches.
             event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
         )
 
@@ -268,7 +268,7 @@ class Ros2Node(Node):
         target: str,
         passes: Callable[[Message], bool],
     ) -> _Relay:
-        # What is sent on is reliable, whatever is received.
+        # Forwarded messages are reliable, whatever the received ones are.
         chosen = self._chosen(element)
         sent = QoSProfile(depth=chosen.depth or QUEUE_DEPTH)
         kind, received = self._types[element.interface], self._received_quality(element)
@@ -281,7 +281,7 @@ class Ros2Node(Node):
         part = ("/_action/send_goal", "_SendGoal") if isinstance(client, rosgraph.ActionClient) else ("", "")
         name = self.node.resolve_service_name(client.identifier + part[0])
         own = self.type_name(client.interface) + part[1]
-        # The types of clients are among these; which nodes are servers takes longer to find out.
+        # The types of clients are among these; the exact list of servers takes longer.
         types = dict(self.node.get_service_names_and_types()).get(name, ())
         if set(types) <= {own} and self.node.count_services(name) <= 1:
             return []
@@ -303,7 +303,7 @@ class Ros2Node(Node):
         publishers = self.node.get_publishers_info_by_topic(element.topic)
         found = [_endpoint(other, other.qos_profile, self._qualities[element]) for other in publishers]
         if isinstance(element, rosgraph.Publisher):
-            # What the graph says of the node itself: what it asked for leaves deadlines and leases open.
+            # Use the node's own entry in the graph: the requested profile leaves deadlines and leases open.
             own = [info.qos_profile for info in publishers if _full_name(info) == self.full_name]
             found += [
                 replace(_endpoint(other, own[0], other.qos_profile), listens=True)
@@ -313,13 +313,13 @@ class Ros2Node(Node):
         return [endpoint for endpoint in found if endpoint.node != self.full_name]
 
     def hear(self) -> None:
-        # The executor hears one message at a time, with what is planned in between.
+        # The executor handles one message at a time, with planned calls in between.
         self._take(MOST_HEARD)
 
     def _take(self, most: int) -> int:
-        """Handles what has arrived, at most so many messages of each topic; how many.
+        """Handle arrived messages, at most `most` of each topic; return their number.
 
-        The executor takes messages in the order in which they came. So a stop would wait behind thousands of scans.
+        The executor takes messages in the order in which they came, so a stop would wait behind thousands of scans.
         Here topics with few messages come first.
         """
         taken = 0
@@ -368,7 +368,7 @@ class Ros2Node(Node):
         self._pending[client].add_done_callback(partial(settle, handlers.answered, handlers.failed))
 
     def serve(self, kind: Any, name: str, called: Callable[[Message, LateAnswer], None]) -> None:
-        """A service whose calls are answered later; rclpy by itself answers as soon as `called` returns."""
+        """Offer a service whose calls are answered later; rclpy by itself answers as soon as `called` returns."""
         under_way: list[LateAnswer] = []
 
         def serve(request: Message, response: Message) -> Message:
@@ -388,7 +388,7 @@ class Ros2Node(Node):
         return SentGoal(self._clients[client], goal, handlers, partial(self.servers, client.identifier))
 
     def servers(self, action: str) -> frozenset[bytes]:
-        """The servers of an action, as the graph knows them; each has another identity when it comes back."""
+        """Return the servers of an action in the ROS graph; a restarted server has another identity."""
         found = self.node.get_publishers_info_by_topic(f"{action}/_action/status")
         return frozenset(bytes(publisher.endpoint_gid) for publisher in found)
 
@@ -397,17 +397,17 @@ class Ros2Node(Node):
 
 
 def start(name: str, arguments: Sequence[str]) -> Any:
-    """Starts ROS and a node of this name; `arguments` are those of ROS. Raises StartError."""
+    """Start ROS and a node of this name; `arguments` are those of ROS. Raises StartError."""
     try:
         rclpy.init(args=["robosc", *arguments], signal_handler_options=SignalHandlerOptions.NO)
         return rclpy.create_node(name)
     except (RuntimeError, rclpy.exceptions.ParameterException) as error:
-        # Of an argument, a file or a folder, the log's too; where in rcl it was found helps nobody.
+        # The error names an argument, a file or a folder; the place in rcl helps no user.
         raise StartError(f"ROS 2 does not start: {str(error).partition(', at /')[0]}") from None
 
 
 def executor() -> Any:
-    """Return the executor: by events where rclpy has one, which takes a fiftieth of the time for a message."""
+    """Return the executor: by events if rclpy has one, which takes a fiftieth of the time for a message."""
     try:
         from rclpy.experimental import EventsExecutor  # noqa: PLC0415  # not in every rclpy
     except ImportError:
@@ -428,7 +428,7 @@ def _full_name(info: Any) -> str:
 
 @dataclass(frozen=True)
 class _Route:
-    """From one topic to another, each with its quality of service."""
+    """Route from one topic to another, each with its quality of service."""
 
     kind: Any
     source: str
@@ -439,10 +439,11 @@ class _Route:
 
 
 class _Durabilities:
-    """Looks whether the publishers of topics keep their last messages for late subscribers.
+    """Detect whether the publishers of topics keep their last messages for late subscribers.
 
-    A topic lasts where all of its publishers are transient-local and reliable: a subscription that asks for less hears
-    them, but does not get what they keep. One that asks for that does not hear other publishers.
+    A topic lasts if all of its publishers are transient-local and reliable. A subscription that requests less receives
+    their messages, but not the kept ones. A subscription that requests durability receives nothing from other
+    publishers.
     """
 
     def __init__(self, node: Any) -> None:
@@ -451,7 +452,7 @@ class _Durabilities:
         self._lasting: dict[int, bool | None] = {}
 
     def watch(self, topic: str, changed: Callable[[bool], None], *, lasting: bool | None = None) -> None:
-        """Calls `changed` whenever a topic lasts or no longer does. `lasting`: what is known; None: not even that."""
+        """Call `changed` whenever a topic lasts or no longer does. `lasting`: the known state, None if unknown."""
         if not self._watched:
             # Publishers come and go whether simulated time passes or not.
             self._node.create_timer(_LOOK, self.look, clock=Clock(clock_type=ClockType.STEADY_TIME))
@@ -459,7 +460,7 @@ class _Durabilities:
         self._watched.append((topic, changed))
 
     def look(self) -> None:
-        """Looks at all topics."""
+        """Check all topics."""
         for number, (topic, changed) in enumerate(self._watched):
             publishers = self._node.get_publishers_info_by_topic(topic)
             if not publishers:
@@ -476,9 +477,9 @@ def _keeps(quality: Any) -> bool:
 
 
 class _Relay:
-    """Forwards messages from one topic to another where `passes` says so.
+    """Forward messages from one topic to another if `passes` returns True.
 
-    What it publishes is reliable, and transient-local where all who publish the messages are.
+    The publisher is reliable, and transient-local if all publishers of the source are.
     """
 
     def __init__(
@@ -509,20 +510,20 @@ class _Relay:
             self.publish(message)
 
     def publish(self, message: Message) -> None:
-        """Sends a message to those who get what is forwarded."""
+        """Send a message to the subscribers of the forwarded topic."""
         self._publisher.publish(message)
 
     def wait_for_all_acked(self, timeout: Any) -> None:
-        """Waits until all that was sent has arrived."""
+        """Wait until all sent messages have arrived."""
         self._publisher.wait_for_all_acked(timeout)
 
 
 def _durable(quality: Any, chosen: QualityOfService) -> Any:
-    """The same, transient-local: then also reliable, unless the configuration says otherwise."""
+    """Return the same quality, but transient-local, and reliable unless the configuration sets the reliability."""
     reliability = quality.reliability if chosen.reliability else ReliabilityPolicy.RELIABLE
     return QoSProfile(depth=quality.depth, reliability=reliability, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def _volatile(quality: Any) -> Any:
-    """The same, volatile."""
+    """Return the same quality, but volatile."""
     return QoSProfile(depth=quality.depth, reliability=quality.reliability, durability=DurabilityPolicy.VOLATILE)
