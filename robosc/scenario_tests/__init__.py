@@ -1,4 +1,4 @@
-"""Scenarios: what comes from a robot, step by step, and what is expected of its controller then."""
+"""Scenarios: messages of a robot, step by step, and the expected behavior of its controller."""
 
 from robosc.scenario_tests.live import LiveError, LiveNode
 from robosc.scenario_tests.playing import Player, unfit_data, unknown_events

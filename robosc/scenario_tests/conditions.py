@@ -1,4 +1,4 @@
-"""The conditions that scenarios expect, read by the language itself: as properties at the end of the robot's text."""
+"""Conditions that scenarios expect, parsed by the language as properties at the end of the robot's text."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Extended:
-    """A robot's text with a property for each condition, in lines of their own from `first` on."""
+    """Text of a robot with a property for each condition, one per line from line `first` on."""
 
     text: str
     first: int
     conditions: Sequence[Holds]
 
     def told(self, finding: Diagnostic) -> Diagnostic:
-        """A finding as the user is told it: one about a condition stands where that is written."""
+        """Return a finding with its place in the scenario file, if it is about a condition."""
         number = finding.span.line - self.first
         if not 0 <= number < len(self.conditions):
             return finding
@@ -37,7 +37,7 @@ class Extended:
         return replace(finding, file=condition.file, span=span, edits=(), hint=finding.hint, rule=RULE)
 
     def expressions(self, model: sct.SupervisoryControlModel) -> list[ex.Expression]:
-        """The conditions as the model made of the text has them; its properties are what they were then."""
+        """Remove the properties of the conditions from the model made of the text; return their expressions."""
         named = {declared.name: declared for declared in model.properties}
         found = [named[_name(number)] for number in range(len(self.conditions))]
         for declared in found:
@@ -46,7 +46,7 @@ class Extended:
 
 
 def extended(text: str, end: int, conditions: Sequence[Holds]) -> Extended:
-    """The text of a robot that ends at an offset, with its closing brace, and the conditions."""
+    """Return the text of a robot that ends at an offset, with the conditions added before its closing brace."""
     brace = text.rindex("}", 0, end)
     lines = "".join(f"{_before(number)}{condition.text})\n" for number, condition in enumerate(conditions))
     return Extended(f"{text[:brace]}\n{lines}{text[brace:]}", text.count("\n", 0, brace) + 2, conditions)

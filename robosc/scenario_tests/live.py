@@ -1,4 +1,4 @@
-"""Scenarios against a node over ROS: the event log of each is played as a generated package plays its traces."""
+"""Scenarios against a node over ROS: the trace player of generated packages plays the event log of each."""
 
 from __future__ import annotations
 
@@ -21,24 +21,24 @@ if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic
     from robosc.scenario_tests.reading import Line, Scenario
 
-#: Seconds that a node has to end in after it was interrupted.
+#: Seconds that a node has to end after an interrupt.
 _PATIENCE = 20.0
-#: What the player reports of a line of the log.
+#: Report of the player about a line of the log.
 _DIFFERENCE = re.compile(r"line (\d+)( can't be played)?: (.*)")
 _MISSING = re.compile(r"(?:ModuleNotFound|Import)Error: (.*)")
-#: So much of what a program wrote is shown.
+#: Number of characters shown of a program's output.
 _SHOWN = 1500
 
 
 class LiveError(Exception):
-    """There is no node to play with: the message says why."""
+    """Error for a node that is missing, or does not start. The message gives the reason."""
 
 
 @dataclass(frozen=True)
 class LiveNode:
-    """A node that is started anew for each scenario, in simulated time.
+    """Node that is restarted for each scenario, in simulated time.
 
-    `command` starts it; parameters and the place of its event log are added. `files` are those of the folder `test` of
+    `command` starts it; parameters and the path of its event log are added. `files` are those of the folder `test` of
     the package that would be generated for its model.
     """
 
@@ -47,10 +47,10 @@ class LiveNode:
     files: Mapping[str, str]
 
     def follow(self, scenario: Scenario, trace: Sequence[str], lines: Sequence[Line]) -> Diagnostic | None:
-        """Where the node does something else than the event log of a scenario says.
+        """Return a finding if the node deviates from the event log of a scenario, else None.
 
-        `lines` are those of the scenario that brought about the lines of the log. Raises LiveError where there is no
-        ROS, or the node does not start.
+        `lines` are the lines of the scenario that caused the lines of the log. Raises LiveError if there is no ROS, or
+        if the node does not start.
         """
         with temporary_folder() as folder:
             for name, text in self.files.items():
@@ -82,7 +82,7 @@ class LiveNode:
         values["use_sim_time"] = "true"
         arguments = ["--ros-args", *(word for name in values for word in ("-p", f"{name}:={values[name]}"))]
         try:
-            node = subprocess.Popen(  # noqa: S603  # the user says what starts the node
+            node = subprocess.Popen(  # noqa: S603  # the user gives the command that starts the node
                 [*self.command, *arguments],
                 stdin=subprocess.DEVNULL,
                 stdout=told,
@@ -97,7 +97,7 @@ class LiveNode:
             _ended(node)
 
     def _play(self, folder: Path, played: Path, log: Path, node: subprocess.Popen[bytes]) -> tuple[int | None, str]:
-        """The exit status of the player, and what it said; no status where the node ends first."""
+        """Return the exit status and the output of the player; no status if the node ends first."""
         command: list[str | Path] = [sys.executable, folder / "play_trace.py", played, log]
         with (folder / "player.txt").open("w+b") as told:
             player = subprocess.Popen(  # noqa: S603  # this Python, and a program that was just written
@@ -126,7 +126,7 @@ def _end(told: IO[bytes]) -> str:
 
 
 def _ended(process: subprocess.Popen[bytes]) -> None:
-    """Ends a program and all that it has started."""
+    """End a program and all its children."""
     for number in (signal.SIGINT, signal.SIGKILL):
         with suppress(ProcessLookupError):
             os.killpg(process.pid, number)

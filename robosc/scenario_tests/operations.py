@@ -1,4 +1,4 @@
-"""What a controller asks of its control loop, so that the generated one can be asked the same."""
+"""Record of a controller's calls of its control loop, to repeat them with the generated loop."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic
     from robosc.engine import ControlLoop, Settings
 
-#: The calls of a loop that take nothing, by what the follower calls them.
+#: Calls of a loop without arguments, with their names in the follower.
 _CALLS = {"begin": "b", "end": "e", "tick": "t", "expire": "x"}
 
 
@@ -29,7 +29,7 @@ class _Operation:
 
 
 class Operations:
-    """All calls of one control loop, with the line of the scenario that brought them about."""
+    """Calls of one control loop, each with the line of the scenario that caused it."""
 
     def __init__(self) -> None:
         self.line = Line("", Span(1, 1, 1, 1))
@@ -37,7 +37,7 @@ class Operations:
         self._depth = 0
 
     def attach(self, loop: ControlLoop) -> None:
-        """Notes the calls of a loop from now on; those that a call makes itself belong to it."""
+        """Record the calls of a loop from now on, without those that a call makes itself."""
         self._settings: Settings = loop.settings
         for name in (*_CALLS, "perform"):
             self._note(loop, name, loop)
@@ -58,12 +58,12 @@ class Operations:
         setattr(owner, name, noted)
 
     def withheld(self, event: str) -> None:
-        """The event is withheld in the call that is under way."""
+        """Record that an event is withheld in the present call."""
         if self._operations:
             self._operations[-1].withheld.add(event)
 
     def compared(self, program: CProgram) -> Diagnostic | None:
-        """Where the generated loop does something else, None where it does all the same."""
+        """Return a finding for the first call after which the generated loop differs, else None."""
         with program.running([program.follower]) as process:
             lockstep = Lockstep(program.model, process)
             lockstep.begin(self._settings)

@@ -1,4 +1,4 @@
-"""Scenarios played against the controller in Python, without ROS, in time that is set; and against the generated C."""
+"""Scenarios played against the controller in Python, without ROS, in simulated time, and against the generated C."""
 
 from __future__ import annotations
 
@@ -43,20 +43,20 @@ if TYPE_CHECKING:
 
 
 class _Controller(DrivenController):
-    """A controller that can be asked what it would do."""
+    """Controller with access to its engine, calls and messages."""
 
     @property
     def engine(self) -> Any:
-        """What runs the supervised system."""
+        """The engine of the supervised system."""
         return self._control.engine
 
     def note(self, operations: Operations) -> None:
-        """Notes from now on what is asked of the control loop."""
+        """Record the calls of the control loop from now on."""
         self._operations = operations
         operations.attach(self._control)
 
     def keep_messages(self, lines_so_far: Callable[[], int]) -> None:
-        """Keep the messages that are sent from now on in `messages`, by the position of their line in the log."""
+        """Keep the messages sent from now on in `messages`, by the position of their line in the log."""
         self._lines_so_far = lines_so_far
         self.messages: dict[int, Any] = {}
 
@@ -73,14 +73,14 @@ class _Controller(DrivenController):
         return may_happen
 
 
-#: The kinds of events that a step may name.
+#: Kinds of events that a step may name.
 _FROM_THE_ROBOT = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.canceled)
 
 
 def unknown_events(model: sct.SupervisoryControlModel, scenarios: Iterable[Scenario]) -> Iterator[Diagnostic]:
-    """A finding for each line that names an event which the model does not have.
+    """Yield a finding for each line that names an event which the model does not have.
 
-    Also for each that lets something come from the robot which the robot does not send.
+    Also for each line with an event that the robot does not send.
     """
     for line in (line for scenario in scenarios for line in scenario.steps):
         if not isinstance(line, (Incoming, Refusal, Allowed, Sent)):
@@ -95,7 +95,7 @@ def unknown_events(model: sct.SupervisoryControlModel, scenarios: Iterable[Scena
 
 
 def unfit_data(graph: rosgraph.RosGraph, types: RosTypes, scenarios: Iterable[Scenario]) -> Iterator[Diagnostic]:
-    """A finding for each line whose data its event can't come with. Each line names an event that has its reason."""
+    """Yield a finding for each line whose data does not fit its event. Precondition: each event and reason is known."""
     checked = EventData(Engine(graph.model), graph, types)
     for line in (line for scenario in scenarios for line in scenario.steps):
         if isinstance(line, Incoming) and line.data is not None:
@@ -107,7 +107,7 @@ def unfit_data(graph: rosgraph.RosGraph, types: RosTypes, scenarios: Iterable[Sc
 
 
 def _impossible(line: Incoming, event: sct.Event) -> Iterator[Diagnostic]:
-    """Findings about an event that the robot does not send, or not for the reason of a line or with its data."""
+    """Yield findings if the robot does not send an event, or not with the line's reason or data."""
     possible = possible_reasons(event)
     if event.kind not in _FROM_THE_ROBOT:
         hint = "a step names a message, an answer or an error; time goes by with `wait`"
@@ -122,10 +122,10 @@ def _impossible(line: Incoming, event: sct.Event) -> Iterator[Diagnostic]:
 
 
 class Player(Drive):
-    """Plays scenarios of one robot, each from its start.
+    """Player of scenarios of one robot, each from its start.
 
-    `conditions` are what their `expect` lines ask for, as the sct model has them. Of the last scenario played `trace`
-    is the event log, and `operations` what was asked of the control loop.
+    `conditions` are the conditions of `expect` lines as expressions of the sct model. `trace` is the event log of the
+    last scenario played.
     """
 
     _controller: _Controller
@@ -140,7 +140,7 @@ class Player(Drive):
         super().__init__(graph, configuration, distribution)
         self._conditions = conditions
         self._sources: list[Line] = []
-        #: How each event comes in that is no error, with its data.
+        #: Handlers of incoming events that are no errors, called with their data.
         self._acts: dict[sct.Event, Callable[[Any], None]] = {}
         self._clients: dict[sct.Event, rosgraph.ServiceClient | rosgraph.ActionClient] = {}
         for topic in graph.subscriptions:
@@ -162,13 +162,13 @@ class Player(Drive):
 
     @property
     def sources(self) -> list[Line]:
-        """Of each line of the event log the line of the scenario that brought it about."""
+        """The line of the scenario that caused each line of the event log."""
         return self._sources
 
     def play(self, scenario: Scenario, operations: Operations) -> list[Diagnostic]:
-        """Plays a scenario and returns a finding for each expectation that fails.
+        """Play a scenario and return a finding for each expectation that fails.
 
-        It stops at the first step that can't be played, with a finding. `operations` records the calls of the control
+        It stops with a finding at the first step that can't be played. `operations` records the calls of the control
         loop, by line.
         """
         self._controller = self._begin(_Controller)
@@ -242,7 +242,7 @@ class Player(Drive):
             self._bring(event, line, self._acts[event])
 
     def _bring(self, source: sct.Event, line: Incoming, act: Callable[[Any], None]) -> None:
-        """Let data come in that is the data of the event `source`."""
+        """Handle incoming data that has the shape of the event `source`."""
         data, fields = self._message(source, line)
 
         def come_in() -> dict[str, Any]:
@@ -252,7 +252,7 @@ class Player(Drive):
         self._let_in(come_in)
 
     def _message(self, source: sct.Event, line: Incoming, *others: sct.Event) -> tuple[Any, dict[str, Any]]:
-        """A message with the data of a line, and its fields; those that it sets, or that differ from zero.
+        """Return a message with the data of a line, and its fields that are set or differ from zero.
 
         `others` are further events that read it.
         """
@@ -281,7 +281,7 @@ class Player(Drive):
         self._robot.goals[action].handlers.feedback(data)
 
     def _note_accepted(self, action: rosgraph.ActionClient) -> None:
-        """Note that the robot shows that it has accepted the goal at hand."""
+        """Record that the robot has accepted the present goal."""
         goal = self._robot.goals[action]
         goal.accepted = self._now if goal.accepted is None else goal.accepted
 
@@ -321,7 +321,7 @@ class Player(Drive):
         self._let_in(come_in)
 
     def _fail_call(self, client: rosgraph.ServiceClient, reason: Failure) -> None:
-        """Let a call fail; one without a server or an answer fails when its time is over."""
+        """Let a call fail; without a server or an answer it fails when its time is over."""
         since, handlers = self._robot.calls.pop(client)
         if reason is Failure.FAILED:
             self._let_in(lambda: handlers.failed(""))
@@ -361,7 +361,7 @@ class Player(Drive):
             self._bring(client.error.event, line, end)
 
     def _check_not_accepted(self, goal: RunningGoal, reason: Failure) -> None:
-        """Raise NamingError where the robot has shown that it accepted the goal, which a reason excludes."""
+        """Raise NamingError if the robot has accepted the goal and the reason excludes that."""
         in_time = goal.sent + self.parameters["action_timeout_ms"] / 1000
         match reason:
             case Failure.REJECTED | Failure.UNAVAILABLE:
@@ -375,7 +375,7 @@ class Player(Drive):
             raise NamingError(f"the goal has been accepted: it can't fail with `{reason}`", hint)
 
     def _give_up(self, client: Client, reason: Failure, result: Any = None) -> None:
-        """Have the node's client of a service or action report a failure."""
+        """Report a failure from the node's client of a service or action."""
         why = f"failed because {reason}"
         if isinstance(client, rosgraph.ServiceClient):
             self._controller.caller(client).fail(reason, why)
@@ -383,7 +383,7 @@ class Player(Drive):
             self._controller.starter(client).fail(reason, why, result)
 
     def _forget(self, client: Client) -> None:
-        """Nothing more comes of the call or goal."""
+        """Remove the call or goal from the robot: nothing more comes of it."""
         if isinstance(client, rosgraph.ServiceClient):
             del self._robot.calls[client]
         else:
@@ -408,14 +408,14 @@ class Player(Drive):
         self._let_in(lambda: goal.handlers.cancel_answered(CancelAnswer.REFUSED))
 
     def _called(self, event: sct.Event) -> str:
-        """The shortest name of the action of an event in scenarios."""
+        """Return the shortest name of the action of an event in scenarios."""
         whole = name(plant_of(event))
         short = whole.rpartition(".")[2]
         same_end = [plant for plant in self._graph.model.plants if name(plant).rpartition(".")[2] == short]
         return short if len(same_end) == 1 else whole
 
     def _with_canceling(self, fault: Diagnostic) -> Diagnostic:
-        """A finding with a hint at the goals that are being canceled and have not ended."""
+        """Return a finding with a hint at the goals that are being canceled and have not ended."""
         engine = self._controller.engine
         ends = [action.canceled.event for action in self._graph.actionClients]
         names = [self._called(event) for event in ends if engine.enabled(event_name(event))]
@@ -452,7 +452,7 @@ class Player(Drive):
             return line.fault(f"the {told} was sent") if found else None
         if not found:
             return line.fault(f"the {told} was not sent since the last step", self._state())
-        # The log does not show what is handed on as it came.
+        # The log does not show objects that are forwarded unchanged.
         sent = [_with_handed_on(entry, self._controller.messages.get(number)) for number, entry in found]
         if line.data is None or any(_agrees(line.data, data) for data in sent):
             return None
@@ -463,7 +463,7 @@ class Player(Drive):
         return line.fault(f"the {told} was sent with other data", f"sent was {json_text(sent[-1])}")
 
     def _handed_on(self, event: sct.Event) -> list[Sequence[str]]:
-        """The paths in a command at which data is handed on as it came."""
+        """Return the paths in a command at which data is forwarded unchanged."""
         sendings = [sending for publisher in self._graph.publishers for sending in publisher.sendings]
         sendings += [service.request for service in self._graph.serviceClients]
         sendings += [action.request for action in self._graph.actionClients]
@@ -496,7 +496,7 @@ _WHY = {
 
 
 def _by_index(value: Any, reads: Sequence[Sequence[str]]) -> Any:
-    """Data with objects from index to element in place of lists whose elements are read one by one."""
+    """Return data in which objects from index to element replace lists whose elements are read one by one."""
     if isinstance(value, list) and any(read and read[0].isdigit() for read in reads):
         value = {str(index): element for index, element in enumerate(value)}
     if not isinstance(value, dict):
@@ -506,7 +506,7 @@ def _by_index(value: Any, reads: Sequence[Sequence[str]]) -> Any:
 
 
 def _agrees(expected: Any, found: Any) -> bool:
-    """Whether data has what is expected of it; fields that are not named may be anything."""
+    """Return whether data has the expected values; fields that are not named may have any value."""
     if isinstance(expected, dict) and isinstance(found, dict):
         return all(name in found and _agrees(value, found[name]) for name, value in expected.items())
     if isinstance(expected, list) and isinstance(found, list):
@@ -515,20 +515,20 @@ def _agrees(expected: Any, found: Any) -> bool:
 
 
 def _with_handed_on(entry: Mapping[str, Any], message: Any) -> Any:
-    """The data of a line of the log, with the known fields of what the message hands on as it came."""
+    """Return the data of a line of the log, with the known fields of forwarded objects in the message."""
     logged = entry.get("data", {}).get("value")
     return _plain(message) if isinstance(logged, dict) else logged
 
 
 def _plain(value: Any) -> Any:
-    """Data of ROS as JSON has it."""
+    """Return data of ROS as JSON."""
     if isinstance(value, Record):
         return {name: _plain(inner) for name, inner in vars(value).items() if name != "wire_types"}
     return [_plain(inner) for inner in value] if isinstance(value, list) else value
 
 
 def _first_unknown(expected: Any, found: Any, handed_on: Sequence[Sequence[str]], path: tuple[str, ...] = ()) -> str:
-    """The first field that is expected and not found in what is handed on, as `pose.position`; empty: there is none."""
+    """Return the first expected field that is missing in forwarded data, as `pose.position`; empty if there is none."""
     if isinstance(expected, dict) and isinstance(found, dict):
         for name, value in expected.items():
             inside = (*path, name)

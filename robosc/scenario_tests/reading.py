@@ -1,4 +1,4 @@
-"""The text of scenarios: a line for each step and each expectation."""
+"""Parser of scenarios: a line for each step and each expectation."""
 
 from __future__ import annotations
 
@@ -17,34 +17,34 @@ RULE = "scenario"
 _SCENARIO = re.compile(r'scenario\s+"([^"]+)"')
 _WAIT = re.compile(r"wait\s+(\d+(?:\.\d+)?)\s*(ms|s|min)")
 _SECONDS = {"ms": 0.001, "s": 1.0, "min": 60.0}
-#: A day: what is longer is a mistake.
+#: A day. Longer waits are mistakes.
 _LONGEST = 86_400
 _EXPECTED = re.compile(
     EVENT + r"\s+(?:(?P<verdict>allowed)|(?P<forbidden>forbidden)(?:\s+by\s+(?P<by>.+))?"
     r"|(?P<sent>(?:not\s+)?sent)(?:\s+with\s+(?P<data>.+))?)"
 )
-#: What else a line may begin with.
+#: Other words that a line may begin with.
 _WORDS = ("scenario", "wait", "expect")
 
 
 @dataclass(frozen=True)
 class Line:
-    """A line that says something, and where that stands: from its first word to its end."""
+    """Line of a scenario, with its place: from its first word to its end."""
 
     file: str
     span: Span
 
     def fault(self, message: str, hint: str | None = None) -> Diagnostic:
-        """A finding about it."""
+        """Return a finding about the line."""
         return Diagnostic(self.file, self.span, Severity.ERROR, RULE, message, hint)
 
 
 @dataclass(frozen=True)
 class Incoming(Line):
-    """Something comes from the robot; `event` is as `explain` takes it, such as `scan` or `dock.error`.
+    """Incoming event from the robot; `event` is named as for `explain`, such as `scan` or `dock.error`.
 
-    `data` is that of the event as the event log has it; `is_message`: all fields of what ROS brings. `reason`: of an
-    error, None where the text names none.
+    `data` is the data of the event as in the event log. `is_message`: it has all fields of the ROS message. `reason`:
+    the reason of an error, None if the text names none.
     """
 
     event: str
@@ -55,21 +55,21 @@ class Incoming(Line):
 
 @dataclass(frozen=True)
 class Refusal(Line):
-    """A server refuses to cancel a goal; `event` is the end that the goal would have, such as `dock.canceled`."""
+    """Refusal of a server to cancel a goal; `event` is the end that the goal would have, such as `dock.canceled`."""
 
     event: str
 
 
 @dataclass(frozen=True)
 class Wait(Line):
-    """Time goes by."""
+    """Passage of time."""
 
     seconds: float
 
 
 @dataclass(frozen=True)
 class Holds(Line):
-    """A condition is expected to hold; `number` is its place among those of the file."""
+    """Expectation that a condition holds; `number` is its position among those of the file."""
 
     text: str
     number: int
@@ -77,7 +77,7 @@ class Holds(Line):
 
 @dataclass(frozen=True)
 class Allowed(Line):
-    """An event is expected to be possible, or forbidden, by a certain requirement where one is named."""
+    """Expectation that an event is allowed or forbidden, optionally by a certain requirement."""
 
     event: str
     forbidden: bool = False
@@ -86,7 +86,7 @@ class Allowed(Line):
 
 @dataclass(frozen=True)
 class Sent(Line):
-    """A command is expected to have been sent since the last step, or not; with this data where some is given."""
+    """Expectation that a command was sent since the last step, or not; optionally with this data."""
 
     event: str
     expected: bool = True
@@ -95,7 +95,7 @@ class Sent(Line):
 
 @dataclass
 class Scenario:
-    """A run of the robot from its start."""
+    """Run of the robot from its start."""
 
     name: str
     line: Line
@@ -103,7 +103,7 @@ class Scenario:
 
 
 def read_scenarios(file: str, text: str) -> tuple[list[Scenario], list[Holds], list[Diagnostic]]:
-    """The scenarios of a text, all conditions that they expect, and what is wrong with the text."""
+    """Parse a text; return its scenarios, all conditions that they expect, and findings about the text."""
     reader = _Reader(file)
     for number, line in enumerate(text.split("\n"), 1):
         words = _without_comment(line).rstrip()
@@ -117,7 +117,7 @@ def read_scenarios(file: str, text: str) -> tuple[list[Scenario], list[Holds], l
 
 
 def _without_comment(line: str) -> str:
-    """A line up to `//`, unless that stands in a text."""
+    """Return a line up to `//`, unless that is within quotes."""
     quoted = False
     for position, character in enumerate(line):
         quoted ^= character == '"'
@@ -204,7 +204,7 @@ class _Reader:
             yield Allowed(line.file, line.span, event_in_words(given), bool(given["forbidden"]), by)
 
     def _data(self, text: str, given: re.Match[str], line: Line) -> Any:
-        """The data at the end of an expectation; None where there is none, or none that can be read."""
+        """Return the data at the end of an expectation; None if there is none, or if it can't be parsed."""
         try:
             return data_in_words(text, given.start("data")) if given["data"] else None
         except StepError as error:
@@ -212,7 +212,7 @@ class _Reader:
             return None
 
     def _unread(self, error: StepError, text: str, line: Line) -> None:
-        """A finding about the data at the end of a line."""
+        """Add a finding about the data at the end of a line."""
         column = line.span.end_column - len(text) + error.position
         span = Span(line.span.line, column, line.span.line, line.span.end_column)
         self.findings.append(Line(line.file, span).fault(str(error), error.hint))
