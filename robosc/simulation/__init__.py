@@ -1,4 +1,4 @@
-"""The supervised robot on the desk: its events one at a time, by script, by hand or at random, without any ROS."""
+"""Simulation of the supervised robot: one event at a time, by script, by hand or at random, without ROS."""
 
 from robosc.simulation.data import DataError, EventData
 from robosc.simulation.script import Step, read_script, unfit_data

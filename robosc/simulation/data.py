@@ -1,4 +1,4 @@
-"""The data of events in scripts and traces, as values of the inputs of the supervisor."""
+"""Data of events in scripts and traces, as values of the inputs of the supervisor."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ if TYPE_CHECKING:
     from robosc.engine.state import Value
     from robosc.ros_types import RosTypes
 
-#: In the place of a value that the JSON text does not give.
+#: Stands for a value that the JSON text does not have.
 _ABSENT: Any = object()
-#: What each basic type is called, what JSON has for it, and its value in ROS without a default.
+#: Name of each basic type, its type in JSON, and its value in ROS without a default.
 _BASIC: Mapping[type[ex.Type], tuple[str, Any, Value | float]] = {
     ex.BooleanType: ("a boolean", bool, False),
     ex.IntegerType: ("an integer", int, 0),
@@ -46,7 +46,7 @@ _BASIC: Mapping[type[ex.Type], tuple[str, Any, Value | float]] = {
 
 
 class DataError(Exception):
-    """Data that an event can't come with. `hint`: how to mend it."""
+    """Data that does not fit its event. `hint`: how to fix it."""
 
     def __init__(self, message: str, hint: str | None = None) -> None:
         super().__init__(message)
@@ -54,9 +54,9 @@ class DataError(Exception):
 
 
 def data_beside(graph: rosgraph.RosGraph, event: sct.Event) -> dict[tuple[str, ...], ex.Type]:
-    """Data of an event that the node keeps and no input tells: its types, by the fields on the way to it.
+    """Return the types of an event's data that the node stores and no input holds, by the path of fields.
 
-    None of it where the supervisor has conditions on the data computed: the data would decide them.
+    The result is empty if an input of the event is a condition on the data: the data would determine it.
     """
     given = [
         assignment
@@ -85,9 +85,9 @@ def data_beside(graph: rosgraph.RosGraph, event: sct.Event) -> dict[tuple[str, .
 
 
 def reason_of(event: sct.Event, data: Mapping[str, Any]) -> str | None:
-    """The reason of an event with some data; None where it is no error of a service or action. Raises DataError.
+    """Return the reason of an event with some data; None unless it is the error of a service or action.
 
-    A service that has answered has an answer that can't be read.
+    An answer of a service makes the reason `unreadable`. Raises DataError.
     """
     possible = possible_reasons(event)
     where = data.get("where")
@@ -105,13 +105,13 @@ def reason_of(event: sct.Event, data: Mapping[str, Any]) -> str | None:
 
 
 class EventData:
-    """Reads the data of events: `{"value": ...}`, in the shape of the event log.
+    """Parser of event data: `{"value": ...}`, in the shape of the event log.
 
-    An error also has a `reason`; left out it is the usual one, `aborted` of actions and `failed` of services.
-    Basic data is the value itself, an object has fields, an array is a list or an object from index to element; in the
-    place of data that an enumeration is made of there may be the name of a literal. A field that is left out has its
-    default in ROS 2; an enumeration the literal of its default rule. What the node computes of data may stand there by
-    its text, as in `{"where": {"value.range < 0.5": true}}`. Without a ROS graph data goes to inputs by their names.
+    An error also has a `reason`; the default is `aborted` for actions and `failed` for services. Basic data is the
+    value itself, an object has fields, and an array is a list or an object from index to element. The name of a literal
+    may replace data that is converted to an enumeration. A missing field has its default in ROS 2, and a missing
+    enumeration the literal of its default rule. A condition that the node computes of data may be given by its text, as
+    in `{"where": {"value.range < 0.5": true}}`. Without a ROS graph data goes to inputs by their names.
     """
 
     def __init__(self, engine: Engine, graph: rosgraph.RosGraph | None, types: RosTypes | None = None) -> None:
@@ -126,11 +126,11 @@ class EventData:
         clients += [] if graph is None else [*graph.serviceClients, *graph.actionClients]
         self._errors = {event_name(client.response.event): event_name(client.error.event) for client in clients}
         self._responses = {error: response for response, error in self._errors.items()}
-        #: Whether the event at hand brings no data, so that its data is that of a new message.
+        #: Whether the present event has no data, so that its data is that of a new message.
         self._is_new = False
 
     def inputs(self, event: str, data: Mapping[str, Any]) -> dict[str, Value]:
-        """Values of the event's inputs by their names. Raises DataError, KeyError for an unknown event."""
+        """Return values of the event's inputs by their names. Raises DataError, and KeyError for an unknown event."""
         declared = self._events[event]
         unknown = sorted(set(data) - {"value", "where", "reason"})
         if unknown:
@@ -140,7 +140,7 @@ class EventData:
         if self._node is not None:
             self._node.reason = reason
         if data and not declared.inputs:
-            return {}  # the node keeps it, or nobody does
+            return {}  # stored by the node, or unused
         value = data.get("value", _ABSENT)
         found = {}
         for given in declared.inputs:
@@ -156,15 +156,15 @@ class EventData:
         return found
 
     def _label(self, given: sct.Input, data: Any = None) -> str:
-        """The text of an input, or its place in the data of its event."""
+        """Return the text of an input, or its place in the data of its event."""
         if given.text is not None:
             return str(given.text)
         return place(self._path(given) if given in self._assignments else tuple(_names(data, _words(given))))
 
     def unreadable(self, event: str, data: Mapping[str, Any]) -> Unreadable | None:
-        """Why the node can't read this data in the present state; None where it can, as far as the data is given.
+        """Return why the node can't read this data in the present state; None if it can, as far as the data is given.
 
-        The data of an error with the reason `unreadable` is the other way round: why it is no such error.
+        For an error with the reason `unreadable` the result is reversed: why its data is no such error.
         """
         if event in self._responses and "value" in data and reason_of(self._events[event], data) == UNREADABLE:
             response = self._responses[event]
@@ -183,9 +183,9 @@ class EventData:
         return None
 
     def _is_readable(self, reception: rosgraph.Reception, data: Any) -> bool:
-        """Whether the node can read data in the present state, as far as that does not depend on what it keeps.
+        """Return whether the node can read data in the present state; False if that depends on stored data.
 
-        An array that is left out is empty: the log of an answer that can't be read leaves out what is missing.
+        A missing array is empty: the log of an answer that can't be read leaves out missing parts.
         """
         assert self._node is not None
         event = event_name(reception.event)
@@ -204,11 +204,11 @@ class EventData:
 
     @staticmethod
     def of_unreadable(data: Mapping[str, Any]) -> dict[str, Any]:
-        """Data of the error that happens in place of an answer whose data can't be read."""
+        """Return data of the error that happens in place of an answer whose data can't be read."""
         return {"value": data["value"], "reason": UNREADABLE} if "value" in data else {"reason": UNREADABLE}
 
     def check(self, event: str, data: Mapping[str, Any], *, is_message: bool = False) -> None:
-        """Raise DataError where the event can't come with this data; an event that is not known can.
+        """Raise DataError if the data does not fit the event; an unknown event fits.
 
         `is_message`: its value has the fields of the ROS message, without names of literals.
         """
@@ -225,7 +225,7 @@ class EventData:
             self.inputs(self._errors[event], self.of_unreadable(data))
 
     def _check_reason(self, event: str, data: Mapping[str, Any], inputs: Mapping[str, Value]) -> None:
-        """Raise DataError where an error that brings no data has other data than the defaults in an event log."""
+        """Raise DataError if an error without data has data other than the defaults in an event log."""
         declared = self._events[event]
         reason = reason_of(declared, data)
         if brings_data(declared, reason):
@@ -241,12 +241,12 @@ class EventData:
             raise DataError(f"an error with the reason `{reason}` brings no data, but {parts[0]}", "leave it out")
 
     def _new_literal(self, event: str, conversion: rosgraph.Conversion, path: tuple[str, ...]) -> str:
-        """The literal that a conversion makes of the data at a path in a new message."""
+        """Return the literal that a conversion makes of the data at a path in a new message."""
         assert self._node is not None
         return str(self._node.literal(conversion, self._received(event, _ABSENT, path)))
 
     def fitting(self, event: str, values: Mapping[str, Value]) -> dict[str, Value]:
-        """Values of an event's inputs, with others in place of those that its reason does not go with."""
+        """Return values of an event's inputs, with those replaced that do not fit its reason."""
         declared = self._events[event]
         reason = next((given.name for given in declared.inputs if is_reason(given)), None)
         if reason is None:
@@ -260,7 +260,7 @@ class EventData:
     def shaped(
         self, event: str, values: Mapping[str, Value], others: Mapping[tuple[str, ...], Any] | None = None
     ) -> dict[str, Any]:
-        """Data with which the event's inputs have these values, by their names; `others` by the fields on the way."""
+        """Return data that gives the event's inputs these values, by name; `others` are further values by path."""
         inputs = self._events[event].inputs
         reasons = [values[given.name] for given in inputs if is_reason(given)]
         where = {given.text: values[given.name] for given in inputs if given.text is not None and not is_reason(given)}
@@ -275,7 +275,7 @@ class EventData:
         return {"value": nested(paths), **shown}
 
     def _path(self, given: sct.Input) -> tuple[str, ...]:
-        """The fields on the way to an input in the data of its event."""
+        """Return the path of an input in the data of its event."""
         assignment = self._assignments.get(given)
         return tuple(_words(given)) if assignment is None else tuple(map(_field, _access(assignment).steps))
 
@@ -310,7 +310,7 @@ class EventData:
 
 
 class _Given(NamedTuple):
-    """JSON in the place of data from ROS, and where in the data of which event that is."""
+    """JSON in place of data from ROS, and its path in the data of its event."""
 
     value: Any
     path: tuple[str, ...]
@@ -318,23 +318,23 @@ class _Given(NamedTuple):
     event: str
 
     def below(self, value: Any, step: str) -> _Given:
-        """A field or an element."""
+        """Return a field or an element."""
         return self._replace(value=value, path=(*self.path, step))
 
     @property
     def place(self) -> str:
-        """Where it is in the script's data."""
+        """The place in the script's data."""
         return place(self.path)
 
     @property
     def default(self) -> wire_types.Value | None:
-        """Its value where it is left out; None where that is unknown."""
+        """The default value; None if it is unknown."""
         wire = self._wire
         return wire.initial if isinstance(wire, Basic) else None
 
     @property
     def length(self) -> int:
-        """The number of elements of an array that is left out."""
+        """The number of elements of a missing array."""
         wire = self._wire
         return wire.initial_length if isinstance(wire, wire_types.Sequence) else 0
 
@@ -344,10 +344,10 @@ class _Given(NamedTuple):
 
 
 class _JsonData(NodeData):
-    """Reads JSON in the place of data from ROS."""
+    """Node data that reads JSON in place of data from ROS."""
 
     def literal(self, conversion: rosgraph.Conversion, data: _Given) -> str:
-        """The name of the literal that a conversion makes of data. Raises DataError, also for what is not looked at."""
+        """Return the literal that a conversion makes of data. Raises DataError, also for data of unused rules."""
         for _, part in [read for rule in conversion.rules for read in tree(rule.condition)]:
             if isinstance(part, rosgraph.WireAccess) and part.quantifier is None and not operands(part):
                 with suppress(UnreadableError):
@@ -375,7 +375,7 @@ class _JsonData(NodeData):
 
 
 class _Array(Sequence[Any]):
-    """The elements of an array that stands in JSON, with their places; the array may be long and have few."""
+    """Elements of an array in JSON, with their places; the array may be long and have few."""
 
     def __init__(self, array: _Given) -> None:
         self._array = array
@@ -394,7 +394,7 @@ class _Array(Sequence[Any]):
 
 
 def _list(array: _Given | list[_Given]) -> Sequence[_Given]:
-    """The elements of an array that stands in JSON; those of a slice as they are."""
+    """Return the elements of an array in JSON; a slice is returned unchanged."""
     return _Array(array) if isinstance(array, _Given) else array
 
 
@@ -416,14 +416,14 @@ def _basic(given: _Given, kind: ex.Type | None) -> Any:
         default = given.default
         return zero if default is None else default
     if data is None and isinstance(kind, ex.DoubleType):
-        return math.nan  # as an event log has what is no finite number
+        return math.nan  # an event log writes null for a number that is not finite
     if not isinstance(data, plain) or (isinstance(data, bool) and name in {"an integer", "a number"}):
         raise DataError(f"{given.place} is {in_short(data)}, expected {name}")
     return as_double(data) if isinstance(kind, ex.DoubleType) else data
 
 
 def _computed(event: sct.Event, where: Any) -> Mapping[str | None, Value]:
-    """What a script says of what the node computes of data, by the text of the model. Raises DataError."""
+    """Return the conditions on data that a script gives, by their texts in the model. Raises DataError."""
     texts = [given.text for given in event.inputs if given.text is not None]
     if not isinstance(where, dict) or not set(where) <= set(texts):
         expected = f"the texts {', '.join(f'`{text}`' for text in texts)}" if texts else "no `where`"
@@ -432,7 +432,7 @@ def _computed(event: sct.Event, where: Any) -> Mapping[str | None, Value]:
 
 
 def _reads_kept(expression: ex.Expression) -> bool:
-    """Whether an expression reads what the node keeps or is set on the robot, which a script does not follow."""
+    """Return whether an expression reads stored data or parameters, which a script does not follow."""
     return any(
         isinstance(part, rosgraph.NodeVariableReference)
         or (isinstance(part, rosgraph.WireAccess) and source_of(part) is not None)
@@ -441,7 +441,7 @@ def _reads_kept(expression: ex.Expression) -> bool:
 
 
 def whole(data: Any, read: ex.Expression) -> Any:
-    """The data with its fields: a lone value stands for the only field on the way to it."""
+    """Return the data with its fields: a lone value stands for the only field on the path to it."""
     accesses = (part for _, part in tree(read) if isinstance(part, rosgraph.WireAccess) and part.quantifier is None)
     access = next(accesses, None)
     if access is None or isinstance(data, dict | list) or len(access.steps) != 1:
@@ -457,7 +457,7 @@ def _access(assignment: rosgraph.InputAssignment) -> rosgraph.WireAccess:
 
 
 def _reached(data: Any, access: rosgraph.WireAccess) -> Any:
-    """What an access reads of the data; a lone value stands for the only field on the way to it."""
+    """Return the value that an access reads of the data; a lone value stands for the only field on the path to it."""
     steps = list(access.steps)
     if data is not _ABSENT and not isinstance(data, dict | list) and len(steps) == 1:
         return data
@@ -477,14 +477,14 @@ def _field(step: rosgraph.WireStep) -> str:
 
 
 def _fields(data: Any, words: list[str]) -> Any:
-    """The value of an input whose name joins the names of fields."""
+    """Return the value of an input whose name joins the names of fields."""
     for name in _names(data, words):
         data = data.get(name, _ABSENT) if isinstance(data, dict) else _ABSENT
     return data
 
 
 def _names(data: Any, words: list[str]) -> list[str]:
-    """The fields whose names are joined by `_` to these words; names of fields may have `_` in them, too."""
+    """Return the fields whose names, joined by `_`, are these words; names of fields may have `_` in them, too."""
     if not words:
         return []
     joined = ["_".join(words[:length]) for length in range(1, len(words) + 1)]

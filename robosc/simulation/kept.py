@@ -1,4 +1,4 @@
-"""What a node keeps beside its supervisor, as a run changes it: numbers, texts and what else no decision needs."""
+"""Variables that a node keeps beside its supervisor, in a run: numbers, texts and others that no decision needs."""
 
 from __future__ import annotations
 
@@ -25,23 +25,23 @@ if TYPE_CHECKING:
     from robosc.engine import Engine
     from robosc.engine.state import State
 
-#: The values by `Component.variable`, a literal by its name; None: nobody knows it, or it is no finite number.
+#: Values by `Component.variable`, a literal by its name; None if it is unknown or no finite number.
 Values = dict[str, bool | int | float | str | None]
 
 
-#: In the place of data that an event came without.
+#: Stands for data that an event came without.
 _NOT_GIVEN = object()
 
 
 class Kept:
-    """Follows those variables of components that reports on `~/state` show and the supervisor does not need."""
+    """Tracker of those variables of components that reports on `~/state` show and the supervisor does not need."""
 
     def __init__(self, engine: Engine, graph: rosgraph.RosGraph | None) -> None:
         self._engine = engine
         self._names: dict[rosgraph.NodeVariable, str] = {}
         self._reactions: dict[str, list[rosgraph.Reaction]] = {}
         self._happens_anyway = False
-        #: The values in the beginning.
+        #: Initial values.
         self.initial: Values = {}
         if graph is None:
             return
@@ -58,9 +58,9 @@ class Kept:
                 self._reactions.setdefault(event_name(reaction.event), []).append(reaction)
 
     def after(self, values: Values, event: str, data: Mapping[str, Any], before: State) -> Values:
-        """The values after an event that has happened in the state `before`, with data in the shape of the event log.
+        """Return the values after an event in the state `before`, with data in the shape of the event log.
 
-        What is made of data that is not given is not known.
+        A value computed of missing data is unknown.
         """
         changed: Values = {}
         reactions = self._reactions.get(event, ())
@@ -83,7 +83,7 @@ class Kept:
         return {**values, **changed}
 
     def told(self, values: Values, variables: Mapping[str, Any]) -> Values:
-        """The values after a report has told some, by `Component.variable`, with others that are none of these."""
+        """Return the values updated by a report, by `Component.variable`; other variables of it are ignored."""
         known = {name: value for name, value in variables.items() if name in self.initial}
         return {
             **values,
@@ -91,7 +91,7 @@ class Kept:
         }
 
     def _value(self, expression: ex.Expression, values: Values, data: Mapping[str, Any]) -> Any:
-        """The value of an expression; None where something that it reads is not known."""
+        """Return the value of an expression; None if something that it reads is unknown."""
         given = whole(data["value"], expression) if "value" in data else _NOT_GIVEN
         try:
             return evaluate(expression, partial(self._read, values, given))
@@ -137,7 +137,7 @@ class Kept:
         return value
 
     def _literal(self, conversion: rosgraph.Conversion, argument: Any, values: Values) -> Any:
-        """The literal that is named, or that a conversion makes of data."""
+        """Return the literal that is named, or that a conversion makes of data."""
         named = [literal for literal in conversion.enumeration.literals if literal.name == argument]
         if named:
             return named[0]

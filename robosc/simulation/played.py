@@ -1,4 +1,4 @@
-"""What a run plays: a script, an event log, or a counterexample of `verify`."""
+"""Sources of runs: a script, an event log, a recording, or a counterexample of `verify`."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class PlayError(Exception):
-    """What can't be played: why, with what was found wrong with a model or a script, and their texts by their paths."""
+    """Error of a source that can't be played, with findings in a model or script, and their texts by path."""
 
     def __init__(
         self, message: str, findings: Sequence[Diagnostic] = (), texts: Mapping[str, str] | None = None
@@ -36,7 +36,7 @@ class PlayError(Exception):
 
 
 def script_steps(simulation: Simulation, path: str) -> list[Step]:
-    """The steps of a script or event log. Raises PlayError, and OSError where it can't be read."""
+    """Return the steps of a script or event log. Raises PlayError, and OSError if it can't be read."""
     text, faults = decode(path, files.read(path))
     events = [*simulation.engine.events, WAIT]
     others = [word for word in LoopSimulation.OWN if word != WAIT]
@@ -48,9 +48,10 @@ def script_steps(simulation: Simulation, path: str) -> list[Step]:
 
 
 def recorded_moments(simulation: Simulation, path: str, node: str | None) -> Iterator[tuple[float, Told]]:
-    """What a node told that was recorded, each with its time in seconds; the simulation is in the state after it.
+    """Yield the recorded reports of a node with their times in seconds; the simulation is in the state after each.
 
-    `node` is its full name; None: the only one that tells of this robot. Raises PlayError, RecordingError, and OSError.
+    `node` is its full name; None means the only node that reports this robot. Raises PlayError, RecordingError, and
+    OSError.
     """
     tracker = Tracker(simulation.engine)
     began: float | None = None
@@ -79,9 +80,9 @@ def recorded_moments(simulation: Simulation, path: str, node: str | None) -> Ite
 
 
 def counterexample_steps(simulation: Simulation, wanted: str | None) -> tuple[list[Step], str]:
-    """A counterexample of a property, or (None) of the first that has one, and what `verify` says of it.
+    """Return a counterexample of a property and the explanation of `verify`; None means the first refuted one.
 
-    Data that does not matter in it is as ROS leaves it. Raises PlayError where there is none.
+    Irrelevant data has the defaults of ROS. Raises PlayError if there is no counterexample.
     """
     verdicts = verify_system(simulation.engine.model)
     properties = [verdict.property for verdict in verdicts]
@@ -98,7 +99,7 @@ def counterexample_steps(simulation: Simulation, wanted: str | None) -> tuple[li
 
 
 def _is_called(verified: str, wanted: str) -> bool:
-    """Whether a property is meant: by what `verify` calls it, or one of the model by its name there."""
+    """Return whether a property matches: by its name in `verify`, or by its name in the model."""
     return verified == wanted or re.match(rf"property {re.escape(wanted)}(?!\w)", verified) is not None
 
 

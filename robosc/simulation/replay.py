@@ -1,4 +1,4 @@
-"""A run of a robot that is looked at: by a script, an event log or a trace, or at random; forwards and backwards."""
+"""Run of a robot by a script, an event log or a trace, or at random, forwards and backwards."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class _Position(NamedTuple):
-    """Which step of the script is next, until when time goes by in it, and the timers."""
+    """Position in a script: the next step, the end of its wait, and the timers."""
 
     next: int
     until: int | None
@@ -34,9 +34,7 @@ _START = _Position(0, None, (0, {}))
 
 @dataclass(frozen=True)
 class Moment:
-    """A step of the run: an event that happened, or was kept from that `by` something; or time that went by.
-
-    Or a server that refused to cancel a goal.
+    """Step of the run: an event that happened or was blocked (`by`), a passage of time, or a refusal to cancel.
 
     `line` is that of the script; `edges` are the transitions that components took.
     """
@@ -58,9 +56,9 @@ class Moment:
 
 
 class Replay:
-    """Plays `steps` of a script; None: whatever can happen, at random, the same for the same seed.
+    """Player of the `steps` of a script; None means random events, the same for the same seed.
 
-    What was taken back is played again first, unless something else was asked for meanwhile.
+    Steps that were taken back are played again first, unless another event was injected meanwhile.
     """
 
     def __init__(
@@ -70,7 +68,7 @@ class Replay:
         seed: int = 0,
         choose: Callable[[Random], tuple[str, dict[str, Any]] | None] | None = None,
     ) -> None:
-        """`choose` says what happens at random, with its data; without it the simulation does."""
+        """`choose` returns a random event with its data; the default is the choice of the simulation."""
         self.simulation = simulation
         self._choose = choose or simulation.random_event
         self.engine = self.simulation.engine
@@ -80,7 +78,7 @@ class Replay:
         self._future: list[Moment] = []
         self._random = Random(seed)  # noqa: S311
         self._next = 0
-        #: Until when time goes by, of a step that waits.
+        #: End of the present wait; None outside of a wait.
         self._until: int | None = None
         self._transitions = Transitions(self.engine)
         self._started = next((step.time for step in steps or () if step.time is not None), 0.0)
@@ -92,23 +90,23 @@ class Replay:
 
     @property
     def next_line(self) -> int | None:
-        """The line of the script that comes next; None where there is none."""
+        """The line of the next step of the script; None if there is none."""
         if self._future:
             return self._future[-1].line
         return self.steps[self._next].line if self.steps is not None and self._next < len(self.steps) else None
 
     @property
     def has_future(self) -> bool:
-        """Whether something was taken back that can be played again."""
+        """Whether steps were taken back that can be played again."""
         return bool(self._future)
 
     def freely(self) -> None:
-        """Leaves the script, and what was taken back: from here on what is asked for happens, or chance decides."""
+        """Leave the script and the steps taken back: injected or random events follow."""
         self.steps, self._until = None, None
         self._future.clear()
 
     def forward(self) -> Moment | None:
-        """The next step; None where nothing is left to play, or nothing can happen."""
+        """Play the next step and return it; None if no step is left, or nothing can happen."""
         if self._future:
             again = self._future.pop()
             if again.happened:
@@ -122,7 +120,7 @@ class Replay:
         return None if chosen is None else self._keep(self._here, self._perform(*chosen))
 
     def back(self) -> Moment | None:
-        """Takes the last step back; None where there is none."""
+        """Take the last step back and return it; None if there is none."""
         if not self.past:
             return None
         moment = self.past.pop()
@@ -133,7 +131,7 @@ class Replay:
         return moment
 
     def inject(self, event: str, data: Mapping[str, Any]) -> Moment:
-        """Lets an event happen that the script does not name, if it can; else nothing changes. Raises DataError."""
+        """Perform an event outside of the script if it is enabled, else change nothing. Raises DataError."""
         self.simulation.data.check(event, data)
         here = self._here
         moment = self._perform(event, data)
@@ -143,7 +141,7 @@ class Replay:
         return self._keep(here, moment)
 
     def let_go_by(self, seconds: float) -> list[Moment]:
-        """Lets time go by; what is up on the way happens at its time."""
+        """Let time pass; timers that expire on the way fire at their time."""
         self._future.clear()
         here = self._here
         self._until = self.timers.now + _milliseconds(seconds)
@@ -168,7 +166,7 @@ class Replay:
         return self._keep(here, self._perform(step.event, step.data, step.line))
 
     def _wait(self, until: int, line: int | None = None) -> Moment:
-        """Lets time go by to the next time that is up, else until then; only then nothing is waited for any more."""
+        """Let time pass to the next expiry, else to `until`, which ends the wait."""
         wait = self.timers.wait
         if wait is not None and self.timers.now + wait <= until:
             self.timers.at(self.timers.now + wait)

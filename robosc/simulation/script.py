@@ -23,22 +23,22 @@ if TYPE_CHECKING:
 
 RULE = "script"
 WAIT = "wait"
-#: A server does not cancel a goal.
+#: Step in which a server refuses to cancel a goal.
 REFUSE = "refuse cancel"
-#: The keys of the data of an event.
+#: Keys of the data of an event.
 _OF_DATA = ("reason", "value", "where")
-#: 100 days: what is longer is a mistake.
+#: 100 days. Longer waits are mistakes.
 _LONGEST_WAIT = 8_640_000
-#: A clock that tells more seconds is broken.
+#: Seconds from which on a time is invalid.
 _LATEST = 1e12
 
 
 @dataclass(frozen=True)
 class Step:
-    """A line of a script: an event, or `tick`, `begin` or `end` for a control loop.
+    """Line of a script: an event, or `tick`, `begin` or `end` for a control loop.
 
-    `wait` has its `seconds` as data, `refuse cancel` the action that it is `of`, as its plant is called. `time` is the
-    seconds that a line of an event log tells.
+    `wait` has its `seconds` as data. `refuse cancel` has the name of the action's plant as `of`. `time` is the time in
+    seconds of a line of an event log.
     """
 
     line: int
@@ -54,9 +54,9 @@ def read_script(
     others: Collection[str] = (),
     model: sct.SupervisoryControlModel | None = None,
 ) -> tuple[list[Step], list[Diagnostic]]:
-    """The steps of a script, and what is wrong with its text; `events` are the names that it may use.
+    """Parse a script; return its steps and findings about its text. `events` are the names that it may use.
 
-    `others` are those that it may use only with `--loop`, or only without; `model` has the events that words name.
+    `others` are names that it may use only with `--loop`, or only without. `model` has the events that words name.
 
     A line is `EVENT [JSON]`, with `--loop` also `wait SECONDS`, or a JSON object with `event` and maybe `data` (other
     keys of an event log are ignored). With a model it may also be a step of a scenario, such as
@@ -77,7 +77,7 @@ def read_script(
 
 
 def unfit_data(file: str, steps: Iterable[Step], data: EventData) -> Iterator[Diagnostic]:
-    """Findings about data that does not fit its event, before any step is played."""
+    """Yield findings about data that does not fit its event, before any step is played."""
     for step in steps:
         try:
             data.check(step.event, step.data)
@@ -87,9 +87,10 @@ def unfit_data(file: str, steps: Iterable[Step], data: EventData) -> Iterator[Di
 
 
 def spoken(model: sct.SupervisoryControlModel, text: str) -> tuple[str, dict[str, Any]] | None:
-    """The event of a step in words, and its data; None where the text is none. Raises NamingError, StepError.
+    """Return the event of a step in words, and its data; None if the text is no such step.
 
-    A server that refuses to cancel a goal is the step `refuse cancel` with the action that it is `of`.
+    A server that refuses to cancel a goal is the step `refuse cancel` with the action as `of`. Raises NamingError and
+    StepError.
     """
     step = step_in_words(text)
     if step is None or step.is_bare:
@@ -108,7 +109,7 @@ def _seconds(time: Any) -> float | None:
 
 
 class _Names(NamedTuple):
-    """The names of events that a script may use, those that it may use otherwise, and the model that words name."""
+    """Names of events that a script may use, those that it may use in the other mode, and the model for words."""
 
     events: Collection[str]
     others: Collection[str]
@@ -116,7 +117,7 @@ class _Names(NamedTuple):
 
 
 class _Line:
-    """One line that is not empty."""
+    """Line that is not empty."""
 
     def __init__(self, file: str, number: int, line: str, names: _Names) -> None:
         self._file, self._number, self._line, self._names = file, number, line, names
@@ -153,7 +154,7 @@ class _Line:
         return Step(self._number, name, data) if known and data is not None else None
 
     def _place(self, *texts: str) -> int:
-        """The column of the first of some texts that the line has, from 0; its start where it has none."""
+        """Return the column, from 0, of the first of some texts that the line has; its start if it has none."""
         return next((self._line.index(text) for text in texts if text in self._line), self._start)
 
     def _in_words(self, model: sct.SupervisoryControlModel, word: str) -> Step | None:

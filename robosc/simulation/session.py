@@ -1,4 +1,4 @@
-"""A simulation by hand: a command at a time, each answered with text."""
+"""Interactive simulation: one command at a time, each answered with text."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ or in the words of a scenario:  error from dock because timeout
   save FILE  the trace to a file      load FILE  play a trace or script
   h          this help                q          the end"""
 
-#: So many random events a command lets happen.
+#: Maximum number of random events of a command.
 MOST_AT_ONCE = 10_000
 
 
 class Session:
-    """Understands commands about a simulation; random events are the same for the same seed.
+    """Interpreter of commands about a simulation; random events are the same for the same seed.
 
-    `named`: what a person reads for an event, if not its name.
+    `named`: the displayed names of events, if they differ from their names.
     """
 
     def __init__(self, simulation: Simulation, seed: int, named: Mapping[str, str] | None = None) -> None:
@@ -46,7 +46,7 @@ class Session:
         self._simulation = simulation
         self._random = Random(seed)  # noqa: S311
         self._shown = whole_state(simulation.engine)
-        #: What a person reads for an event.
+        #: Displayed name of each event.
         self._named = {event: (named or {}).get(event, event) for event in simulation.engine.events}
         self._commands: dict[str, Callable[[str], str]] = {
             "e": lambda _: self.enabled(),
@@ -62,7 +62,7 @@ class Session:
         }
 
     def do(self, line: str) -> str:
-        """The answer to a command; OSError or ValueError where a file can't be read or written."""
+        """Run a command and return its answer. Raises OSError or ValueError if a file can't be read or written."""
         word, _, rest = line.strip().partition(" ")
         if not word:
             return self.enabled()
@@ -81,7 +81,7 @@ class Session:
         return _complaints(findings) or "\n".join(self._perform(step.event, dict(step.data)) for step in steps)
 
     def enabled(self) -> str:
-        """The events that can happen, numbered."""
+        """Return the enabled events, numbered."""
         enabled = self._simulation.enabled
         return (
             "\n".join(f"{number:4} {self._named[event]}" for number, event in enumerate(enabled, 1))
@@ -89,7 +89,7 @@ class Session:
         )
 
     def state(self) -> str:
-        """The whole state."""
+        """Return the whole state."""
         return "\n".join(f"  {name} = {_shown(value)}" for name, value in whole_state(self._simulation.engine).items())
 
     def _perform(self, event: str, data: dict[str, object]) -> str:
@@ -105,7 +105,7 @@ class Session:
         return "\n".join([self._named[event], *self._changes()])
 
     def _changes(self) -> list[str]:
-        """What is different from what was shown last."""
+        """Return the values that differ from the state shown last."""
         old, self._shown = self._shown, whole_state(self._simulation.engine)
         return [f"  {name} = {_shown(value)}" for name, value in self._shown.items() if old[name] != value]
 
@@ -159,7 +159,7 @@ class Session:
 
 
 def _number(text: str) -> int | None:
-    """The number that a text stands for; None where it is none, or more than anybody wants at once."""
+    """Return the number that a text stands for; None if it is none, or more than `MOST_AT_ONCE`."""
     if not text.isdecimal() or len(text) > len(str(MOST_AT_ONCE)):
         return None
     number = int(text)
@@ -167,7 +167,7 @@ def _number(text: str) -> int | None:
 
 
 def trace_line(happened: Happened) -> str:
-    """An event as a line that scripts and `load` understand: the event log's shape, without the time and direction."""
+    """Return an event as a line for scripts and `load`: the event log's shape, without time and direction."""
     line: dict[str, object] = {"event": happened.event}
     if happened.data:
         line["data"] = dict(happened.data)

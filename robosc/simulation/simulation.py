@@ -26,13 +26,12 @@ if TYPE_CHECKING:
     from robosc.metamodel import rosgraph
     from robosc.ros_types import RosTypes
 
-#: What a script may say beside events: the period is over; a message from the robot with several events begins, ends;
-#: so many seconds go by.
+#: Lines of scripts beside events: the end of a period; the begin and end of a message with several events.
 TICK, BEGIN, END = "tick", "begin", "end"
 
 
 def whole_state(engine: Engine) -> dict[str, Value]:
-    """The location of every plant, also of one that has no other, and the values of variables, by their names."""
+    """Return the location of every plant, also of those with only one, and the values of variables, by name."""
 
     def value(element: sct.Plant | sct.DiscreteVariable) -> Value:
         if isinstance(element, sct.Plant):
@@ -44,7 +43,7 @@ def whole_state(engine: Engine) -> dict[str, Value]:
 
 @dataclass(frozen=True)
 class Happened:
-    """An event that was asked for: whether it happened, else what kept it from happening, and the state afterwards."""
+    """Requested event: whether it happened, else what blocked it, and the state afterwards."""
 
     event: str
     data: Mapping[str, Any]
@@ -57,20 +56,20 @@ class Happened:
         return self.by is None
 
     def answer(self) -> dict[str, Any]:
-        """The object that `simulate --script` prints."""
+        """Return the object that `simulate --script` prints."""
         by = None if self.by is None else str(self.by)
         given = dict(self.data) if self.event == REFUSE else {}
         return {"event": self.event, **given, "accepted": self.accepted, "by": by, "state": dict(self.state)}
 
 
 def refusal(engine: Engine, action: str) -> Blocked | None:
-    """The reason why a server cannot refuse to cancel the goal of an action: it is not being canceled."""
+    """Return why a server cannot refuse to cancel the goal of an action: it is not being canceled; else None."""
     ends = (event for event in _plant(engine, action).events if event.kind == sct.EventKind.canceled)
     return engine.blocked_by(event_name(next(ends)))
 
 
 def refusal_in_words(engine: Engine, action: str) -> str:
-    """The step `refuse cancel` of an action, such as `refusal to cancel Base.go`."""
+    """Return the name of the step `refuse cancel` of an action, such as ``refusal to cancel `Base.go` ``."""
     return f"refusal to cancel `{name(_plant(engine, action))}`"
 
 
@@ -79,7 +78,7 @@ def _plant(engine: Engine, called: str) -> sct.Plant:
 
 
 class Simulation:
-    """The supervised automaton of a model: only what is asked for happens. `trace` is what has happened."""
+    """Supervised automaton of a model: only requested events happen. `trace` is the list of events that happened."""
 
     def __init__(
         self,
@@ -87,7 +86,7 @@ class Simulation:
         graph: rosgraph.RosGraph | None = None,
         types: RosTypes | None = None,
     ) -> None:
-        """`types`: the definitions of ROS types, for fields that data leaves out; None: those of the environment."""
+        """`types`: the definitions of ROS types, for fields missing in data; None: those of the environment."""
         self.engine = Engine(model)
         self.data = EventData(self.engine, graph, types)
         self.trace: list[Happened] = []
@@ -96,14 +95,13 @@ class Simulation:
 
     @property
     def enabled(self) -> list[str]:
-        """The events that can happen now, in the order of the model."""
+        """The enabled events, in the order of the model."""
         return [event for event in self.engine.events if self.engine.enabled(event)]
 
     def perform(self, event: str, data: Mapping[str, Any] | None = None) -> Happened:
-        """Lets an event happen with data in the shape of the event log, if it can; else nothing changes.
+        """Perform an event with data in the shape of the event log if it is enabled, else change nothing.
 
-        A server that refuses to cancel a goal changes nothing, too. Raises DataError, and KeyError where there is no
-        such event.
+        A refusal to cancel a goal changes nothing, too. Raises DataError, and KeyError for an unknown event.
         """
         if event == REFUSE:
             given = data or {}
@@ -120,14 +118,14 @@ class Simulation:
         return happened
 
     def undo(self) -> Happened | None:
-        """Takes the last event back that happened; None where there is none."""
+        """Take back the last event that happened and return it; None if there is none."""
         if not self.trace:
             return None
         self.engine.state = self._before.pop()
         return self.trace.pop()
 
     def random_event(self, random: Random) -> tuple[str, dict[str, Any]] | None:
-        """One of the enabled events, with random data; None where none is enabled."""
+        """Return one of the enabled events, with random data; None if none is enabled."""
         enabled = self.enabled
         if not enabled:
             return None
@@ -136,12 +134,12 @@ class Simulation:
         return event, self.data.shaped(event, self.data.fitting(event, values))
 
     def random_step(self, random: Random) -> Happened | None:
-        """Lets one of the enabled events happen, with random data; None where none is enabled."""
+        """Perform one of the enabled events, with random data; return None if none is enabled."""
         chosen = self.random_event(random)
         return None if chosen is None else self.perform(*chosen)
 
     def reason(self, event: str, by: Blocked | Unreadable) -> str:
-        """Why an event can't happen in the present state, in words; `by` is what keeps it from happening."""
+        """Return in words why an event can't happen in the present state; `by` is what blocks it."""
         if isinstance(by, Unreadable):
             return f"{by.why}, so it counts as {by.error or by.response or 'not received'}"
         if event == REFUSE:
@@ -171,7 +169,7 @@ def _any(kind: ex.Type, random: Random) -> Value:
 
 
 class LoopSimulation:
-    """Runs a model's control loop, step by step: incoming events as batches of one or more, and ticks."""
+    """Control loop of a model, step by step: incoming events as batches of one or more, and ticks."""
 
     OWN = (TICK, BEGIN, END, WAIT)
 
@@ -182,7 +180,7 @@ class LoopSimulation:
         settings: Settings | None = None,
         types: RosTypes | None = None,
     ) -> None:
-        """`types`: the definitions of ROS types, for fields that data leaves out; None: those of the environment."""
+        """`types`: the definitions of ROS types, for fields missing in data; None: those of the environment."""
         self._happened: list[str] = []
         hooks = Hooks(after=self._happened.append, livelock=lambda: self._happened.append("livelock"))
         self._loop = ControlLoop(model, settings, hooks)
@@ -191,12 +189,12 @@ class LoopSimulation:
 
     @property
     def events(self) -> list[str]:
-        """What a script may name: what comes from the robot, and the loop's own steps."""
+        """The events that a script may name: those of the robot, and the loop's own steps."""
         events = self._loop.engine.executed.events
         return [*(event.name for event in events if event.role in (Role.incoming, Role.timeout)), *self.OWN]
 
     def step(self, event: str, data: Mapping[str, Any]) -> dict[str, Any]:
-        """What came of a step: the object that `simulate --loop --script` prints. Raises DataError."""
+        """Perform a step; return the object that `simulate --loop --script` prints. Raises DataError."""
         inputs = {} if event in (*self.OWN, REFUSE) else self.data.inputs(event, data)
         self._happened.clear()
         by: Blocked | Unreadable | None = None
@@ -228,7 +226,7 @@ class LoopSimulation:
         }
 
     def _wait(self, milliseconds: int) -> None:
-        """Lets time go by; what is up on the way happens at its time."""
+        """Let time pass; timers that expire on the way fire at their time."""
         timers = self._loop.timers
         end = timers.now + milliseconds
         while timers.wait is not None and timers.now + timers.wait <= end:

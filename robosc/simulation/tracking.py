@@ -1,4 +1,4 @@
-"""Follows a robot by what its node tells on `~/state`: which events have happened, and where that has led."""
+"""Tracker of a robot by the reports of its node on `~/state`: its events, and the states after them."""
 
 from __future__ import annotations
 
@@ -18,14 +18,15 @@ if TYPE_CHECKING:
 
 
 class ReportError(ValueError):
-    """A report that is not one of the model: the message says why."""
+    """Report that does not fit the model. The message gives the reason."""
 
 
 @dataclass(frozen=True)
 class Told:
-    """An event that has happened, None where only a state was told; the state afterwards, the transitions taken.
+    """Event that has happened, None if only a state was reported; the state after it, and the transitions taken.
 
-    `variables` are what was told with that state, by `Component.variable`: also of those that the node keeps itself.
+    `variables` are the reported values of that state, by `Component.variable`, also of
+    those that the node keeps itself.
     """
 
     event: str | None
@@ -34,17 +35,17 @@ class Told:
     variables: Mapping[str, Any]
 
 
-#: An edge with the positions of the location that it leaves and of the one that it leads to; None: of any, to the same.
+#: Edge with the positions of its source and target locations; None: any source, or the target is the source.
 _Move = tuple[sct.Edge, int | None, int | None]
 
 
 class Tracker:
-    """The state of a robot, by the reports of its node, as far as they tell it.
+    """State of a robot, as far as the reports of its node determine it.
 
-    A report has the events since the one before, and the state of the components after all of them. What the components
-    did in between is what fits both: not the data of an event decides, which no report has, but where it led.
-    Other automata (communications, requirements) go where the events lead them; `timers` run from event to event.
-    A tracker that comes late takes them to be where they begin, until an event says otherwise.
+    A report has the events since the previous one, and the state of the components after all of them. The transitions
+    in between are chosen to fit both. The data of the events, which reports lack, is not needed. Other automata
+    (communications, requirements) follow the events; `timers` run from event to event. A tracker that starts late
+    assumes their initial locations, until an event contradicts them.
     """
 
     def __init__(self, engine: Engine) -> None:
@@ -62,13 +63,13 @@ class Tracker:
         }
 
     def begin(self) -> None:
-        """The node has started: all is as it is in the beginning."""
+        """Reset to the initial state: the node has started."""
         self.engine.state = self._initial
         self.timers = Timers(self.engine, 0)
         self._began = None
 
     def report(self, report: Any) -> Iterator[Told]:
-        """What a report tells, event by event; the engine is in the state after each. Raises ReportError."""
+        """Yield the events of a report; the engine is in the state after each. Raises ReportError."""
         if not isinstance(report, dict):
             raise ReportError("it is no object")
         ends = self._ends(report)
@@ -94,7 +95,7 @@ class Tracker:
         return round((time - self._began) * 1000)
 
     def _ends(self, report: Mapping[str, Any]) -> dict[sct.Plant | sct.DiscreteVariable, Value]:
-        """The states and variables of the components that a report tells."""
+        """Return the states and variables of the components in a report."""
         robot, told = report.get("robot"), report.get("components")
         if robot != self.engine.model.name:
             raise ReportError(f"the report is one of the robot `{robot}`, the model is `{self.engine.model.name}`")
@@ -139,7 +140,7 @@ class Tracker:
     def _paths(
         self, events: Sequence[str], ends: Mapping[sct.Plant | sct.DiscreteVariable, Value]
     ) -> list[dict[sct.Plant, tuple[sct.Edge, int]]]:
-        """For each event the plants that take part, each with its edge and the position of the location afterwards."""
+        """Return the plants that take part in each event, each with its edge and the position of its next location."""
         taking_part: dict[sct.Plant, list[int]] = {}
         for number, event in enumerate(events):
             for plant in self._moves.get(event, ()):
@@ -166,9 +167,9 @@ def _move(edge: sct.Edge) -> _Move:
 
 
 def _path(moves: Sequence[Sequence[_Move]], start: int, end: int | None) -> list[tuple[sct.Edge, int]]:
-    """A path from a location to another that takes an edge of each of the `moves`, as edges and where each led.
+    """Return a path from a location to another with an edge of each of `moves`, each with the location after it.
 
-    Where no path leads on, it goes on from where the next event can happen: something was not told.
+    If no path leads on, it continues from a location in which the next event can happen: a report is missing.
     """
     reached: dict[int, tuple[int, sct.Edge] | None] = {start: None}
     steps: list[dict[int, tuple[int, sct.Edge]]] = []

@@ -1,4 +1,4 @@
-"""Whether arrays in the data that a script gives to an event have all elements that its transitions read."""
+"""Check whether arrays in the data of a script's event have all elements that its transitions read."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from robosc.semantics.walks import operands, walk
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable
 
-#: A value that a script does not give.
+#: Stands for a value that a script does not give.
 _UNKNOWN: Any = object()
 
 
@@ -25,7 +25,7 @@ _UNKNOWN: Any = object()
 class Unreadable:
     """Data that can't be read: `why`, and the `error` event that happens instead; None: it counts as not received.
 
-    Or data of an error that can be read: then it is that of a `response`.
+    Or data of an error that can be read: then it belongs to a `response`.
     """
 
     why: str
@@ -37,13 +37,13 @@ class Unreadable:
 
 
 class UnknownError(Exception):
-    """An expression reads a value that nobody has given."""
+    """Read of a value that is not given."""
 
 
 def past_end(expressions: Iterable[ex.Expression], value: Any) -> UnreadableError | None:
-    """The first element that these expressions read and an array in the value lacks; None where there is none.
+    """Return an error for the first element that these expressions read and an array in the value lacks, else None.
 
-    The value is that of an event's data, as JSON: of an array that is not there nothing is known.
+    The value is an event's data as JSON. Missing arrays are not considered.
     """
 
     def missing(expression: ex.Expression) -> Generator[ex.Expression, UnreadableError | None, UnreadableError | None]:
@@ -63,14 +63,14 @@ def past_end(expressions: Iterable[ex.Expression], value: Any) -> UnreadableErro
                 return fault
             decided = None if operator is None else operator.decided
             if decided is not None and _known(operand, value) is not (not decided):
-                return None  # the right side is not read, or nobody knows
+                return None  # the right side is not read, or the value is unknown
         return None
 
     return next(filter(None, (walk(missing, expression) for expression in expressions)), None)
 
 
 def _fault(expression: ex.Expression, value: Any) -> UnreadableError | None:
-    """What keeps an expression from having a value; None where something that it reads is not given, too."""
+    """Return why an expression has no value; None if it has one, or if a value that it reads is not given."""
     try:
         evaluate(expression, partial(read, value))
     except UnreadableError as fault:
@@ -81,7 +81,7 @@ def _fault(expression: ex.Expression, value: Any) -> UnreadableError | None:
 
 
 def _past_end(access: rosgraph.WireAccess, value: Any) -> PastEndError | None:
-    reached = _UNKNOWN if access.variable is not None else value  # of what the node keeps nothing is known
+    reached = _UNKNOWN if access.variable is not None else value  # stored data is unknown
     for step in access.steps:
         if isinstance(step, rosgraph.IndexStep) and isinstance(reached, list | dict):
             length = len(reached) if isinstance(reached, list) else 1 + max(map(int, reached), default=-1)
@@ -103,7 +103,7 @@ def _below(value: Any, step: rosgraph.WireStep) -> Any:
 
 
 def _known(condition: ex.Expression, value: Any) -> bool | None:
-    """The value of a condition; None where something that it reads is not given."""
+    """Return the value of a condition; None if something that it reads is not given."""
     try:
         return bool(evaluate(condition, partial(read, value)))
     except (UnknownError, UnreadableError):
@@ -111,9 +111,9 @@ def _known(condition: ex.Expression, value: Any) -> bool | None:
 
 
 def read(value: Any, reference: ex.Expression, *given: Any) -> Value:
-    """What a reference reads of a value, or of the first that is `given`, an element; behind it stand its indices.
+    """Return what a reference reads of a value; `given` are its indices, after the element of its quantifier, if any.
 
-    Raises UnknownError, UnreadableError.
+    Raises UnknownError and UnreadableError.
     """
     if not isinstance(reference, rosgraph.WireAccess) or reference.variable is not None:
         raise UnknownError
@@ -148,5 +148,5 @@ def _leaf(reached: Any, kind: ex.Type | None) -> Any:
 
 def _elements(array: Any) -> list[Any]:
     if not isinstance(array, list):
-        raise UnknownError  # an object from index to element tells some of them only
+        raise UnknownError  # an object from index to element may lack elements
     return array

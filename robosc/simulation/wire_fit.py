@@ -1,4 +1,4 @@
-"""Whether JSON fits the ROS type that it stands for, and what the model reads of it."""
+"""Check whether JSON fits its ROS type and the reads of the model."""
 
 from __future__ import annotations
 
@@ -22,36 +22,36 @@ if TYPE_CHECKING:
     from robosc.ros_types.wire import Value
     from robosc.semantics.messages import Path
 
-#: The index of an element has less.
+#: The index of an element has fewer digits.
 DIGITS = 10
-#: The part of a value that a message shows, in characters.
+#: Maximum number of characters shown of a value in a message.
 _SHOWN = 60
-#: The greatest number of a float32, and the least one that is rounded to infinity.
+#: Half a unit above the greatest float32: the least number that is rounded to infinity.
 _FLOAT32 = (2 - 2**-24) * 2.0**127
-#: What each basic type of ROS and of RoboSC is called.
+#: Displayed name of each basic type of ROS and of RoboSC.
 _CALLED = {"boolean": "a boolean", "integer": "an integer", "double": "a number", "string": "a string"}
 _LIST = "a list, or an object from index to element"
-#: The type with the most values, for data whose definition is unknown.
+#: Widest type of each kind, for data whose definition is unknown.
 _WIDEST: Mapping[type[ex.Type], str] = {ex.BooleanType: "bool", ex.DoubleType: "float64", ex.StringType: "string"}
-#: An integer of an unknown type is of one of these.
+#: Candidate types of an integer of unknown type.
 _INTEGERS = ("int64", "uint64")
 
 
 class Fault(NamedTuple):
-    """A fault of JSON data, and how to mend it."""
+    """Fault of JSON data, and a hint to fix it."""
 
     message: str
     hint: str | None = None
 
 
 def in_short(value: Any) -> str:
-    """The JSON text of a value; a long one only in part."""
+    """Return the JSON text of a value, shortened if it is long."""
     text = json.dumps(value, ensure_ascii=False, default=repr)
     return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}…"
 
 
 class _Kind(NamedTuple):
-    """A type as one distribution has it."""
+    """Type as one distribution defines it."""
 
     type: WireType
     section: Section
@@ -59,7 +59,7 @@ class _Kind(NamedTuple):
 
     @property
     def fields(self) -> Mapping[str, WireType] | None:
-        """The fields of an object; None where they are unknown."""
+        """The fields of an object; None if they are unknown."""
         if not isinstance(self.type, Nested):
             return None
         try:
@@ -73,7 +73,7 @@ class _Kind(NamedTuple):
         return not isinstance(self.type, Nested) or self.fields is not None
 
     def inside(self, step: str, *, is_element: bool) -> _Kind | None:
-        """The type of a field or an element; None where it is unknown."""
+        """Return the type of a field or an element; None if it is unknown."""
         if is_element:
             return self._replace(type=self.type.at(int(step))) if isinstance(self.type, Sequence) else None
         found = (self.fields or {}).get(step)
@@ -82,7 +82,7 @@ class _Kind(NamedTuple):
 
 @dataclass(frozen=True)
 class _Part:
-    """A part of the data: JSON, its types, what the model reads of it, and the steps to it.
+    """Part of the data: JSON, its types, the model's reads of it, and the path to it.
 
     `is_lone`: the data is the value of its only field. `conversions`: the enumerations whose literals it may name.
     """
@@ -142,12 +142,12 @@ def _is_index(step: str) -> bool:
 
 
 def place(path: Path) -> str:
-    """The place of data at the end of a path, as `value.rows[1]`."""
+    """Return the place of data at the end of a path, as `value.rows[1]`."""
     return "value" + "".join(f"[{step}]" if step.isdigit() else f".{step}" for step in path)
 
 
 def _opened(reads: tuple[tuple[Path, Read], ...], literals: bool) -> _Part:
-    """A part with what is read of it, also by the rules of enumerations."""
+    """Return a part with its reads, also those by the rules of enumerations."""
     opened: list[tuple[Path, Read]] = []
     conversions: list[rosgraph.Conversion] = []
     pending = list(reads)
@@ -161,7 +161,7 @@ def _opened(reads: tuple[tuple[Path, Read], ...], literals: bool) -> _Part:
 
 
 class WireFit:
-    """Compares JSON data with the ROS types and the reads of events."""
+    """Comparison of JSON data with the ROS types and the reads of events."""
 
     def __init__(self, graph: rosgraph.RosGraph, types: RosTypes | None) -> None:
         """`types`: the definitions of ROS types; None: those of the environment."""
@@ -190,14 +190,14 @@ class WireFit:
         return self._types
 
     def wire_type(self, event: str, path: tuple[str, ...]) -> WireType | None:
-        """The type of a field, as ROS 2 or else ROS 1 defines it; None where it is unknown."""
+        """Return the type of a field in ROS 2 or else ROS 1; None if it is unknown."""
         found = (known.reached(*self._sections[event], path) for known in self.types.distributions)
         return next((reached[0] for reached in found if reached is not None), None)
 
     def fault(self, event: str, value: Any, *, is_message: bool = False) -> Fault | None:
-        """The first part of an event's data that its ROS type, or the model, does not take; None where all fit.
+        """Return a fault of the first part of an event's data that its ROS type or the model rejects, else None.
 
-        `is_message`: the data are the fields of the ROS message, without names of literals.
+        `is_message`: the data has the fields of the ROS message, without names of literals.
         """
         if event not in self._sections:
             return None
@@ -219,7 +219,7 @@ class WireFit:
         return None
 
     def set_part(self, event: str, value: Any, literal: Callable[[rosgraph.Conversion, Path], str]) -> str | None:
-        """The first part of an event's data that differs from a new message of its type; None where none does.
+        """Return the first part of an event's data that differs from a new message of its type, else None.
 
         `literal`: the name of the literal that a conversion makes of the data at a path in a new message.
         """
@@ -241,7 +241,7 @@ class WireFit:
         return None
 
     def _whole(self, event: str, value: Any, *, literals: bool = True) -> _Part:
-        """All data of an event; a lone value stands for the only field that is read, or that there is."""
+        """Return all data of an event; a lone value stands for the only field that is read, or that exists."""
         package, name, section = self._sections[event]
         kinds = tuple(_Kind(Nested(package, name), section, known) for known in self.types.distributions)
         reads = self._reads.get(event, ())
@@ -258,7 +258,7 @@ class WireFit:
 
 
 def _has_fitting_numbers(part: _Part) -> bool:
-    """Whether the part is a list of basic values that fit: a scan has many, and a log many scans."""
+    """Return whether the part is a list of basic values that fit: a scan has many, and a log has many scans."""
     elements = [kind.type.element for kind in part.kinds if isinstance(kind.type, Sequence)]
     wires = [element for element in elements if isinstance(element, Basic)]
     if not isinstance(part.value, list) or not wires or len(wires) < len(part.kinds):
@@ -267,7 +267,7 @@ def _has_fitting_numbers(part: _Part) -> bool:
 
 
 def _expected(part: _Part) -> str | None:
-    """The data that stands in place of a part; None where the part fits."""
+    """Return the expected data in place of a part; None if the part fits."""
     kinds = [kind for kind in part.kinds if kind.is_known]
     if kinds:
         expected = [_misfit(kind.type, part.value) for kind in kinds]
@@ -290,7 +290,7 @@ def _expected(part: _Part) -> str | None:
 
 
 def _misfit(wire: WireType, value: Any) -> str | None:
-    """The data that a type takes in place of a value; None where it takes the value."""
+    """Return the expected data in place of a value; None if the value fits the type."""
     match wire:
         case Nested():
             return None if isinstance(value, dict) else "an object"
@@ -299,7 +299,7 @@ def _misfit(wire: WireType, value: Any) -> str | None:
     kind = PRIMITIVES[wire.name].name if wire.name in PRIMITIVES else "string"
     plain: Any = {"boolean": bool, "integer": int, "double": int | float, "string": str}[kind]
     if kind == "double" and value is None:
-        return None  # an event log has null for what is no finite number
+        return None  # an event log has null for a number that is not finite
     if not isinstance(value, plain) or (isinstance(value, bool) and kind != "boolean"):
         return _CALLED[kind]
     if kind == "integer":
@@ -321,13 +321,13 @@ def _misfit_of_array(wire: Sequence, value: Any) -> str | None:
 
 
 def _initial(part: _Part) -> Iterator[Value]:
-    """The values of a part in a new message, as each distribution has it; zeros where they are unknown."""
+    """Yield the values of a part in a new message, as each distribution has it; zeros if they are unknown."""
     kinds = [kind.type for kind in part.kinds if isinstance(kind.type, Basic)]
     yield from (kind.initial for kind in kinds) if kinds else (False, 0, 0.0, "")
 
 
 def _same(value: Any, other: Value) -> bool:
-    """Whether a value of JSON is that of a field, up to the precision of a float32."""
+    """Return whether a value of JSON equals that of a field, up to the precision of a float32."""
     numbers = (int, float)
     if isinstance(value, numbers) and isinstance(other, numbers):
         return math.isclose(value, other, rel_tol=1e-6)
