@@ -1,4 +1,4 @@
-"""What a run of a controller has shown: which transitions were taken, and which guards were true, and which false."""
+"""Coverage of a run of a controller: transitions taken, and guards that were true and false."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ if TYPE_CHECKING:
 
     from robosc.engine import ControlLoop
 
-#: The events that the control loop asks for when it has settled, and when it settles.
+#: Roles of the events that the control loop evaluates when it has settled, and while it settles.
 _QUEUED, _SILENT = (en.Role.cancel, en.Role.trigger), en.Role.silent
 
 
 @dataclass(frozen=True)
 class Goal:
-    """Something to see: an event's guard that is true, or false; a transition that is taken (true).
+    """Coverage goal: an event's guard that is true or false, or a transition that is taken (true).
 
-    A transition `on … if …` is false where its event happens in its state and its condition does not hold. A guard may
-    be false for one `cause` alone: a condition that its requirements join with others by `and`, all of which hold.
+    A transition `on … if …` is false if its event happens in its state and its condition does not hold. A guard may be
+    false for one `cause` alone: one condition of a conjunction in its requirements, while all others hold.
     """
 
     of: sct.Event | sct.Edge
@@ -37,9 +37,9 @@ class Goal:
 
 
 def goals(loop: ControlLoop) -> list[Goal]:
-    """All that there may be to see: of each transition of the text, then of the guard of each event of the controller.
+    """Return all goals: of each transition of the text, then of the guard of each event of the controller.
 
-    A guard that is `true` as it stands has nothing to be false, and what would be chosen after it is never asked.
+    A guard that is literally `true` has no goal of being false. Later alternatives of such a choice have no goals.
     """
     found = []
     never_asked = {
@@ -63,7 +63,7 @@ def goals(loop: ControlLoop) -> list[Goal]:
 
 
 def causes(model: sct.SupervisoryControlModel, event: sct.Event) -> list[ex.Expression]:
-    """The conditions that the requirements on an event join by `and`; none where there is one."""
+    """Return the conditions that the requirements on an event join by `and`; none if there is only one."""
     supervisor = model.supervisor
     required = [guard.requirement for guard in supervisor.guards if guard.event is event] if supervisor else []
     pending, found = [condition for condition in required if condition is not None], []
@@ -77,7 +77,7 @@ def causes(model: sct.SupervisoryControlModel, event: sct.Event) -> list[ex.Expr
 
 
 class Watcher:
-    """What there is to see in one control loop: `before_event` before each event, `at_rest` after each call."""
+    """Observer of the goals in one control loop: `before_event` before each event, `at_rest` after each call."""
 
     def __init__(self, loop: ControlLoop) -> None:
         self._engine = loop.engine
@@ -94,12 +94,12 @@ class Watcher:
         self._seen_at_rest: dict[tuple[int, ...], frozenset[Goal]] = {}
 
     def before_event(self, event: str) -> Iterator[Goal]:
-        """What is seen as an enabled event happens, with the inputs that are set."""
+        """Yield the goals that an enabled event reaches as it happens, with the inputs that are set."""
         seen = [Goal(edge, taken) for edge, taken in self._transitions.tried(event)]
         yield from (goal for goal in [*seen, Goal(self._events[event])] if goal in self._goals)
 
     def at_rest(self) -> frozenset[Goal]:
-        """What is seen where the control loop has done what it can do at once: then it has asked all guards."""
+        """Return the goals reached when the control loop has settled: then it has evaluated all guards."""
         cells, _ = self._engine.saved
         if cells not in self._seen_at_rest:
             asked = [(event, self._engine.enabled(event)) for event in (*self._queued, *self._silent)]
@@ -107,13 +107,13 @@ class Watcher:
                 for event in alternatives:
                     asked.append((event, self._engine.enabled(event)))
                     if asked[-1][1]:
-                        break  # those that follow are not asked
+                        break  # later alternatives are not evaluated
             seen = [Goal(self._events[event], value) for event, value in asked]
             self._seen_at_rest[cells] = frozenset([*seen, *self._alone()])
         return self._seen_at_rest[cells]
 
     def _alone(self) -> Iterator[Goal]:
-        """The conditions that keep an event from happening for which the robot is ready, each by itself."""
+        """Yield the goals of conditions that alone forbid an event for which the robot is ready."""
         for event, conditions in self._causes.items():
             if self._engine.blocked_by(event) == Blocked.REQUIREMENT:
                 false = [condition for condition in conditions if not evaluate(condition, self._engine.read)]
@@ -123,26 +123,29 @@ class Watcher:
 
 @dataclass(frozen=True)
 class Coverage:
-    """What a trace has shown of a robot: all goals, those seen, and those that are known to be seen in no run."""
+    """Coverage of a robot by traces: all goals, those seen, and those known to be impossible in every run."""
 
     goals: tuple[Goal, ...]
     seen: frozenset[Goal]
     impossible: frozenset[Goal]
-    #: How often something came in, or time went by.
+    #: Number of incoming messages and waits.
     steps: int
 
     @property
     def missed(self) -> list[Goal]:
-        """What may be seen, and was not."""
+        """The goals that are possible but were not seen."""
         return [goal for goal in self.goals if goal not in self.seen and goal not in self.impossible]
 
     @property
     def transitions(self) -> tuple[int, int]:
-        """How many transitions were taken, of how many that may be."""
+        """The number of transitions taken, and of all possible ones."""
         return self._count(goal for goal in self.goals if isinstance(goal.of, sct.Edge) and goal.value)
 
     def guards(self, *, value: bool) -> tuple[int, int]:
-        """How many guards were true, or false, of how many that may be; of those of transitions only what is false."""
+        """Return the number of guards that were true, or false, and of all that may be.
+
+        Conditions of transitions count only if false.
+        """
         return self._count(
             goal for goal in self.goals if goal.value == value and (isinstance(goal.of, sct.Event) or not value)
         )
@@ -152,7 +155,7 @@ class Coverage:
         return sum(goal in self.seen for goal in possible), len(possible)
 
     def __str__(self) -> str:
-        """In words, such as `12 of 12 transitions, 9 of 9 guards true, 8 of 8 false, in 23 steps`."""
+        """Return the coverage, such as `12 of 12 transitions, 9 of 9 guards true, 8 of 8 false, in 23 steps`."""
         counts = [self.transitions, self.guards(value=True), self.guards(value=False)]
         taken, true, false = (f"{seen} of {possible}" for seen, possible in counts)
         return f"{taken} transitions, {true} guards true, {false} false, in {self.steps} steps"

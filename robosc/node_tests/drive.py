@@ -1,4 +1,4 @@
-"""A controller that runs in Python without ROS, with a robot that does what it is told, and a clock that is set."""
+"""Controller that runs in Python without ROS, with a simulated robot and a simulated clock."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ if TYPE_CHECKING:
     from robosc.ros_types import RosDistribution
     from robosc.runtime.core.clients import ActionClient, ServiceClient
 
-    #: Lets something come in; the fields of what it is, None where it has none.
+    #: Function that lets data come in and returns its fields, None if it has none.
     Act = Callable[[], "dict[str, Any] | None"]
 
 _Made = TypeVar("_Made", bound="DrivenController")
 
 _DAY = 24 * 3600 * 1000
-#: So many milliseconds after its time a timer has rung for sure.
+#: Milliseconds after its time at which a timer has certainly expired.
 _MARGIN = 1.01
 
 
 def parameters(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[str, bool | int]:
-    """With what a node is started for a test: every deadline is a multiple of the period, so that it falls on no tick.
+    """Return the parameters of a node under test. Every deadline is a multiple of the period, so none falls on a tick.
 
-    A robot whose topics are silent between two lines of a trace is not stopped.
+    The watchdog does not stop the robot when its topics are silent between two lines of a trace.
     """
     period = configuration.control_loop.period_ms
     declared = _defaults(graph, configuration)
@@ -55,7 +55,7 @@ def _defaults(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[st
 
 
 class _Lines(EventLog):
-    """Keeps the lines of a log."""
+    """Log that keeps its lines in memory."""
 
     active = True
 
@@ -68,18 +68,18 @@ class _Lines(EventLog):
 
 
 class DrivenController(Controller):
-    """A controller that can be asked for its times, and for what it can read."""
+    """Controller with access to its clients, its timers, and the readability of data."""
 
     def caller(self, service: rosgraph.ServiceClient) -> ServiceClient:
-        """The client that calls a service."""
+        """Return the client that calls a service."""
         return self._callers[service]
 
     def starter(self, action: rosgraph.ActionClient) -> ActionClient:
-        """The client that sends the goals of an action."""
+        """Return the client that sends the goals of an action."""
         return self._starters[action]
 
     def reads(self, receptions: Sequence[rosgraph.Reception], data: Any) -> bool:
-        """Whether what the transitions of the present state need of a message can be read."""
+        """Return whether the data of a message that the transitions of the present state need can be read."""
         try:
             for reception in receptions:
                 self._data.received(reception.event, reception.inputs, data)
@@ -89,18 +89,18 @@ class DrivenController(Controller):
 
     @property
     def pauses(self) -> bool:
-        """Whether it waits after a failure."""
+        """Whether the controller pauses after a failure."""
         return any(failure.pause is not None for failure in self._failures.values())
 
     @property
     def up(self) -> int | None:
-        """At how many milliseconds the next time is up; None where none runs."""
+        """The time of the next expiry in milliseconds; None if no timer runs."""
         timers = self._control.timers
         return None if timers.wait is None else timers.now + timers.wait
 
 
 class Drive:
-    """Runs of one controller, one after the other; what a run does is its trace, `_lines.kept`."""
+    """Runs of one controller, one after the other; `_lines.kept` is the trace of the present run."""
 
     _controller: DrivenController
 
@@ -110,11 +110,11 @@ class Drive:
         self._configuration = configuration
         self.parameters = parameters(graph, configuration)
         self._period = self.parameters["period_ms"] / 1000
-        #: What each event that comes in shows, and the messages to choose from; the events of one topic share it.
+        #: Reads and sample messages of each incoming event; the events of one topic share them.
         self.incoming: dict[sct.Event, Incoming] = all_incoming(graph, distribution)
 
     def _begin(self, kind: type[_Made]) -> _Made:
-        """Makes the controller of a new run, which is still to be started."""
+        """Create the controller of a new run, without starting it."""
         self._pace = Pace(self._period)
         self._now = START * self._period
         settings = Settings(_defaults(self._graph, self._configuration) | self.parameters, self._configuration)

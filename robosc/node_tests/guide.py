@@ -1,4 +1,4 @@
-"""Where in the supervised system there is something to see, and the shortest way there, by decision diagrams."""
+"""States of the supervised system in which goals are visible, and shortest paths to them, by decision diagrams."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 
 
 class Way(NamedTuple):
-    """The events of a way, with their inputs, and what can be seen at its end; no events: there is none."""
+    """Events of a path with their inputs, and the goals visible at its end; no events: there is no path."""
 
     events: list[tuple[str, dict[str, Value]]]
     goals: set[Goal]
 
 
 class Guide:
-    """The supervised system of a model; any event that is enabled in it may happen, also where a control loop waits.
+    """Supervised system of a model. Any enabled event may happen, even if a control loop would wait.
 
-    `data` are the inputs that each event that comes in may have.
+    `data` are the possible inputs of each incoming event.
     """
 
     def __init__(
@@ -48,13 +48,13 @@ class Guide:
 
     @property
     def possible(self) -> set[Goal]:
-        """The goals for which there is a reachable state."""
+        """The goals that some reachable state shows."""
         return set(self._where)
 
     def way(self, codes: Mapping[sct.Plant | sct.DiscreteVariable, int], wanted: Iterable[Goal]) -> Way:
-        """A shortest way from a state to another where something wanted can be seen.
+        """Return a shortest path from a state to another in which a wanted goal is visible.
 
-        What could be seen in the state at hand, and was not, is not looked for.
+        Goals that are visible in the present state, and were not seen, are not searched for.
         """
         here = dict.fromkeys((domain.element for domain in self._encoding.layout.state), 0) | dict(codes)
         known = {goal: self._where[goal] for goal in wanted if goal in self._where}
@@ -66,7 +66,7 @@ class Guide:
         return Way(events, {goal for goal, states in known.items() if self._system.is_in(path.states[-1], states)})
 
     def _states(self, goal: Goal) -> Diagram:
-        """Where a goal can be seen: what comes in, and what is sent, waits until silent events have come to rest."""
+        """Return the states that show a goal. Incoming and outgoing events wait until no silent event is enabled."""
         all_of, allowed = self._encoding.diagrams.all_of, self._system.allowed
         event = goal.of if isinstance(goal.of, sct.Event) else goal.of.event
         silent = event.kind in (*SILENT, sct.EventKind.data)
@@ -84,7 +84,7 @@ class Guide:
         return some & self._encoding.source(goal.of) & all_of([allowed[event], *at_rest])
 
     def _with_some_data(self, event: sct.Event, condition: Diagram) -> Diagram:
-        """The states in which a condition holds with some data that the event may have."""
+        """Return the states in which a condition holds with some possible data of the event."""
         if not event.inputs:
             return condition
         levels = [level for given in event.inputs for level in self._encoding.layout.domains[given].levels]
@@ -103,13 +103,13 @@ def _code(given: sct.Input, value: Value) -> int:
 
 
 def tried_before(edge: sct.Edge) -> list[sct.Edge]:
-    """The transitions that are tried before one that leaves the same location with the same event."""
+    """Return the transitions that are tried before this one, with the same event from the same location."""
     alternatives = [other for other in edge.eContainer().edges if other.event is edge.event]
     return alternatives[: alternatives.index(edge)]
 
 
 def earlier(event: sct.Event) -> list[sct.Event]:
-    """Of an event that chooses data those that are asked before it."""
+    """Return the alternatives that are evaluated before an event that chooses data; empty for other events."""
     if event.kind != sct.EventKind.data:
         return []
     alternatives = [other for other in plant_of(event).events if other.kind == sct.EventKind.data]

@@ -1,4 +1,4 @@
-"""Data of ROS as a walk plays it: objects with the fields that the model knows."""
+"""ROS data of simulated robots: objects with the fields that the model knows."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
     from robosc.ros_types import RosDistribution, WireType
 
 
-#: Elements of an array that a walk makes at most.
+#: Maximum number of elements of an array in a created message.
 LONGEST = 10_000
-#: Elements that it tries of an array of which all may be read.
+#: Number of elements to try of an array of which all may be read.
 _ELEMENTS = 3
 #: Names of fields and positions in arrays, from the outside inwards.
 Path = tuple[str, ...]
-#: Basic data; of an object that is handed on nothing is known.
+#: Basic data; a forwarded object is `{}`.
 Leaf = bool | int | float | str | dict[str, None]
 
-#: The widest type of ROS, and the value of a field without a declared default.
+#: Widest type of ROS, and the value of a field without a declared default.
 _ZEROS: dict[type[ex.Type], tuple[str, Leaf]] = {
     ex.BooleanType: ("bool", False),
     ex.IntegerType: ("int64", 0),
@@ -39,7 +39,7 @@ _ZEROS: dict[type[ex.Type], tuple[str, Leaf]] = {
 
 
 class Record(SimpleNamespace):
-    """An object of ROS; `wire_types`, of its fields, make none another one."""
+    """Object of ROS. Comparisons ignore `wire_types`, the types of its fields."""
 
     __hash__ = None
 
@@ -49,9 +49,9 @@ class Record(SimpleNamespace):
 
 @dataclass(frozen=True)
 class Field:
-    """A field that the model reads or sets: its type in the model, and in ROS as far as that is known.
+    """Field that the model reads or sets: its type in the model, and its type in ROS if that is known.
 
-    `initial`: its value in a new message of ROS; None where that is unknown. `length`: of an array of a fixed length.
+    `initial`: its value in a new message of ROS, None if unknown. `length`: the length of an array of fixed length.
     """
 
     type: ex.Type
@@ -61,7 +61,7 @@ class Field:
 
     @property
     def default(self) -> Any:
-        """Its value in a new message."""
+        """The value of the field in a new message."""
         if isinstance(self.type, rosgraph.ObjectType):
             return Record(wire_types={})
         if isinstance(self.type, rosgraph.ArrayType):
@@ -81,14 +81,14 @@ class Field:
 
 @dataclass(frozen=True)
 class Definition:
-    """A section of a ROS type, as one of the two ROS defines it."""
+    """Section of a ROS type, as one of the two ROS versions defines it."""
 
     distribution: RosDistribution
     interface: rosgraph.Interface
     section: Section
 
     def field(self, path: Path, kind: ex.Type) -> Field:
-        """The field at the end of a path, of a type in the model."""
+        """Return the field at the end of a path, of a type in the model."""
         found = self._reached(path)
         length = found.length if isinstance(found, Sequence) else None
         if isinstance(kind, rosgraph.ArrayType):
@@ -99,7 +99,7 @@ class Definition:
         return Field(kind, found.name, float(found.initial) if is_double else found.initial, length)
 
     def initial(self, fields: Mapping[Path, Field]) -> dict[Path, Leaf]:
-        """The elements of arrays in a new message: of those that have a fixed length or a default."""
+        """Return the elements of arrays in a new message, if they have a fixed length or a default."""
         found: dict[Path, Leaf] = {}
         for path, field in fields.items():
             for way in self._ways(path):
@@ -109,7 +109,7 @@ class Definition:
         return found
 
     def _ways(self, path: Path, before: Path = ()) -> Iterator[Path]:
-        """The path, with each index that a new message has in place of each index."""
+        """Yield the path with its indices replaced by each combination of indices of a new message."""
         if not path:
             yield before
         elif not path[0].isdigit():
@@ -124,7 +124,7 @@ class Definition:
 
 
 def data_read(reads: Iterable[tuple[Path, Read]], prefix: Path = ()) -> Iterator[tuple[Path, ex.Type]]:
-    """All data in a message that is read, also by conversions; repeated where it is read again."""
+    """Yield all data of a message that is read, also by conversions; repeated if it is read again."""
     for general, read in reads:
         for path in _some(general, _ends(read.reference)):
             if read.conversion is not None:
@@ -134,14 +134,14 @@ def data_read(reads: Iterable[tuple[Path, Read]], prefix: Path = ()) -> Iterator
 
 
 def _some(path: Path, ends: Iterable[int]) -> Iterator[Path]:
-    """The path, or those to the first elements and these where it may go to any."""
+    """Yield the path, or, if it leads to any element, the paths to the first elements and to `ends`."""
     elements = sorted({*range(_ELEMENTS), *ends})
     choices = [elements if step == EACH else [step] for step in path]
     yield from (tuple(map(str, chosen)) for chosen in product(*choices))
 
 
 def _ends(read: ex.Expression) -> Iterator[int]:
-    """Where slices of what is read begin and end, as far as that is constant."""
+    """Yield the constant bounds of slices in a read."""
     access: ex.Expression | None = read.argument if isinstance(read, rosgraph.ConversionCall) else read
     while isinstance(access, rosgraph.WireAccess):
         for step in access.steps:
@@ -152,9 +152,9 @@ def _ends(read: ex.Expression) -> Iterator[int]:
 
 
 def message(fields: Mapping[Path, Field], values: Mapping[Path, Leaf]) -> Any:
-    """Data with these values, defaults elsewhere; an array is as long as the last element with a value wants it.
+    """Return data with these values and defaults elsewhere; an array ends at the last element with a value.
 
-    Elements from `LONGEST` on are left out: what reads them can't.
+    Elements from `LONGEST` on are left out; their reads fail.
     """
     heads = list(dict.fromkeys(path[0] for path in fields if path))
     if () in fields and not heads:
@@ -176,7 +176,7 @@ def message(fields: Mapping[Path, Field], values: Mapping[Path, Leaf]) -> Any:
 def new_object(
     distribution: RosDistribution, interface: rosgraph.Interface, section: Section, path: Iterable[str]
 ) -> Any:
-    """The object at a path in new data of a type; one of which every field is zero where the type is unknown."""
+    """Return the object at a path in new data of a type; if the type is unknown, all its fields are zero."""
     reached = distribution.reached(interface.package, interface.type, section, path)
     if reached is None or not isinstance(reached[0], Nested):
         return BLANK
@@ -198,12 +198,12 @@ def _new(kind: WireType, section: Section, distribution: RosDistribution) -> Any
         return BLANK
     made = {name: _new(field, Section.MESSAGE, distribution) for name, field in fields.items()}
     if str(kind) == "geometry_msgs/Quaternion":
-        made["w"] = 1.0  # nodes make it one in ROS 1, too
+        made["w"] = 1.0  # nodes set it in ROS 1, too
     return Record(**made, wire_types={name: str(field) for name, field in fields.items()})
 
 
 def leaf_values(fields: Any, path: Path = ()) -> dict[Path, Leaf]:
-    """The values in nested fields by their paths; an element of an array without fields is one."""
+    """Return the values in nested fields by their paths; an array element without fields is a value."""
     if isinstance(fields, list):
         fields = {str(index): inner for index, inner in enumerate(fields)}
     if not isinstance(fields, dict) or (not fields and path and path[-1].isdigit()):
@@ -215,12 +215,12 @@ def leaf_values(fields: Any, path: Path = ()) -> dict[Path, Leaf]:
 
 
 def _whole(value: Leaf | None, field: Field) -> Any:
-    """A value as ROS has it: of an object nothing is known; what is not given is the default."""
+    """Return a value as ROS has it: the default for objects and for missing values."""
     return field.default if value is None or isinstance(value, dict) else value
 
 
 def fields_sent(assignment: rosgraph.FieldAssignment) -> Iterator[tuple[Path, ex.Type]]:
-    """The fields that data to be sent has as it sets one: of an object that is handed on all that are known of it."""
+    """Yield the fields of data to be sent that an assignment sets, with all known fields of a forwarded object."""
     path, value = tuple(assignment.path), assignment.value
     yield path, assignment.type
     if isinstance(value, rosgraph.WireAccess) and value.variable and isinstance(assignment.type, rosgraph.ObjectType):
@@ -230,7 +230,7 @@ def fields_sent(assignment: rosgraph.FieldAssignment) -> Iterator[tuple[Path, ex
 
 
 def _wire_type(fields: Mapping[Path, Field]) -> str:
-    """The type of what has these fields, or elements."""
+    """Return the type of an object with these fields, or of an array with these elements."""
     if () in fields:
         return fields[()].wire_type
     element = next((path[0] for path in fields if path[0].isdigit()), None)

@@ -1,4 +1,4 @@
-"""What may come in next, what a control loop makes of it, and where a tour goes therefore."""
+"""Planner of tours: possible inputs, the effects in a control loop, and the route that reaches the goals."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ if TYPE_CHECKING:
     from robosc.engine.state import Value
     from robosc.synthesis.encoding import Encoding
 
-#: Where there are no more steps all are looked at.
+#: Maximum number of steps to explore; below it, all places are explored.
 _ALL = 12_000
-#: So often a tour is planned, each time with other choices between what is as near: with all places known, and without.
+#: Number of randomized attempts to plan a tour: exhaustive, and guided.
 _PLANS, _GUIDED = 10, 5
-#: So long may the way be that takes the place of a part of a tour.
+#: Maximum length in steps of a path that replaces a part of a tour.
 _DETOUR = 4
-#: So many ways that lead to where something can be seen may not show it.
+#: Give a goal up after this many paths that missed it.
 _IN_VAIN = 4
 
 
 class _Way(NamedTuple):
-    """Steps that follow each other, and what they show together."""
+    """Consecutive steps, and the goals that they show together, as bits."""
 
     steps: tuple[Step, ...]
     shows: int
@@ -51,14 +51,14 @@ class _Known:
 
 @dataclass
 class Plan:
-    """The places of one model's control loop, looked at as they are needed, and tours through them."""
+    """Places of one model's control loop, explored on demand, and tours through them."""
 
     model: sct.SupervisoryControlModel
     settings: Settings
     stimuli: Sequence[Stimulus]
-    #: No time that is longer, in milliseconds, is waited for.
+    #: Longest time to wait for, in milliseconds.
     longest: int
-    #: How long a period is, and the pause after a failure, in milliseconds.
+    #: Duration of a period, and of the pause after a failure, in milliseconds.
     period: int
     pause: int
     _known: dict[Place, _Known] = field(default_factory=dict)
@@ -67,9 +67,9 @@ class Plan:
     def __post_init__(self) -> None:
         self._loop = ControlLoop(self.model, self.settings, Hooks(self._before))
         self._watcher = Watcher(self._loop)
-        #: All that there may be to see.
+        #: All coverage goals.
         self.goals = goals(self._loop)
-        #: The bit of each of them.
+        #: Bit of each goal.
         self.bits = {goal: 1 << number for number, goal in enumerate(self.goals)}
         self._at_rest: dict[tuple[int, ...], int] = {}
         resets = [event for plant in self.model.plants for event in plant.events if event.kind == sct.EventKind.reset]
@@ -79,7 +79,7 @@ class Plan:
         self._shown = self._anywhere = 0
 
     def is_like(self, other: Plan) -> bool:
-        """Whether tours from the same place that show the same are planned as by another plan."""
+        """Return whether another plan would plan the same tours from the same place and coverage."""
         ours, others = (
             (id(plan.model), plan.settings, tuple(plan.stimuli), plan.longest, plan.period, plan.pause)
             for plan in (self, other)
@@ -96,7 +96,7 @@ class Plan:
         return reduce(or_, (self.bits[goal] for goal in seen), 0)
 
     def place(self, saved: SavedLoop, *, pauses: bool) -> Place:
-        """The place of a loop; it is looked at from there on."""
+        """Return the place of a loop, and remember its saved state for exploration."""
         now, up = saved.timers
         left = tuple(-((now - up[number]) // self.period) for number in sorted(up)) if self._time_passes else ()
         found = Place(saved.cells, frozenset(up), pauses, left)
@@ -105,19 +105,19 @@ class Plan:
 
     @property
     def places(self) -> list[Place]:
-        """The places that are known, in the order in which they were come to."""
+        """The known places, in the order of their discovery."""
         return list(self._known)
 
     @cached_property
     def possible(self) -> set[Goal]:
-        """What can be seen: from the first place that was asked for on, else in the supervised system."""
+        """The goals that can be seen: from the first known place on, else in the supervised system."""
         if self.is_whole:
             return {goal for goal in self.goals if self.bits[goal] & self._anywhere}
         return encoded(self.model, lambda encoding: self._guide(encoding).possible)
 
     @cached_property
     def is_whole(self) -> bool:
-        """Whether there are so few places that all of them were looked at."""
+        """Whether there are so few places that all of them were explored."""
         pending = list(self._known)
         seen = set(pending)
         while pending and len(seen) * len(self.stimuli) < _ALL:
@@ -129,7 +129,7 @@ class Plan:
         return not pending
 
     def steps(self, place: Place) -> list[Step]:
-        """All steps from a place that lead to another one or show something."""
+        """Return all steps from a place that lead to another one or show a goal."""
         known = self._known[place]
         if known.steps is None:
             found = (self._step(place, known.saved, stimulus) for stimulus in self.stimuli)
@@ -142,7 +142,7 @@ class Plan:
         self._pauses, self._shown = place.pauses, 0
         if stimulus.events:
             if place.pauses or not all(loop.enabled(event) for event, _ in stimulus.events):
-                return None  # while a failure is waited for nothing else comes in
+                return None  # nothing comes in during the pause after a failure
             loop.begin()
             for event, inputs in stimulus.events:
                 loop.perform(event, dict(inputs))
@@ -167,7 +167,7 @@ class Plan:
         return Step(stimulus, self.place(self._loop.saved, pauses=self._pauses), self._shown)
 
     def _pass_period(self) -> None:
-        """Lets a tick come; where time counts, after a period, with the times that are up on the way."""
+        """Run a tick; if time counts, after a period, with the timers that expire on the way."""
         loop = self._loop
         if self._time_passes:
             end = loop.timers.now + self.period
@@ -188,9 +188,9 @@ class Plan:
     # Tours
 
     def tour(self, start: Place, shown: AbstractSet[Goal]) -> list[Step]:
-        """A short way from a start on that shows what can be shown and was not, as far as it is found.
+        """Return a short path from a start that shows goals that can be shown and were not, as far as it is found.
 
-        Where there are too many places to look at all of them, decision diagrams say where to go.
+        If there are too many places to explore, decision diagrams guide the search.
         """
         wanted = self._mask(self.possible - shown)
         if not self.is_whole and not self._time_passes:
@@ -212,7 +212,7 @@ class Plan:
         return self._shortened(start, tour, wanted, _DETOUR)
 
     def _way_to_any(self, start: Place, wanted: int, choice: random.Random) -> list[Step]:
-        """The shortest way to something wanted; of several by chance one that shows much."""
+        """Return the shortest path to a wanted goal; among several, favor one that shows many, with some randomness."""
         ways: dict[Place, list[Step]] = {start: []}
         layer = [start]
         while layer:
@@ -236,11 +236,11 @@ class Plan:
         return [self._guided(start, wanted, guide, choice) for choice in _choices(_GUIDED)]
 
     def _guided(self, start: Place, wanted: int, guide: Guide, choice: random.Random) -> list[Step]:
-        """Takes each time the step that shows the most, else the way that the supervised system has to what is left."""
+        """Repeat the step that shows the most goals, else follow the supervised system's path to a missing goal."""
         tour: list[Step] = []
         left, here, in_vain = wanted, start, Counter[Goal]()
         while left:
-            # Times first: some are up only before anything has come in.
+            # Timers first: some expire only before anything has come in.
             showing = [step for step in self.steps(here) if step.shows & left]
             if showing:
                 much = [(step.stimulus == WAIT, (step.shows & left).bit_count(), choice.random()) for step in showing]
@@ -268,7 +268,7 @@ class Plan:
         return self._loop.engine.codes
 
     def _timed(self, here: Place, wanted: Iterable[Goal]) -> Way | None:
-        """The wait for something that is seen when a time is up that runs."""
+        """Return the wait for a goal that is seen when a running timer expires."""
         for goal in wanted:
             event = event_name(goal.of.event) if isinstance(goal.of, sct.Edge) else ""
             if self._timers.get(event) in here.running:
@@ -276,18 +276,18 @@ class Plan:
         return None
 
     def _followed(self, start: Place, events: Iterable[tuple[str, dict[str, Value]]], wanted: int) -> list[Step]:
-        """The steps that bring events about, or others like them, until something is seen that is wanted."""
+        """Return steps that cause these events, or similar ones, until a wanted goal is seen."""
         way: list[Step] = []
         for event, inputs in events:
             for _ in range(1 + len(self._timers)):
                 here = way[-1].end if way else start
                 like = [step for step in self.steps(here) if self._is(step.stimulus, event)]
-                if like:  # else it is the controller's own, or not possible now
+                if like:  # else the controller performs it itself, or it is not possible now
                     way.append(min(like, key=lambda step: (_unlike(step.stimulus, event, inputs), step.stimulus.name)))
                 if _together(way) & wanted:
                     return way
                 if not like or self._timers.get(event) not in way[-1].end.running:
-                    break  # else another time was up before this one
+                    break  # else another timer expired before this one
         return way
 
     def _is(self, stimulus: Stimulus, event: str) -> bool:
@@ -296,7 +296,7 @@ class Plan:
         return event in dict(stimulus.events)
 
     def _shortened(self, start: Place, tour: list[Step], wanted: int, detour: int) -> list[Step]:
-        """The tour without detours: a part is left out, or a shorter way taken, where nothing is missed then."""
+        """Remove detours from the tour: leave out a part, or take a shorter path, if no goal is lost."""
         improved = True
         while improved:
             improved = False
@@ -319,9 +319,9 @@ class Plan:
         return tour
 
     def _ways(self, start: Place, longest: int) -> dict[Place, list[_Way]]:
-        """Ways of at most so many steps to all places, the short ones first; each shows what none before it does.
+        """Return paths of at most `longest` steps to all places, shortest first; each shows more than those before it.
 
-        They are kept where all places were looked at: each of many tours asks for them.
+        The result is cached if all places were explored, since many tours request it.
         """
         if (found := self._found.get(start)) is not None:
             return found
@@ -345,11 +345,11 @@ class Plan:
 
 
 def _choices(number: int) -> list[random.Random]:
-    return [random.Random(seed) for seed in range(number)]  # noqa: S311 - the same each time, and nothing is secret
+    return [random.Random(seed) for seed in range(number)]  # noqa: S311 - reproducible, and nothing is secret
 
 
 def _unlike(stimulus: Stimulus, event: str, inputs: Mapping[str, Value]) -> int:
-    """How many inputs of the event it has otherwise."""
+    """Return how many inputs of the event differ in a stimulus."""
     given = dict(dict(stimulus.events).get(event, ()))
     return sum(given.get(name) != value for name, value in inputs.items())
 
@@ -359,7 +359,7 @@ def _together(steps: Iterable[Step]) -> int:
 
 
 def _running(steps: Sequence[Step]) -> list[int]:
-    """What the first steps show, none of them, one, and so on."""
+    """Return the goals shown by each prefix of the steps, from the empty one on."""
     shown = [0]
     for step in steps:
         shown.append(shown[-1] | step.shows)

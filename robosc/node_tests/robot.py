@@ -1,4 +1,4 @@
-"""The robot of a walk: everything that the controller is connected to, without any ROS."""
+"""Simulated robot of a test: everything that the controller is connected to, without ROS."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 @dataclass
 class RunningGoal:
-    """A goal that the robot works on. It goes on where it is to be canceled, until its end is played.
+    """Goal that the robot works on. After a cancel request it goes on until its end is played.
 
     `is_asked`: a request to cancel it waits for an answer. `sent`: its time in seconds. `accepted`: the time at which
-    the robot showed first that it had accepted the goal, None before that.
+    the robot first showed that it had accepted the goal, None before that.
     """
 
     handlers: GoalHandlers
@@ -31,11 +31,11 @@ class RunningGoal:
     accepted: float | None = None
 
     def cancel(self) -> None:
-        """Take the request; the goal has not ended."""
+        """Note a request to cancel; the goal has not ended."""
         self.is_asked = True
 
     def is_canceling(self) -> bool:
-        """Return False: an end that is played is the end."""
+        """Return False: a played end is final."""
         return False
 
     def is_gone(self) -> bool:
@@ -44,7 +44,7 @@ class RunningGoal:
 
 
 class Robot:
-    """A port (`robosc.runtime.core.port.ControllerPort`) whose servers are there and wait to be told what to answer."""
+    """Port (`robosc.runtime.core.port.ControllerPort`) with available servers whose answers the test plays."""
 
     def __init__(
         self,
@@ -54,7 +54,7 @@ class Robot:
         incoming: Mapping[sct.Event, Incoming],
     ) -> None:
         self.now = clock
-        #: The calls that wait, each since when.
+        #: Pending calls, each with its start time.
         self.calls: dict[rosgraph.ServiceClient, tuple[float, CallHandlers]] = {}
         self.goals: dict[rosgraph.ActionClient, RunningGoal] = {}
         self._distribution = distribution
@@ -77,21 +77,21 @@ class Robot:
             for path, kind in fields_sent(field):
                 fields[path] = definition.field(path, kind)
 
-    # What the controller asks
+    # Calls of the controller
 
     def hear(self) -> None:
         """Do nothing: the robot's messages are handled at once."""
 
     def create(self, interface: rosgraph.Interface, section: Section) -> Message:
-        """Data with the fields that the model sets, or reads where a goal ended without a result."""
+        """Return data with the fields that the model sets, or reads after a goal ended without a result."""
         return message(self._fields[interface, section], {}) if self._fields[interface, section] else None
 
     def unset(self, interface: rosgraph.Interface, section: Section, path: Sequence[str]) -> Message:
-        """An object before anything is stored in it, of what is known of its type."""
+        """Return an object before anything is stored in it, with the known fields of its type."""
         return new_object(self._distribution, interface, section, path)
 
     def wire_types(self, owner: Message) -> Mapping[str, str]:
-        """The types of the fields that the model sets."""
+        """Return the types of the fields that the model sets."""
         types: Mapping[str, str] = owner.wire_types
         return types
 
@@ -99,24 +99,24 @@ class Robot:
         """Do nothing: no test reads the header."""
 
     def type_name(self, interface: rosgraph.Interface) -> str:
-        """A type's name."""
+        """Return the name of a type."""
         return f"{interface.package}/{interface.type}"
 
     def publish(self, publisher: rosgraph.Publisher, message: Message) -> None:
-        """The log tells what was sent."""
+        """Do nothing: the log records the message."""
 
     def is_served(self, client: rosgraph.ServiceClient | rosgraph.ActionClient) -> bool:
-        """All servers are there."""
+        """Return True: all servers are available."""
         del client
         return True
 
     def call(self, client: rosgraph.ServiceClient, request: Message, handlers: CallHandlers) -> None:
-        """A call, which waits for its answer."""
+        """Keep the call until its answer is played."""
         del request
         self.calls[client] = (self.now(), handlers)
 
     def send_goal(self, client: rosgraph.ActionClient, goal: Message, handlers: GoalHandlers) -> RunningGoal:
-        """A goal, which is accepted."""
+        """Accept a goal and keep it until its end is played."""
         del goal
         self.goals[client] = RunningGoal(handlers, sent=self.now())
         handlers.accepted()
@@ -126,7 +126,7 @@ class Robot:
         """Do nothing: no test reads reports."""
 
     def report_listeners(self, name: str) -> int:
-        """Do nothing: no test reads reports."""
+        """Return 0: no test reads reports."""
         del name
         return 0
 
@@ -134,11 +134,11 @@ class Robot:
         """Do nothing: no test reads statuses."""
 
     def status_listeners(self) -> int:
-        """Do nothing: no test reads statuses."""
+        """Return 0: no test reads statuses."""
         return 0
 
     def serving_nodes(self, client: rosgraph.ServiceClient | rosgraph.ActionClient) -> list[tuple[str, str]]:  # noqa: ARG002  # a trace has no other nodes
-        """No other nodes."""
+        """Return nothing: there is no other node."""
         return []
 
     def endpoints(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:

@@ -1,4 +1,4 @@
-"""Messages that mean something else to a node, found by trying."""
+"""Sample messages with different meanings for a node, found by random search."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ if TYPE_CHECKING:
     from robosc.metamodel import sct
     from robosc.ros_types import RosDistribution, Section
 
-#: So many messages are tried in vain before no more are looked for.
+#: Number of trials without a new sample after which the search ends.
 _TRIALS = 500
 _KEPT = 4
 _SEED = 1
-#: So many classes are told apart at most.
+#: Maximum number of classes.
 _CLASSES = 64
 
 
 @dataclass(frozen=True)
 class Read:
-    """A value of a message in the event log: as it is, or after a conversion."""
+    """Value of a message in the event log: unchanged, or after a conversion."""
 
     path: Path
     conversion: rosgraph.Conversion | None
@@ -48,7 +48,7 @@ class Read:
 
 @dataclass
 class Class:
-    """Messages that mean the same: literals that the conversions make of them, and events with equal inputs."""
+    """Messages with the same meaning: equal literals of the conversions, and events with equal inputs."""
 
     literals: tuple[str, ...]
     events: tuple[tuple[str, tuple[tuple[str, Any], ...]], ...]
@@ -57,27 +57,27 @@ class Class:
 
 @dataclass
 class Incoming:
-    """One kind of data that comes in: what each of its events shows of it, all that is read, and messages to send.
+    """Kind of incoming data: its events with their logged reads, all fields read, and sample messages.
 
-    `samples`: by the literals that the conversions make of a message, in the order of the events, some messages.
-    `classes`: those that can be read whole, by all that the supervisor is told of them.
+    `samples`: some messages for each tuple of literals that the conversions make of them, in the order of the events.
+    `classes`: fully readable messages, grouped by the inputs of the supervisor.
     """
 
     events: list[tuple[str, list[Read]]]
     fields: dict[Path, Field]
-    #: The events that a message may not be, since elements of arrays that they need may not be there.
+    #: Events that a message may not cause, since array elements that they need may be missing.
     unreadable: set[str]
     samples: dict[tuple[str, ...], list[dict[Path, Leaf]]] = field(default_factory=dict)
     classes: list[Class] = field(default_factory=list)
-    #: The elements of arrays that a new message has.
+    #: Elements of arrays that a new message has.
     initial: dict[Path, Leaf] = field(default_factory=dict)
 
     def message(self, values: Mapping[Path, Leaf]) -> Any:
-        """Data with these values, and the defaults of ROS elsewhere."""
+        """Return data with these values, and the defaults of ROS elsewhere."""
         return message(self.fields, {**self.initial, **values})
 
     def defaults(self, values: Mapping[Path, Leaf]) -> dict[Path, Leaf]:
-        """The other fields whose default is not zero, `false` or empty."""
+        """Return the other fields whose default is not zero, `false` or empty."""
         found: dict[Path, Leaf] = {}
         for path, known in self.fields.items():
             if known.initial:
@@ -92,12 +92,12 @@ class Incoming:
 
     @property
     def direct(self) -> list[Path]:
-        """The paths of the values that the log shows as they are."""
+        """The paths of the values that the log shows unchanged."""
         return list(dict.fromkeys(read.path for _, shown in self.events for read in shown if read.conversion is None))
 
 
 class Values:
-    """Values to try: those around all constants that the models compare with."""
+    """Values to try: those around all constants in comparisons of the models."""
 
     def __init__(self, graph: rosgraph.RosGraph) -> None:
         elements = [element for root in (graph, graph.model) for _, element in tree(root)]
@@ -110,7 +110,7 @@ class Values:
         self._doubles = sorted({near for value in (0.0, 1.0, *doubles) for near in _around(value)})
 
     def of(self, field: Field) -> list[Leaf]:
-        """Values that a field can hold, in ROS exactly as here."""
+        """Return values that a field can hold exactly in ROS."""
         match field.type:
             case ex.BooleanType():
                 return [False, True]
@@ -127,7 +127,7 @@ class Values:
 
 
 def _around(value: float) -> tuple[float, ...]:
-    """The value, and near it on both sides numbers that a float32 holds."""
+    """Return the value, and numbers near it on both sides that a float32 holds."""
     if not math.isfinite(value) or abs(value) > 1e6:
         return ()
     below, above = math.ceil(value * 8 - 1) / 8, math.floor(value * 8 + 1) / 8
@@ -145,7 +145,7 @@ def _bounds(field: Field) -> tuple[int, int]:
 
 
 def _along(path: Path, other: Path) -> Path | None:
-    """The path with the indices of another one that leads through the same arrays; None where it does not."""
+    """Return the path with the indices of another one through the same arrays; None if there are others."""
     last = max(number for number, step in enumerate(path) if step.isdigit())
     if len(other) <= last or any(
         ours != theirs and not (ours.isdigit() and theirs.isdigit())
@@ -161,7 +161,7 @@ def incoming(
     part: Section,
     receptions: Sequence[tuple[str, messages.Shown, Collection[ex.Expression], Collection[tuple[Path, messages.Read]]]],
 ) -> Incoming:
-    """One kind of message that comes in: its events, with the values that the log shows and that are read."""
+    """Return one kind of incoming message: its events with their logged values, and the fields that are read."""
     definition = Definition(distribution, interface, part)
     fields: dict[Path, Field] = {}
     events = []
@@ -183,7 +183,7 @@ def incoming(
 
 
 def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dict[sct.Event, Incoming]:
-    """Return the messages to choose from for each event that comes in; the events of one topic share them."""
+    """Return the messages to choose from for each incoming event; the events of one topic share them."""
     data = NodeData(graph, Engine(graph.model))
     data.reason = Failure.ABORTED
     values, kept = Values(graph), list(messages.kept_reads(graph))
@@ -204,7 +204,7 @@ def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dic
 
 
 def _read_by_error(response: rosgraph.Reception, data: NodeData) -> Iterator[tuple[Path, messages.Read]]:
-    """Data that the error of an action reads of a result: one that can't be read as a response is an error."""
+    """Yield data of a result that the error of an action reads: a response that can't be read is an error."""
     client = response.eContainer()
     if isinstance(client, rosgraph.ActionClient) and client.response is response:
         values = [assigned.value for assigned in client.error.inputs]
@@ -212,8 +212,8 @@ def _read_by_error(response: rosgraph.Reception, data: NodeData) -> Iterator[tup
 
 
 def _find_samples(kind: Incoming, values: Values, data: NodeData, receptions: Sequence[rosgraph.Reception]) -> None:
-    """Fills in `samples` and `classes`: tries messages until each has some of all there are, or enough were tried."""
-    choice = random.Random(_SEED)  # noqa: S311  # the same each time
+    """Fill in `samples` and `classes`: try messages until no new ones appear within a number of trials."""
+    choice = random.Random(_SEED)  # noqa: S311  # reproducible
     pools = {path: values.of(field) for path, field in kind.fields.items()}
     paths = [path for path in pools if pools[path]]
     conversions = kind.conversions
@@ -241,7 +241,7 @@ def _find_samples(kind: Incoming, values: Values, data: NodeData, receptions: Se
 def _events(
     receptions: Sequence[rosgraph.Reception], made: Any, data: NodeData
 ) -> tuple[tuple[str, tuple[tuple[str, Any], ...]], ...] | None:
-    """The inputs of the supervisor from a message; None where some of them can't be read."""
+    """Return the inputs of the supervisor from a message; None if some of them can't be read."""
     events = []
     try:
         for reception in receptions:
@@ -263,7 +263,7 @@ def _tried(
     pools: Mapping[Path, Sequence[Leaf]],
     seen: Sequence[dict[Path, Leaf]],
 ) -> dict[Path, Leaf]:
-    """A message: all fields at one place of their pools, each at random, or a few others than in one that was kept."""
+    """Return a message: all fields at one place of their pools, each at random, or a kept one with a few changes."""
     if not paths:
         return {}
     place = choice.random()
@@ -282,7 +282,7 @@ def _tried(
 
 
 def shortened(values: Mapping[Path, Leaf], choice: random.Random) -> dict[Path, Leaf]:
-    """Some of the values: an array may be too short."""
+    """Return some of the values, so that an array may be too short."""
     return dict(islice(values.items(), choice.randrange(len(values) + 1)))
 
 

@@ -1,4 +1,4 @@
-"""What a plan is made of: what may come in, where a control loop is, and the steps between."""
+"""Elements of a plan: stimuli, places of a control loop, and steps between them."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Stimulus:
-    """Something that comes in: a batch of events with their inputs. Without events: time goes by.
+    """Stimulus of a control loop: a batch of incoming events with their inputs, or a wait (no events).
 
-    Until the next time is up, that is, or the pause after a failure is over.
+    A wait ends when the next timer expires, or with the pause after a failure.
     """
 
     name: str
@@ -25,21 +25,21 @@ WAIT = Stimulus("wait")
 
 
 class Place(NamedTuple):
-    """Where a loop is, as far as a plan tells places apart: its cells, the times that run, and whether it pauses."""
+    """State of a loop as far as a plan distinguishes it: its cells, the running timers, and whether it pauses."""
 
     cells: tuple[int, ...]
     running: frozenset[int]
     pauses: bool
-    #: How many periods each time still runs, in the order of the timers; nothing where a step takes no time.
+    #: Remaining periods of each running timer, in the order of the timers; empty if a step takes no time.
     left: tuple[int, ...] = ()
 
     def resembles(self, other: Place) -> bool:
-        """Whether they are the same but for how long the times still run."""
+        """Return whether the places are equal except for the remaining times."""
         return self._replace(left=other.left) == other
 
 
 class Step(NamedTuple):
-    """A step of a tour: what comes in, where that leads, and what it shows, a bit for each goal."""
+    """Step of a tour: its stimulus, the place that it leads to, and the goals that it shows, as bits."""
 
     stimulus: Stimulus
     end: Place

@@ -1,4 +1,4 @@
-"""Tours of a controller: what comes in is planned, so that all is seen that can be; what it does are the traces."""
+"""Tours of a controller: stimuli planned to cover all goals; the runs are the traces."""
 
 from __future__ import annotations
 
@@ -30,19 +30,19 @@ if TYPE_CHECKING:
     from robosc.ros_types import RosDistribution
 
 _SEED = 1
-#: So many periods at most are waited for a time that is up, a failure or the pause after it.
+#: Maximum number of periods to wait for a timer, a failure or the pause after it.
 _LONGEST = 600
-#: A state that is never come back to can be left in one way only: others take other runs, at most so many.
+#: Maximum number of runs. A state that is never reached again can be left in one way only per run.
 _TRACES = 8
 
 
 class _Controller(DrivenController):
-    """A controller that is watched."""
+    """Controller whose coverage is recorded."""
 
     def watch(self, shown: set[Goal]) -> None:
-        """Begins to note what there is to see."""
+        """Begin to record the goals that are seen."""
         self._shown = shown
-        #: What has happened since this was emptied.
+        #: Events since this was emptied.
         self.happened: set[str] = set()
         self._watcher = Watcher(self._control)
 
@@ -54,17 +54,17 @@ class _Controller(DrivenController):
         return may_happen
 
     def look(self) -> None:
-        """Notes what there is to see now that it has done what it can do at once."""
+        """Record the goals that are visible when the control loop has settled."""
         self._shown |= self._watcher.at_rest()
 
     def place(self, plan: Plan) -> Place:
-        """Where it is, now that it has done what it can do at once."""
+        """Return the place of the controller when the control loop has settled."""
         self.look()
         return plan.place(self._control.saved, pauses=self.pauses)
 
 
 class _Planned(NamedTuple):
-    """Steps from a place on, where something was shown before."""
+    """Planned steps from a place, and the goals seen before."""
 
     start: Place
     shown: frozenset[Goal]
@@ -72,13 +72,14 @@ class _Planned(NamedTuple):
 
 
 class _OtherwiseError(Exception):
-    """A tour can't be planned as an earlier one was."""
+    """Deviation of a tour from the plan of an earlier one."""
 
 
 def tour_of(graph: rosgraph.RosGraph, configuration: Configuration, distribution: RosDistribution) -> Tour:
-    """The tour of a controller on one ROS.
+    """Return the tour of a controller on one ROS.
 
-    While the model is remembered (`robosc.engine.remembered`) it is planned once for both where the same comes in.
+    While the model is remembered (`robosc.engine.remembered`), both versions of ROS share a plan if their stimuli are
+    equal.
     """
 
     def anew() -> Tour:
@@ -93,7 +94,7 @@ def tour_of(graph: rosgraph.RosGraph, configuration: Configuration, distribution
 
 
 class Tour(Drive):
-    """Runs of one controller, each from its start: `traces` are the lines of each, `coverage` is what they show."""
+    """Runs of one controller, each from its start: `traces` are their log lines, `coverage` their joint coverage."""
 
     _controller: _Controller
 
@@ -105,7 +106,7 @@ class Tour(Drive):
         earlier: Tour | None = None,
     ) -> None:
         super().__init__(graph, configuration, distribution)
-        self._choice = random.Random(_SEED)  # noqa: S311  # the same each time
+        self._choice = random.Random(_SEED)  # noqa: S311  # reproducible
         self._used: Counter[object] = Counter()
         self._acts = self._all_acts()
         control = configuration.control_loop
@@ -117,7 +118,7 @@ class Tour(Drive):
             self.parameters["period_ms"],
             self.parameters.get("retry_ms", 0),
         )
-        #: Where it went, as planned, one after the other.
+        #: Planned parts of all runs, in order.
         self.planned: list[_Planned] = []
         self._planned_before: Iterator[_Planned] | None = None
         if earlier is not None:
@@ -138,7 +139,7 @@ class Tour(Drive):
         self.coverage = Coverage(tuple(self.plan.goals), shown, impossible, self._steps)
 
     def _run(self) -> None:
-        """Runs the controller from its start to where nothing new can be seen any more."""
+        """Run the controller from its start until no new goal can be seen."""
         self._controller = self._begin(_Controller)
         self._controller.watch(self._shown)
         self._controller.start()
@@ -156,7 +157,7 @@ class Tour(Drive):
         self._controller.look()
 
     def is_for(self, configuration: Configuration, distribution: RosDistribution) -> bool:
-        """Whether it was asked for with these."""
+        """Return whether the tour was created for this configuration and distribution."""
         return self._configuration == configuration and self._distribution is distribution
 
     def _tour(self) -> list[Step]:
@@ -172,7 +173,7 @@ class Tour(Drive):
         return planned.steps
 
     def _stepped(self, step: Step) -> bool:
-        """Makes a step; says whether the controller has done something else than was planned."""
+        """Perform a step; return whether the controller deviated from the plan."""
         self._steps += 1
         self._controller.happened.clear()
         if step.stimulus.events:
@@ -185,7 +186,7 @@ class Tour(Drive):
         return not self._controller.place(self.plan).resembles(step.end)
 
     def _waiting(self, stimulus: Stimulus) -> Callable[[], bool]:
-        """Whether what the stimulus waits for is still to come."""
+        """Return a function that returns whether the effect of the stimulus is still to come."""
         if stimulus.fails:
             [(failure, _)] = stimulus.events
             return lambda: failure not in self._controller.happened
@@ -196,10 +197,10 @@ class Tour(Drive):
         up = self._controller.up
         return lambda: up is not None and self._now * 1000 < up
 
-    # What comes in
+    # Incoming data
 
     def _all_acts(self) -> dict[Stimulus, Act]:
-        """What may come in, each with what lets it."""
+        """Return all stimuli, each with the function that performs it."""
         acts: dict[Stimulus, Act] = {}
         for topic in self._graph.subscriptions:
             acts |= self._classes(topic.topic, topic.receptions, partial(self._publish, topic))
@@ -234,7 +235,7 @@ class Tour(Drive):
         }
 
     def _publish(self, topic: rosgraph.Subscription, kind: Incoming, found: Class) -> dict[str, Any]:
-        """Sends a message; the first one on a topic with several events lacks what one of them needs."""
+        """Send a message; the first one on a topic with several events lacks data that one of them needs."""
         unreadable = [self._unreadable(reception) for reception in topic.receptions[1:]]
         short = next((message for message in unreadable if message is not None), None)
         data, fields = self._message(kind, found) if short is None else short
@@ -248,7 +249,7 @@ class Tour(Drive):
         return fields
 
     def _fail(self, client: rosgraph.ServiceClient) -> dict[str, Any] | None:
-        """An answer that can't be read where there is one, else none: the time will be over."""
+        """Answer with data that can't be read, if possible; else let the call time out."""
         _, handlers = self._robot.calls.pop(client)
         unreadable = self._unreadable(client.response)
         if unreadable is None:
@@ -270,7 +271,7 @@ class Tour(Drive):
         return fields if fields or outcome is Outcome.SUCCEEDED else None
 
     def _abort(self, client: rosgraph.ActionClient, kind: Incoming, found: Class) -> dict[str, Any] | None:
-        """End a goal with a result that can't be read, where there is one; else abort it."""
+        """End a goal with a result that can't be read, if possible; else abort it."""
         unreadable = self._unreadable(client.response)
         if unreadable is None:
             return self._end(client, Outcome.ABORTED, kind, found)
@@ -278,7 +279,7 @@ class Tour(Drive):
         return unreadable[1]
 
     def _message(self, kind: Incoming, found: Class) -> tuple[Any, dict[str, Any]]:
-        """Data of a class that came in least often until now."""
+        """Return the least used sample of a class, as data and as nested fields."""
         number = min(
             range(len(found.samples)), key=lambda sample: (self._used[id(found), sample], self._choice.random())
         )
@@ -286,7 +287,7 @@ class Tour(Drive):
         return kind.message(found.samples[number]), nested(found.samples[number])
 
     def _unreadable(self, reception: rosgraph.Reception) -> tuple[Any, dict[str, Any]] | None:
-        """Data without the elements that the present state needs; None where it needs none, or had that before."""
+        """Return data without the elements that the present state needs; None if it needs none, or if used before."""
         kind = self.incoming[reception.event]
         if event_name(reception.event) not in kind.unreadable or self._used["unreadable", reception]:
             return None

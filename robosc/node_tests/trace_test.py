@@ -1,4 +1,4 @@
-"""The test of one node: what is played against it, what plays it, and how the node has to be started for it."""
+"""Test of one node: the traces to play, their player, and the start parameters of the node."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ if TYPE_CHECKING:
 def trace_test_of(
     target: Target, models: Models, configuration: Configuration, interface_paths: Sequence[str] = ()
 ) -> TraceTest | None:
-    """The test for the package of a target; None where it can't have any.
+    """Return the test for the package of a target; None if the target has none.
 
-    The models have a supervisor, and the ROS graph if the target needs it. `interface_paths` are folders in which ROS
-    types are looked for, as `robosc.ros_types` does.
+    Precondition: the models have a supervisor, and the ROS graph if the target needs it. `interface_paths` are folders
+    in which ROS types are looked up, as `robosc.ros_types` does.
     """
     if target.tested_ros is None:
         return None
@@ -48,10 +48,10 @@ def trace_test(
     version: int,
     interface_paths: Iterable[str | PathLike[str]] = (),
 ) -> TraceTest:
-    """The test of the controller of a graph whose model has a supervisor, as a node of ROS 1 or 2 (`version`).
+    """Return the test of the controller of a graph whose model has a supervisor, for ROS 1 or 2 (`version`).
 
-    ROS types are looked up as `check` does; of a type that is unknown, numbers are tried that all of its kind hold.
-    The same call gives the same test.
+    ROS types are looked up as `check` does. For an unknown type, numbers are tried that all types of its kind hold. The
+    same call returns the same test.
     """
     distribution = RosTypes(interface_paths).distribution(version)
     tour = tour_of(graph, configuration, distribution)
@@ -68,14 +68,14 @@ def player_files(
     started: Mapping[str, bool | int],
     incoming: Mapping[sct.Event, Incoming],
 ) -> dict[str, str]:
-    """The player, and what it has to know of a node that is started with these parameters: file to text."""
+    """Return the player's files with its description of a node started with these parameters: file to text."""
     connected = json.dumps(_connections(graph, configuration, started, incoming), indent=1) + "\n"
     player = locate("node_tests/trace_player.py").read_text(encoding="utf-8")
     return {"connections.json": connected, "trace_player.py": player}
 
 
 def told(goal: Goal) -> str:
-    """What there is to see, in words: `the guard of the request to move is false`."""
+    """Return a goal in words: `the guard of the request to move is false`."""
     if isinstance(goal.of, sct.Event):
         alone = f" for `{SctPrinter()(goal.cause)}` alone" if goal.cause is not None else ""
         return f"the guard of the {words(goal.of)} is {str(goal.value).lower()}{alone}"
@@ -89,7 +89,7 @@ def _connections(
     started: Mapping[str, bool | int],
     incoming: Mapping[sct.Event, Incoming],
 ) -> dict[str, Any]:
-    """What the player has to know of the node."""
+    """Return the player's description of the node."""
     return {
         "node": configuration.package_name(graph),
         "managed": configuration.lifecycle,
@@ -142,7 +142,7 @@ def _client(client: Client, started: Mapping[str, bool | int]) -> dict[str, Any]
 
 
 def described(kind: Incoming) -> dict[str, Any]:
-    """What the player has to know of one kind of data that comes in."""
+    """Return the player's description of one kind of incoming data."""
     return {
         "events": [
             {
