@@ -1,4 +1,4 @@
-"""Writes the type stubs of the metamodel modules: `python scripts/metamodel_stubs.py`."""
+"""Write the type stubs of the metamodel modules: `python scripts/metamodel_stubs.py`."""
 
 from pathlib import Path
 
@@ -37,12 +37,12 @@ def _attribute(feature: EStructuralFeature, package: EPackage) -> str:
     kind = _type(feature, package)
     if feature.many:
         return f"{feature.name}: MutableSequence[{kind}]"
-    # What the metamodel requires is there in every valid model, so its type is not optional.
+    # A required feature exists in every valid model, so its type is not optional.
     return f"{feature.name}: {kind}" if feature.lowerBound else f"{feature.name}: {kind} | None"
 
 
 def stub(name: str) -> str:
-    """The text of the stub of one metamodel module."""
+    """Return the text of the stub of one metamodel module."""
     package = packages(documented=True)[name]
     used = _types(package)
     others = [other for other in PACKAGES if other != name and any(target.ePackage.name == other for target in used)]
@@ -82,7 +82,7 @@ def stub(name: str) -> str:
 
 
 def _types(package: EPackage) -> set[EClassifier]:
-    """Those that a package's classes inherit from or have features of, all of them with a package."""
+    """Return the classifiers that a package's classes inherit from or have features of, if they have a package."""
     used = set()
     for classifier in package.eClassifiers:
         if isinstance(classifier, EClass):
