@@ -1,14 +1,14 @@
-"""Synthesis of models in CIF, most of them written by others, beside CIF's own tool; writes `docs/cif-models.md`.
+"""Time the synthesis of CIF models, most from other projects, against CIF's own tool; write `docs/cif-models.md`.
 
     python benchmarks/cif_models.py FOLDER [--more FILE.cif ...] [--rounds 3] [--seconds 300] [--output FOLDER]
 
 FOLDER holds the models that Eclipse ESCET times for synthesis (`cif/org.eclipse.escet.cif.examples/benchmarks` in its
-repository), which are no part of this one: its scripts `benchmark_*.tooldef` say which these are. `--more` are files
-beside them. Robots of our own families are added, as the CIF that is generated of them.
+repository), which are not part of this repository. Its scripts `benchmark_*.tooldef` list them. `--more` adds further
+files. Robots of our own families are added as generated CIF.
 
-Where ESCET_HOME names a folder with CIF's tools (benchmarks/escet.md), they take each model in the same run, one
-tool after the other. Ends with 1 where robosc has no answer in the given seconds, or another one than CIF's tool.
-What was measured is kept in `benchmarks/cif_models.json`; `--output` writes it and the page elsewhere.
+If ESCET_HOME names a folder with CIF's tools (benchmarks/escet.md), they process each model in the same run, one tool
+after the other. Ends with 1 if robosc does not finish in the given seconds, or if its result differs from CIF's tool.
+The measurements are stored in `benchmarks/cif_models.json`; `--output` writes them and the page elsewhere.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ from benchmarks.cif_models_page import agree, page  # noqa: E402
 from benchmarks.families import FAMILIES  # noqa: E402
 from tests.cif.escet import SYNTHESIS, Tools, class_path, home  # noqa: E402
 
-#: What a script calls: the name of the benchmark, its folder, its file.
+#: Call in a script: the name of the benchmark, its folder, its file.
 _SCRIPT = re.compile(r'^benchmark\("([^"]*)", "([^"]*)", "([^"]*)"\)', re.MULTILINE)
-#: The robots of our families.
+#: Robots of our families.
 _ROBOTS = {
     "cells": (8, 32),
     "sensors": (16, 64),
@@ -45,16 +45,16 @@ _ROBOTS = {
     "warehouse": (8, 10),
     "services": (32,),
 }
-#: What CIF's tool is told: its fastest settings.
+#: Options of CIF's tool: its fastest settings.
 _OPTIONS = ("--bdd-output=nodes", "--forward-reach=yes", "--event-warn=no", "--stats=ctrl-sys-states,timing")
-#: What its synthesis consists of, from the order of the variables on, as it names it.
+#: Phases of its synthesis, from the order of the variables on, by its own names.
 _PHASES = ("Convert input model", "Pre synthesis", "Main synthesis loop", "Post synthesis")
 
 Results = dict[str, Any]
 
 
 def models(folder: Path) -> dict[str, Path]:
-    """The files that the scripts in a folder name."""
+    """Return the files that the scripts in a folder name."""
     found = (
         _SCRIPT.search(script.read_text(encoding="utf-8")) for script in sorted(folder.glob("benchmark_*.tooldef"))
     )
@@ -62,7 +62,7 @@ def models(folder: Path) -> dict[str, Path]:
 
 
 def robots(folder: Path) -> dict[str, Path]:
-    """Robots of our families as CIF, written into a folder."""
+    """Write robots of our families as CIF into a folder; return their files."""
     found = {}
     for family, numbers in _ROBOTS.items():
         for number in numbers:
@@ -78,7 +78,7 @@ def robots(folder: Path) -> dict[str, Path]:
 
 
 def run(command: list[str], seconds: float, given: str = "") -> tuple[Results, str] | None:
-    """Run a command: its costs (processor seconds, megabytes) and its output, or None.
+    """Run a command; return its costs (processor seconds, megabytes) and its output, or None.
 
     `seconds` limits its processor time, `given` is its input. None: it took longer, or failed.
     """
@@ -108,7 +108,7 @@ def run(command: list[str], seconds: float, given: str = "") -> tuple[Results, s
 
 
 def robosc_measured(path: Path, rounds: int, seconds: float) -> Results | None:
-    """What robosc finds and takes."""
+    """Return the results and costs of robosc."""
     cold = run([sys.executable, "-m", "robosc", "synthesize", str(path), "--counts", "--json"], seconds)
     script = str(ROOT / "benchmarks" / "cif_models_run.py")
     warm = None if cold is None else run([sys.executable, script, str(path), str(rounds)], rounds * seconds)
@@ -119,7 +119,7 @@ def robosc_measured(path: Path, rounds: int, seconds: float) -> Results | None:
 
 
 class Cif:
-    """CIF's tool, cold in a Java of its own each time, and warm in one that goes on."""
+    """CIF's tool, cold in a new Java process each time, and warm in one process."""
 
     def __init__(self, folder: Path, seconds: float) -> None:
         self._folder = folder
@@ -133,7 +133,7 @@ class Cif:
         subprocess.run([compiler, "-cp", class_path(folder), "-d", str(self._calls), str(script)], check=True)
 
     def measured(self, path: Path, rounds: int) -> Results:
-        """What it finds and takes; without `cold` where it takes too long, without `seconds` where it does then."""
+        """Return the results and costs, without `cold` or `seconds` if the cold or warm run is too slow."""
         found: Results = {}
         call = "\t".join([SYNTHESIS, str(path), *_OPTIONS, "-o", self._output, "--gui=off"])
         command = [
@@ -154,13 +154,13 @@ class Cif:
         return found
 
     def close(self) -> None:
-        """Ends it."""
+        """End the process."""
         self._tools.__exit__()
         self._scratch.cleanup()
 
 
 def _synthesis(output: str) -> float:
-    """The share that synthesis has in all that CIF's tool does."""
+    """Return the share of synthesis in the time of CIF's tool."""
 
     def taken(phase: str) -> int:
         found = re.search(rf"^ *{phase} +([\d,]+) ms$", output, re.MULTILINE)

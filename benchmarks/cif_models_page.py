@@ -1,4 +1,4 @@
-"""The page of the documentation with what `cif_models.py` has measured."""
+"""Page of the documentation with the measurements of `cif_models.py`."""
 
 from __future__ import annotations
 
@@ -44,13 +44,13 @@ guards.
 
 
 def page(results: Results) -> str:
-    """The page, in Markdown, of all that was measured."""
+    """Return the page of all measurements, in Markdown."""
     head = HEAD.format(**results)
     return "\n".join([head, _summary(results), _table(results)])
 
 
 def _summary(results: Results) -> str:
-    """What the table shows, in sentences."""
+    """Return the summary of the table, in sentences."""
     found = results["models"]
     escet = [model["robosc"] for model in list(found.values())[: results["escet"]] if model["robosc"]]
     both = {name: model for name, model in found.items() if model["robosc"] and model["cif"] is not None}
@@ -68,7 +68,7 @@ Other models can differ: measure yours.
 
 
 def agree(ours: Results, theirs: Results) -> bool:
-    """Whether both found as many states: CIF's tool counts with floating-point numbers."""
+    """Return whether both found equally many states. CIF's tool counts with floating-point numbers."""
     return isclose(ours["states"], theirs["states"], rel_tol=1e-12)
 
 
@@ -77,7 +77,7 @@ def _agreeing(models: Iterable[Results]) -> int:
 
 
 def _faster(model: Results) -> bool:
-    """Whether RoboSC's command took less than CIF's tool, which may have reached the limit."""
+    """Return whether RoboSC's command took less time than CIF's tool, which may have reached the limit."""
     return "cold" not in model["cif"] or model["robosc"]["cold"] < model["cif"]["cold"]
 
 

@@ -1,8 +1,8 @@
-"""Synthesis of one model of CIF, several times in one process: prints what it found and took, as JSON.
+"""Synthesize one CIF model several times in one process; print the results and costs as JSON.
 
     python benchmarks/cif_models_run.py MODEL.cif ROUNDS
 
-Seconds are those of the processor, from the order of the variables to the number of states.
+Seconds are processor time, from the order of the variables to the number of states.
 """
 
 from __future__ import annotations

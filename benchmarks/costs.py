@@ -1,10 +1,10 @@
-"""Operations and processor time of synthesis, compared between two commits.
+"""Compare operations and processor time of synthesis between two commits.
 
     python benchmarks/costs.py OLD [NEW] [--rounds 3] [--models line_32 FILE.cif ...] [--limit 1.5]
 
-OLD and NEW are commits; NEW is the working tree if you name none. Each model runs in a process of its own, old and new
-in turn, so that a busy machine slows both. The least seconds of all rounds count. Ends with 1 if a model takes more
-than `--limit` times as many processor seconds as before, or another number of controlled states.
+OLD and NEW are commits; the default of NEW is the working tree. Each model runs in its own process, old and new in
+turn, so that a busy machine slows both. The least seconds of all rounds count. Ends with 1 if a model takes more than
+`--limit` times as many processor seconds as before, or has another number of controlled states.
 
 `tests/synthesis/test_costs.py` pins operations and nodes of the same models; seconds are only compared here.
 """
@@ -37,7 +37,7 @@ ROBOTS = {
 
 
 def robots() -> dict[str, str]:
-    """The text of each robot, by its name."""
+    """Return the text of each robot, by its name."""
     sys.path.insert(0, str(ROOT))
     from benchmarks.families import FAMILIES  # noqa: PLC0415  # a run of another commit needs no families
 
@@ -48,7 +48,7 @@ def robots() -> dict[str, str]:
 
 def counted(path: Path) -> dict[str, Any]:
     """Count the controlled states of the model in a file, `.rscd` or `.cif`."""
-    import robosc  # noqa: PLC0415  # of whatever commit is on the path
+    import robosc  # noqa: PLC0415  # of the commit on the path
     from robosc.cif import read  # noqa: PLC0415
     from robosc.synthesis import Statistics, count  # noqa: PLC0415
 
@@ -70,7 +70,7 @@ def counted(path: Path) -> dict[str, Any]:
 
 
 def compare(paths: list[Path], roots: tuple[Path, Path], rounds: int, limit: float) -> int:
-    """Print a table of the models; return how many got slower or have other states."""
+    """Print a table of the models; return how many are slower or have other states."""
     print("| model | operations, old | new | µs an operation, old | new | seconds, new to old |")
     print("|---|---:|---:|---:|---:|---:|")
     worse = 0
@@ -90,7 +90,7 @@ def compare(paths: list[Path], roots: tuple[Path, Path], rounds: int, limit: flo
 
 
 def _run(path: Path, root: Path) -> dict[str, Any]:
-    """The costs of a model with the `robosc` that is in a folder."""
+    """Return the costs of a model with the `robosc` in a folder."""
     environment = os.environ | {"PYTHONPATH": str(root)}
     command = [sys.executable, __file__, "--one", str(path)]
     done = subprocess.run(command, cwd=root, env=environment, capture_output=True, text=True, check=True)

@@ -1,10 +1,10 @@
-"""Asks the language server everything about every example, cut off at every position: no answer may fail.
+"""Send all requests of the language server for every example, cut off at every position: no answer may fail.
 
     python benchmarks/cut_off.py [--every 1] [--processes 2] [EXAMPLE ...]
 
-Each text is cut off behind each of its characters, as somebody leaves it who types it, and each kind of request is
-answered there, as tests/editor/test_robustness.py does at some of them. Prints a row for each example, and ends with
-the first failure. All of them take an hour or two of one processor. Needs `pip install 'robosc[test]'`.
+Each text is cut off behind each of its characters, as it is while somebody types it. Each kind of request is answered
+there, as tests/editor/test_robustness.py does at some positions. Prints a row for each example, and ends with the first
+failure. All examples take an hour or two of one processor. Needs `pip install 'robosc[test]'`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from tests.editor.test_robustness import EXAMPLES, ask_everything, project  # no
 
 
 def cut_off(every: int, path: Path) -> tuple[int, float]:
-    """How many positions of a text were tried, and the seconds of a processor that it took."""
+    """Return the number of positions tried in a text, and the processor seconds taken."""
     text = path.read_text(encoding="utf-8")
     made, began = project(text), time.process_time()
     ends = range(0, len(text) + 1, every)
@@ -31,7 +31,7 @@ def cut_off(every: int, path: Path) -> tuple[int, float]:
         try:
             ask_everything(made, text[:end], end)
         except Exception:
-            # As text: what an exception keeps may not be sent from one process to another.
+            # As text: an exception may hold objects that can't be sent between processes.
             told = f"{path.relative_to(ROOT)}, cut off behind {end} characters:\n{traceback.format_exc()}"
             raise RuntimeError(told) from None
     return len(ends), time.process_time() - began
@@ -45,7 +45,7 @@ def main() -> None:
     options = parser.parse_args()
     # Copies of an example are one text.
     texts = {path.read_bytes(): path.resolve() for path in options.examples or EXAMPLES}
-    # The longest first, which the others are tried beside.
+    # Longest first, with the others beside it.
     examples = sorted(texts.values(), key=lambda path: -path.stat().st_size)
     total, spent = 0, 0.0
     with ProcessPoolExecutor(options.processes) as processes:

@@ -1,10 +1,10 @@
-"""How soon the language server tells findings after opening a text and after a key, and its memory over many edits.
+"""Time the language server's findings after opening a text and after a key; measure its memory over many edits.
 
     python benchmarks/editor.py [--lines 1000 10000] [--keys 20] [--edits 2000]
 
-Prints the table of docs/editor.md: a server in a process of its own, over its standard input and output, without the
-pause that it makes while somebody types. A key is a letter within a name, typed and taken back, so that findings come
-and go. In brackets: the time of a processor, of a key the mean, which other programs change less. Needs
+Prints the table of docs/editor.md. The server runs in its own process, over its standard input and output, without
+its pause while somebody types. A key is a letter within a name, typed and taken back, so that findings appear and
+disappear. Brackets hold processor time, of a key the mean, on which other programs have less influence. Needs
 `pip install 'robosc[test]'`.
 """
 
@@ -43,14 +43,14 @@ COMPONENT = """  component Door{number} {{
 
 
 def model(lines: int) -> str:
-    """A robot of about so many lines."""
+    """Return a robot of about this many lines."""
     count = lines // COMPONENT.count("\n")
     parts = (COMPONENT.format(number=number, following=(number + 1) % count) for number in range(count))
     return f"robot Doors {{\n{''.join(parts)}}}\n"
 
 
 async def measure(lines: int, keys: int, edits: int) -> str:
-    """A row of the table."""
+    """Return a row of the table."""
     text = model(lines)
     with tempfile.TemporaryDirectory() as folder:
         client = Editor()
@@ -92,13 +92,13 @@ async def measure(lines: int, keys: int, edits: int) -> str:
 
 
 def _megabytes(client: Editor) -> float:
-    """What the server has in memory."""
+    """Return the memory of the server in megabytes."""
     pages = int((Path("/proc") / str(client._server.pid) / "statm").read_text().split()[1])  # noqa: SLF001
     return pages * 4096 / 2**20
 
 
 def _spent(client: Editor) -> float:
-    """The seconds of a processor that the server has taken."""
+    """Return the processor seconds that the server has taken."""
     words = (Path("/proc") / str(client._server.pid) / "stat").read_text().rpartition(")")[2].split()  # noqa: SLF001
     return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
 

@@ -1,11 +1,11 @@
-"""What the generated engine costs: instructions, steps, bytes of code and memory, stack. All is counted, not timed.
+"""Count the costs of the generated engine: instructions, steps, bytes of code and memory, stack. Nothing is timed.
 
     python benchmarks/engine.py                 measures the examples and the families of `families.py`, and writes
                                                 benchmarks/engine.json and docs/engine.md
-    python benchmarks/engine.py MODEL.rscd ...  measures these, and prints
+    python benchmarks/engine.py MODEL.rscd ...  measures these, and prints the costs
     python benchmarks/engine.py --page          writes the page anew from benchmarks/engine.json
 
-Needs gcc; without arm-none-eabi-gcc and valgrind their columns are missing.
+Needs gcc. Without arm-none-eabi-gcc or valgrind their columns are missing.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ Results = dict[str, Any]
 
 
 def main() -> None:
-    """Measures and writes."""
+    """Measure the costs and write them."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("models", nargs="*", type=Path, metavar="MODEL.rscd")
     parser.add_argument("--page", action="store_true")
@@ -74,7 +74,7 @@ def _costs(path: Path) -> Results:
 
 
 def page(results: Results) -> str:
-    """The page of the documentation."""
+    """Return the page of the documentation."""
     text = (ROOT / "benchmarks" / "engine_page.md").read_text()
     examples, families = results["examples"], results["families"]
     return text.format(

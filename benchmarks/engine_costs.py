@@ -1,6 +1,6 @@
-"""What a generated engine costs, counted, so that each run gives the same: instructions, steps, bytes, stack.
+"""Costs of a generated engine, counted and so reproducible: instructions, steps, bytes, stack.
 
-Instructions are those of x86-64 under callgrind, in a random walk through what the robot and its controller do.
+Instructions are those of x86-64 under callgrind, in a random walk through the events of the robot and its controller.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from robosc.metamodel.sct import SupervisoryControlModel
 
-#: How many batches a walk has; after every fourth there is a tick.
+#: Batches in a walk; every fourth is followed by a tick.
 BATCHES = 400
 TARGETS = {"x86-64": ["gcc"], "Cortex-M3": ["arm-none-eabi-gcc", "-mcpu=cortex-m3", "-mthumb"]}
 OPTIONS = ["-std=c99", "-Os"]
@@ -106,7 +106,7 @@ int main(int words, char **word)
 
 @dataclass(frozen=True)
 class Size:
-    """Bytes: sections of the object file (without names), one controller, and the stack below a call of the engine."""
+    """Sizes in bytes: sections of the object file (without names), one controller, and the stack of an engine call."""
 
     text: int
     rodata: int
@@ -118,7 +118,7 @@ class Size:
 
 @dataclass(frozen=True)
 class Count:
-    """Over the calls of one function: the mean and the most."""
+    """Mean and maximum over the calls of one function."""
 
     mean: float
     most: int
@@ -126,10 +126,10 @@ class Count:
 
 @dataclass(frozen=True)
 class Costs:
-    """What one model's engine costs. `steps` are events in a tick, `bound` is how many there can be at worst.
+    """Costs of one model's engine. `steps` are events in a tick, `bound` is their maximum in the worst case.
 
-    Instructions: `perform` one event; `batch` is begin and end; `tick` one tick, and `idle` the cheapest one. None
-    where callgrind is not installed.
+    Instructions: `perform` one event; `batch` is begin and end; `tick` one tick, and `idle` the cheapest one. None if
+    callgrind is not installed.
     """
 
     events: int
@@ -143,7 +143,7 @@ class Costs:
 
 
 def measured(model: SupervisoryControlModel, folder: Path, targets: Mapping[str, Sequence[str]] = TARGETS) -> Costs:
-    """Builds the engine of a model with its supervisor in a folder, and counts; sizes for these targets."""
+    """Build the engine of a model with its supervisor in a folder, and count its costs; sizes for the given targets."""
     names = CNames(model)
     for path, text in engine.generate(transform(model), ControlLoop()).items():
         (folder / path).write_text(text)
@@ -169,9 +169,9 @@ def measured(model: SupervisoryControlModel, folder: Path, targets: Mapping[str,
 
 
 def tick_bound(roles: Roles) -> int:
-    """How many events can happen in one tick: the first settling, and one more after each cancel and trigger.
+    """Return the maximum number of events in a tick: one settling, and one more after each cancel and trigger.
 
-    Settling runs at most its bound of silent events, and before each and at the end lets each data plant move once.
+    Settling runs at most its bound of silent events. Before each of them and at the end, each data plant moves once.
     """
     silent = roles.settling_bound if roles.silent else 0
     settling = silent + (silent + 1) * len(roles.data)
@@ -179,7 +179,7 @@ def tick_bound(roles: Roles) -> int:
 
 
 def size(source: Path, names: CNames, command: Sequence[str]) -> Size:
-    """The bytes of an engine, with one compiler."""
+    """Return the sizes of an engine in bytes, with one compiler."""
     compiled = source.with_suffix(".o")
     asked = [f"-D{names.macro}_NO_NAMES", "-fcallgraph-info=su", "-c", source.name, "-o", compiled.name]
     subprocess.run([*command, *OPTIONS, *asked], cwd=source.parent, check=True)
@@ -197,9 +197,9 @@ def size(source: Path, names: CNames, command: Sequence[str]) -> Size:
 
 
 def stack(graph: str) -> int:
-    """The deepest stack of a call graph as gcc writes it (`-fcallgraph-info=su`), without what hooks need.
+    """Return the deepest stack of gcc's call graph (`-fcallgraph-info=su`), without the needs of hooks.
 
-    Raises RecursionError where a function can call itself.
+    Raises RecursionError if a function can call itself.
     """
     own = {
         title: int(used)
@@ -237,7 +237,7 @@ def _program(model: SupervisoryControlModel, source: Path) -> Path:
 
 
 def _inputs(model: SupervisoryControlModel, names: CNames) -> Iterator[str]:
-    """Sets each input to any of its values."""
+    """Yield statements that set each input to any of its values."""
     for input_ in (input_ for plant in model.plants for input_ in plant.inputs):
         low, high = domain(input_.type)
         member = f"robot.inputs.{names.member(input_)}"
@@ -246,14 +246,14 @@ def _inputs(model: SupervisoryControlModel, names: CNames) -> Iterator[str]:
 
 
 def _instructions(program: Path, function: str) -> list[int]:
-    """How many instructions ran in each call of a function, from its first to its last."""
+    """Return the number of instructions in each call of a function, from its first to its last."""
     dumps = program.parent / "dumps"
     command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={dumps}", "--combine-dumps=yes"]
     command += [f"--dump-after={function}", f"--toggle-collect={function}"]
     subprocess.run([*command, program, str(BATCHES), "instructions"], capture_output=True, check=True)
     counted = [int(number) for number in re.findall(r"^totals: (\d+)", dumps.read_text(), flags=re.MULTILINE)]
     dumps.unlink()
-    return counted[:-1]  # The last one is what ran after the last call: nothing.
+    return counted[:-1]  # The last dump follows the last call and is empty.
 
 
 def _count(numbers: Sequence[int]) -> Count:

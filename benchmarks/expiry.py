@@ -1,8 +1,8 @@
-"""How late a time of a model is up over a real ROS, under the load of a sensor; prints a line for each kind of node.
+"""Measure how late a timer of a model expires over a real ROS, under the load of a sensor; print a line per node.
 
     python benchmarks/expiry.py [--ros 1] [--nodes compiled] [--times 200] [--hz 100] [--keep FOLDER]
 
-Measured is from a press of a button to the beep 200 ms after it, so with the way of two messages; `early` is to be 0.
+The measured time is from a press of a button to the beep 200 ms after it, including two messages. `early` must be 0.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def main() -> None:
 
 
 def _prepared(version: int, kind: str, folder: Path) -> Workspace | Runner | str:
-    """What nodes of a kind are started with, or why there are none."""
+    """Return the nodes of a kind, or the reason why there are none."""
     found = find_rclpy() if kind == "run" else {1: find_ros1, 2: find_ros2}[version]()
     if found.ros is None:
         return ", ".join(found.missing)

@@ -1,4 +1,4 @@
-"""Robots of any size, as RoboSC text, and how many states their supervisors leave them.
+"""Robots of any size, as RoboSC text, with their numbers of supervised states.
 
     python benchmarks/families.py philosophers 5
 
@@ -21,40 +21,40 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Family:
-    """Robots that differ in a number only: the text of each, and its supervised states."""
+    """Family of robots that differ only in a number: the text of each, and its supervised states."""
 
     name: str
-    #: For people: what there is `N` of.
+    #: Displayed unit of the number `N`.
     title: str
     text: Callable[[int], str]
-    #: The number of supervised states in closed form.
+    #: Number of supervised states in closed form.
     states: Callable[[int], int]
-    #: The numbers to measure, as far as time allows.
+    #: Numbers to measure, as far as time allows.
     sizes: tuple[int, ...]
 
 
 def cells(number: int) -> str:
-    """Cells that know nothing of each other: each is a line of one place."""
+    """Return independent cells, each a line of one place."""
     comment = "Cells that know nothing of each other, each with a place and an inspection that sends back what is bad."
     return _robot("Cells", comment, *(text for i in _count(number) for text in _line(f"Cell{i}", 1)))
 
 
 def cell_states(number: int) -> int:
-    """Each cell is in any of its own."""
+    """Return the number of states: each cell is in any of its own."""
     return line_states(1) ** number
 
 
 def line(number: int) -> str:
-    """A chain of actions, each of which waits for the next place to be empty; its end waits for its beginning."""
+    """Return a chain of actions, each of which waits for an empty next place; its end waits for its beginning."""
     comment = "A line of conveyors: what is found bad goes back to the start, where there must be a place for it."
     return _robot("ProductionLine", comment, *_line("Line", number))
 
 
 def line_states(number: int) -> int:
-    """Which places are full, what is inspected, and what each action is at.
+    """Return the number of states: full places, the inspection, and the state of each action.
 
-    An action is idle or ready; from a full place to an empty one it may also run, or have failed. While it runs, what
-    it needs holds, so it is never asked to cancel. Synthesis gives up what has no empty place left while a tray is
+    An action is idle or ready; from a full place to an empty one it may also run, or have failed. While it runs, its
+    requirement holds, so it is never canceled. Synthesis removes states without an empty place while a tray is
     inspected or rejected.
     """
 
@@ -73,7 +73,7 @@ def line_states(number: int) -> int:
 
 
 def _line(name: str, number: int) -> list[Lines]:
-    """A line of so many places with an inspection at its end."""
+    """Return a line of places with an inspection at its end."""
     following = [f"{name}Place{i + 1}" for i in range(1, number)] + [f"{name}Inspection"]
     arrivals = [f"response from {name}_move{i}" for i in range(number)]
     arrivals[0] = f"request to {name}_feed"
@@ -125,12 +125,12 @@ def _line(name: str, number: int) -> list[Lines]:
 
 
 def _tried_again(action: str) -> Lines:
-    """Where an action fails or is canceled, all stays where it is, and the action may start again."""
+    """Return transitions for an action that fails or is canceled: nothing moves, and the action may start again."""
     return [f"on {event} from {action}" for event in ("error", "canceled")]
 
 
 def sensors(number: int) -> str:
-    """Sensors round a drive that all have a say in how fast it may go."""
+    """Return sensors around a drive; all of them limit its speed."""
     speeds = {
         "fast": " and ".join(f"Sonar{i}.distance = far" for i in _count(number)),
         "slow": " and ".join(f"Sonar{i}.distance != near" for i in _count(number)),
@@ -173,18 +173,18 @@ def sensors(number: int) -> str:
 
 
 def sensor_states(number: int) -> int:
-    """Of each sensor one of three distances, of the drive one of three speeds; for each of these, data or none yet."""
+    """Return the number of states: three distances per sensor, three speeds; for each speed, data or none yet."""
     return 3**number * 3 * 2**3
 
 
 def philosophers(number: int) -> str:
-    """Arms round a table, a tool between two of them; each needs the tools on both of its sides."""
+    """Return arms around a table, with a tool between each two; each arm needs the tools on both of its sides."""
     comment = "Dining philosophers: arms round a table, a tool between two of them, and each needs both to weld."
     return _robot("RoundTable", comment, *(text for i in _count(number) for text in _arm(i, (i - 2) % number + 1)))
 
 
 def _arm(this: int, before: int) -> list[Lines]:
-    """An arm, and the tool between it and the one before."""
+    """Return an arm, and the tool between it and the previous one."""
     left, right, weld = f"take_left{this}", f"take_right{this}", f"weld{this}"
     return [
         _component(
@@ -220,9 +220,9 @@ def _arm(this: int, before: int) -> list[Lines]:
 
 
 def philosopher_states(number: int) -> int:
-    """An arm's action rests in one of three states, or runs. Stuck are those in which all hold the tool on one side.
+    """Return the number of states. An action rests in one of three, or runs; states where all hold one side deadlock.
 
-    `step` leads from whether the tool on an arm's left is its neighbour's to whether the one on its right is its own.
+    `step` leads from whether the tool on an arm's left is its neighbor's to whether the one on its right is its own.
     """
     step = {(False, False): 3 + 3, (False, True): 3 + 4, (True, False): 3, (True, True): 3}
     whole = 0
@@ -237,7 +237,7 @@ def philosopher_states(number: int) -> int:
 
 
 def warehouse(number: int) -> str:
-    """Robots that share docks, one for four of them, and the one aisle to and from these."""
+    """Return robots that share docks, one for each four robots, and the one aisle to and from them."""
     robots, docks = _count(number), _count(docks_for(number))
     comment = "Robots that share docks and the one aisle to and from them."
     return _robot(
@@ -288,14 +288,14 @@ def warehouse(number: int) -> str:
 
 
 def docks_for(robots: int) -> int:
-    """How many docks a warehouse with so many robots has."""
+    """Return the number of docks of a warehouse."""
     return (robots + 3) // 4
 
 
 def warehouse_states(number: int) -> int:
-    """Who is at which dock; the aisle is empty, or a robot is in it on its way to a dock, or from the one it had.
+    """Return the number of states: robots at docks; an empty aisle, or a robot in it, to a dock or from its own.
 
-    Synthesis gives up what has a robot on its way and no dock free.
+    Synthesis removes states with a robot on its way and no free dock.
     """
     docks = docks_for(number)
     others = sum(comb(number - 1, held) * perm(docks, held) * 3**held * 2 ** (number - held) for held in range(docks))
@@ -306,7 +306,7 @@ def warehouse_states(number: int) -> int:
 
 
 def services(number: int) -> str:
-    """Services that share a resource; there is enough of it for half of them."""
+    """Return services that share a resource, which suffices for half of them."""
     calls = _count(number)
     most = jobs_for(number)
     return _robot(
@@ -336,12 +336,12 @@ def services(number: int) -> str:
 
 
 def jobs_for(calls: int) -> int:
-    """How many of so many services can run at once."""
+    """Return the maximum number of services that run at once."""
     return (calls + 1) // 2
 
 
 def service_states(number: int) -> int:
-    """Those that run, and of each other one of three states."""
+    """Return the number of states: the running services, and one of three states for each other one."""
     return sum(comb(number, running) * 3 ** (number - running) for running in range(jobs_for(number) + 1))
 
 
@@ -350,7 +350,7 @@ def _count(number: int) -> range:
 
 
 def _robot(name: str, comment: str, *parts: Lines) -> str:
-    """The text of a robot; its actions are of a type of its own."""
+    """Return the text of a robot; its actions have their own type."""
     used = any(ACTION in text for part in parts for text in part)
     declared = [["interface task use Task from factory_msgs"]] if used else []
     return "\n".join([f"// {comment}", *_block(f"robot {name}", *declared, *parts), ""])
@@ -366,7 +366,7 @@ def _component(name: str, communications: Lines, states: Mapping[str, Lines], va
 
 
 def _block(heading: str, *parts: Lines) -> Lines:
-    """A heading and parts in braces, an empty line between two of them."""
+    """Return a heading and parts in braces, separated by empty lines."""
     inside = [line for part in parts for line in ("", *(f"  {text}" if text else "" for text in part))]
     return [f"{heading} {{", *inside[1:], "}"]
 

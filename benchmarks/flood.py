@@ -1,4 +1,4 @@
-"""A minute of 2,000 messages a second against nodes of each kind that can run here: what arrives, and what it costs.
+"""Send 2,000 messages a second for a minute to nodes of each installed kind; print received messages and costs.
 
 python benchmarks/flood.py [seconds]
 """

@@ -1,17 +1,18 @@
-"""Models with faults and random valid ones, in large numbers, through the whole pipeline; ends with 1 on a failure.
+"""Run many faulty and random valid models through the whole pipeline; end with 1 on a failure.
 
     python benchmarks/fuzz.py [--mutants 20000] [--valid 2000] [--cif 2000] [--cif-mutants 5000] [--seed 0] [--jobs 2]
         [--keep FOLDER]
 
-A mutant is to end in located findings or in generated code, within 10 s of the processor and 1 GB of memory, and in
-every hundredth the command line is to end with the right exit status. Each fifth is a saved model (XMI), of which the
-command line may tell nothing of other files; each fiftieth has a pipe, a device or the like where a file is looked for;
-each hundredth is written by a command that a signal ends.
-A valid robot draws no error; its CIF is read back, and its engine in C does 200 random operations as the interpreter
-does them. A random specification of CIF has the states that synthesis by the definition leaves it, or a located finding
-that names what synthesis does not take; a mutant of one goes through `check`, `synthesize` and `transform`. Each model
-comes from a number alone: `--mutants 1 --valid 0 --cif 0 --cif-mutants 0 --seed N` tries the mutant N again. `--keep`
-writes the models that failed to a folder.
+A mutant must end in located findings or in generated code, within 10 s of processor time and 1 GB of memory. For every
+hundredth the command line must end with the right exit status. Each fifth is a saved model (XMI), for which the command
+line must not reveal the content of other files. Each fiftieth has a pipe, a device or the like in place of a file. Each
+hundredth is written by a command that a signal ends.
+
+A valid robot has no errors. Its CIF can be read back, and its engine in C performs 200 random operations like the
+interpreter. A random specification of CIF has the states of synthesis by the definition, or a located finding that
+names what synthesis does not support. A mutant of one goes through `check`, `synthesize` and `transform`. Each model is
+made from a number alone: `--mutants 1 --valid 0 --cif 0 --cif-mutants 0 --seed N` tries the mutant N again. `--keep`
+writes the failed models to a folder.
 """
 
 from __future__ import annotations
@@ -46,19 +47,19 @@ from tests.fuzz.valid import checked, compared, compiled, valid_robot  # noqa: E
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-#: Seconds of the processor that a mutant may take, and bytes of memory beside what the program takes itself.
+#: Limits of a mutant: processor seconds, and bytes of memory beyond those of the program itself.
 LIMIT, MEMORY = 10, 10**9
-#: The same for a valid robot: synthesis of a few in which everything meets everything takes minutes, and much memory.
+#: Limits of a valid robot: synthesis of a few densely connected ones takes minutes, and much memory.
 VALID_LIMIT, VALID_MEMORY = 600, 4 * 10**9
 CHUNKS = {"mutants": 100, "valid": 25, "cif": 50, "cif-mutants": 50}
 CALLED_EACH, SAVED_EACH, SPECIAL_EACH, BROKEN_OFF_EACH = 100, 5, 50, 100
-#: What is tried of a number that stands for no text of a model.
+#: Trials of numbers that stand for no text of a model.
 OTHERS = {"saved": saved_tried, "special": special_tried, "broken off": broken_off_tried}
 
 
 @dataclass
 class Result:
-    """What came of some models: how many ended how, the slowest, what failed."""
+    """Results of some models: counts of outcomes, the slowest, the largest, and the failures."""
 
     statuses: Counter[str] = field(default_factory=Counter)
     slowest: tuple[float, int] = (0.0, 0)
@@ -68,10 +69,10 @@ class Result:
     def try_one(
         self, seed: int, trial: Callable[..., Any], *arguments: object, limit: int = LIMIT, memory: int = MEMORY
     ) -> Any:
-        """What a trial of these arguments returns; None where it fails."""
+        """Return the result of a trial with these arguments; None if it fails."""
         began = process_time()
         _forget_peak()
-        # What no signal can stop ends with its process; of a busy machine it gets a small part.
+        # A hang that no signal can stop ends with its process; the limit allows for a busy machine.
         faulthandler.dump_traceback_later(200 * limit, exit=True)
         try:
             with time_limit(limit):
@@ -90,7 +91,7 @@ class Result:
                 self.failures.append((seed, f"takes {_peak() / 1e6:.0f} MB"))
 
     def add(self, other: Result) -> None:
-        """Takes over another result."""
+        """Add another result to this one."""
         self.statuses += other.statuses
         self.slowest = max(self.slowest, other.slowest)
         self.largest = max(self.largest, other.largest)
@@ -98,12 +99,12 @@ class Result:
 
 
 def _forget_peak() -> None:
-    """Has Linux measure the most memory of this process from here on."""
+    """Reset the peak memory of this process in Linux."""
     Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
 
 
 def _peak() -> int:
-    """The most memory that this process has had since, in bytes."""
+    """Return the peak memory of this process since the reset, in bytes."""
     lines = Path("/proc/self/status").read_text(encoding="ascii").splitlines()
     return next(int(line.split()[1]) * 1024 for line in lines if line.startswith("VmHWM:"))
 
@@ -115,7 +116,7 @@ def _kind(seed: int) -> str:
 
 
 def mutants(seeds: range) -> Result:
-    """Tries the mutants of these numbers."""
+    """Try the mutants of these numbers."""
     result = Result()
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "model.rscd"
@@ -137,7 +138,7 @@ def mutants(seeds: range) -> Result:
 
 
 def valid(seeds: range) -> Result:
-    """Tries the random robots of these numbers, their engines compiled together."""
+    """Try the random robots of these numbers, their engines compiled together."""
     result = Result()
     limits = {"limit": VALID_LIMIT, "memory": VALID_MEMORY}
     with tempfile.TemporaryDirectory() as name:
@@ -156,12 +157,12 @@ def valid(seeds: range) -> Result:
 
 
 def _specification(seed: int) -> Specification:
-    """A random specification of CIF; every other has only what CIF's own synthesis computes with."""
+    """Return a random specification of CIF; every other one is limited to what CIF's own synthesis supports."""
     return Specification(seed, narrow=seed % 2 == 1)
 
 
 def cif(seeds: range) -> Result:
-    """Compares the random specifications of CIF of these numbers with synthesis by the definition."""
+    """Compare the random specifications of CIF of these numbers with synthesis by the definition."""
     result = Result()
     for seed in seeds:
         failed = len(result.failures)
@@ -173,7 +174,7 @@ def cif(seeds: range) -> Result:
 
 
 def cif_mutants(seeds: range) -> Result:
-    """Tries the mutants of specifications of CIF of these numbers."""
+    """Try the mutants of CIF specifications of these numbers."""
     result = Result()
     for seed in seeds:
         with tempfile.TemporaryDirectory() as folder:
@@ -233,7 +234,7 @@ def _in_parallel(trial: Callable[[range], Result], chunks: list[range], jobs: in
 
 
 def _files(kind: str, seed: int) -> dict[str, str]:
-    """The files of a model that was tried; none of those that stand where no file is."""
+    """Return the files of a tried model, without special files in place of files."""
     if kind == "cif":
         return _specification(seed).files
     if kind == "cif-mutants":

@@ -1,10 +1,10 @@
-"""Runs the rows of long tables of tests that `./run-tests` leaves out: it has other rows of the same tables.
+"""Run the rows of long test tables that `./run-tests` leaves out: it has other rows of the same tables.
 
     python benchmarks/matrix.py [arguments of pytest]
 
-They are marked `matrix`: the scenarios over the other ROS; the demands without which a second opinion objects;
-reports, tours and runs of more robots, and what MISRA C says of them; what clang-tidy, which nothing installs, says of
-nodes.
+They are marked `matrix`: the scenarios over the other ROS; the conditions without which a second opinion objects;
+reports, tours and runs of more robots, and their check against MISRA C; the check of nodes with clang-tidy, which is
+not installed by default.
 """
 
 import subprocess

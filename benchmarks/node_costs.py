@@ -1,4 +1,4 @@
-"""What the nodes of the eight scenarios cost while their robots drive: processor, memory, time of a tick."""
+"""Costs of the nodes of the eight scenarios while their robots drive: processor, memory, time of a tick."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from tests.ros.processes import Processes
 
 LAYER = "/supervised_line_follower_layer"
-#: Seconds in which everything starts, before it is measured.
+#: Seconds of the start-up, before the measurement.
 WARM_UP = 5.0
 #: Seconds between two ticks, as the examples have it.
 PERIOD = 0.1
@@ -31,22 +31,22 @@ PERIOD = 0.1
 
 @dataclass
 class Costs:
-    """Of one node: seconds of the processor a second, megabytes at most and of addresses, nanoseconds of its ticks."""
+    """Costs of a node: processor share, peak resident and virtual megabytes, nanoseconds of its ticks."""
 
     processor: float
     resident: float
     virtual: float
     node: list[int] = field(default_factory=list)
     engine: list[int] = field(default_factory=list)
-    #: How often its scenario was played to the end, and how often its goal was reached.
+    #: Number of times that its scenario was played to the end, and that its goal was reached.
     played: int = 0
     reached: int = 0
 
 
 def costs(nodes: Workspace | Runner, folder: Path, seconds: float) -> dict[str, Costs]:
-    """Runs all nodes at once, each against its own world, which begins anew when it ends; by title."""
+    """Run all nodes at once, each against its own world, which restarts when it ends; return the costs by title."""
     folder.mkdir()
-    domain = random.randrange(1, 90)  # noqa: S311  # so that runs side by side don't meet
+    domain = random.randrange(1, 90)  # noqa: S311  # so that concurrent runs don't meet
     with ExitStack() as stack:
         runs = []
         for number, scenario in enumerate(scenarios(nodes.ros.version)):
@@ -76,7 +76,7 @@ def _watch(runs: list[_Run], seconds: float) -> None:
 
 
 class _Run:
-    """A node and its world."""
+    """Node and its world."""
 
     def __init__(self, nodes: Workspace | Runner, scenario: Scenario, processes: Processes, folder: Path) -> None:
         self.scenario = scenario
@@ -99,7 +99,7 @@ class _Run:
         return self._processes.start("world", self._world_command)
 
     def go_on(self) -> None:
-        """Begins anew where the world has ended. Fails where the node has."""
+        """Restart the world if it has ended. Fails if the node has ended."""
         assert self._node.poll() is None, self._processes.logs()
         if self._world.poll() is not None:
             assert self._world.returncode in (0, 1), self._processes.logs()
@@ -108,12 +108,12 @@ class _Run:
             self._world = self._start_world()
 
     def processor(self) -> float:
-        """Seconds of the processor that the node has taken."""
+        """Return the processor seconds that the node has taken."""
         fields = Path(f"/proc/{self._node.pid}/stat").read_text().rpartition(")")[2].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def end(self, processor: float, ticks: int) -> Costs:
-        """Ends the node; what it has cost, in so many ticks at the end."""
+        """End the node; return its costs, with those of its last ticks."""
         status = Path(f"/proc/{self._node.pid}/status").read_text()
         resident, virtual = (int(re.findall(rf"{name}:\s+(\d+)", status)[0]) / 1024 for name in ("VmHWM", "VmSize"))
         found = Costs(processor, resident, virtual, played=self._played, reached=self._reached)
@@ -127,7 +127,7 @@ class _Run:
 
 
 def _node(nodes: Workspace | Runner, scenario: Scenario, remappings: list[str] | None = None) -> list[str | Path]:
-    """The command that starts a node, as one process."""
+    """Return the command that starts a node, as one process."""
     if isinstance(nodes, Runner):
         command = nodes.command(scenario.model, layer=scenario.layer, remappings=remappings or [])
         timed = [*command[:1], HERE / "timed_run.py", *command[3:]]
@@ -137,6 +137,6 @@ def _node(nodes: Workspace | Runner, scenario: Scenario, remappings: list[str] |
 
 
 def summary(times: list[int]) -> dict[str, float]:
-    """Microseconds: the mean, the least and the most, the standard deviation."""
+    """Return mean, minimum, maximum and standard deviation in microseconds."""
     micro = [nanoseconds / 1000 for nanoseconds in times]
     return {"mean": fmean(micro), "min": min(micro), "max": max(micro), "deviation": pstdev(micro)}

@@ -1,4 +1,4 @@
-"""The page of the documentation with what `reaction.py` has measured."""
+"""Page of the documentation with the measurements of `reaction.py`."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ Results = dict[str, Any]
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of node: generated and compiled for ROS 1 or 2, or `run` straight from its model over ROS 2."""
+    """Kind of node: generated and compiled for ROS 1 or 2, or `run` directly from its model over ROS 2."""
 
     ros: int
     nodes: str
 
     @property
     def key(self) -> str:
-        """In results."""
+        """The key in results."""
         return f"{self.nodes}-ros{self.ros}"
 
     @property
     def title(self) -> str:
-        """For people."""
+        """The displayed title."""
         return f"ROS {self.ros}, {'compiled' if self.nodes == 'compiled' else '`robosc run`'}"
 
 
@@ -66,7 +66,7 @@ A scan that flickers between free and blocked does not delay a stop, however lon
 [count of reactions](control-loop.md).
 """
 
-#: The median and the maximum of how late `after` was, by `expiry.py`, in the order of `KINDS`.
+#: Median and maximum delay of `after`, by `expiry.py`, in the order of `KINDS`.
 TIMES = {"compiled-ros1": "1.5, 13.1", "compiled-ros2": "4.0, 20.2", "run-ros2": "4.8, 23.5"}
 
 COSTS = """\
@@ -89,13 +89,13 @@ most {most} of a core (measured: {kinds}). `robosc view` and the monitor themsel
 
 
 def percentiles(seconds: Sequence[float]) -> dict[str, float]:
-    """Milliseconds: the median, what 99 of 100 keep (nearest rank), and the most."""
+    """Return the median, the 99th percentile (nearest rank) and the maximum, in milliseconds."""
     ordered = sorted(1000 * second for second in seconds)
     return {"median": median(ordered), "p99": ordered[math.ceil(0.99 * len(ordered)) - 1], "max": ordered[-1]}
 
 
 def page(results: Results) -> str:
-    """The page, in Markdown, of all that was measured."""
+    """Return the page of all measurements, in Markdown."""
     parts = [HEAD.format(machine=results["machine"])]
     stop, obstacle, costs, seen = (_of(results, part) for part in ("stop", "obstacle", "costs", "watched"))
     if stop or obstacle:
@@ -158,7 +158,7 @@ def _costs(costs: Mapping[Kind, Results]) -> str:
 
 
 def _engine(costs: Mapping[Kind, Results]) -> str:
-    """The means of what the engine takes in a tick, in microseconds."""
+    """Return the range of the engine's mean times in a tick, in microseconds."""
     nodes = [node for measured in costs.values() for node in measured["nodes"].values()]
     return _range((node["engine"]["mean"] for node in nodes if "engine" in node), ".1f", "")
 

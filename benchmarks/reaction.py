@@ -1,14 +1,14 @@
-"""How soon nodes react, and what they cost, over the ROS that is there; writes `docs/performance.md`.
+"""Measure reaction times and costs of nodes over the installed ROS; write `docs/performance.md`.
 
     python benchmarks/reaction.py [--ros 1] [--nodes compiled] [--parts stop obstacle costs watched] [--stops 1000]
                                   [--obstacles 200] [--seconds 300] [--rounds 9] [--keep FOLDER]
 
-Without options: compiled nodes of ROS 1 and ROS 2, and `robosc run`, as far as they are there. Each of the three takes
-fourteen minutes, six of them for the costs, and what is compiled is built before. What was measured is kept in
-`benchmarks/performance.json`: what is left out this time stays on the page. `--keep` names a folder for what is built,
-so that the next call need not build it again.
+Without options: compiled nodes of ROS 1 and ROS 2, and `robosc run`, as far as they are installed. Each of the three
+takes fourteen minutes, six of them for the costs; compiled nodes are built before. The measurements are stored in
+`benchmarks/performance.json`: parts that are left out this time stay on the page. `--keep` names a folder for the
+builds, so that the next call need not repeat them.
 
-Compiled ROS 2 nodes need an rclcpp in AMENT_PREFIX_PATH, `run` the environment that `./run-tests` makes.
+Compiled ROS 2 nodes need an rclcpp in AMENT_PREFIX_PATH, `run` the environment that `./run-tests` creates.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def _options() -> argparse.Namespace:
 
 
 def _prepared(version: int, kind: str, folder: Path) -> Workspace | Runner | str:
-    """What nodes of a kind are started with, or why there are none."""
+    """Return the nodes of a kind, or the reason why there are none."""
     found = find_rclpy() if kind == "run" else {1: find_ros1, 2: find_ros2}[version]()
     if found.ros is None:
         return ", ".join(found.missing)

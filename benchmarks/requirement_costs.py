@@ -1,8 +1,8 @@
-"""What each kind of requirement costs synthesis: stations in a ring, each with one more requirement of the kind.
+"""Measure the costs of each kind of requirement in synthesis: a ring of stations, each with one requirement.
 
     python benchmarks/requirement_costs.py [--stations 20 40]
 
-Prints the table of docs/synthesis.md: seconds are the best of three, all else is the same on every run.
+Prints the table of docs/synthesis.md. Seconds are the best of three; all other numbers are the same on every run.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _STATION = """component C{i} {{
 }}
 requirement grip{i} needs C{i}.level > 1 and !C{i}.open
 """
-#: One more for each station `i`, beside which `j` stands.
+#: Requirement of each station `i`, beside station `j`.
 KINDS = {
     "none": "",
     "`needs`": "requirement go{i} needs !C{j}.busy",
@@ -49,7 +49,7 @@ KINDS = {
 
 
 def synthesis_of(stations: int, kind: str) -> Synthesis:
-    """The synthesis of so many stations."""
+    """Return the synthesis of a ring of stations."""
     parts = [(_STATION + KINDS[kind]).format(i=number, j=(number + 1) % stations) for number in range(stations)]
     robot = robosc.load(text="\n".join(["robot Ring {", *parts, "}"]))
     return synthesize(robosc.to_sct(robot), statistics=Statistics())

@@ -1,13 +1,13 @@
-"""Builds generated packages with sanitizers and drives them: one scenario, the faults, load and unload, the end.
+"""Build generated packages with sanitizers and drive them: one scenario, the faults, load and unload, the end.
 
 python benchmarks/sanitized.py [--ros 1|2] [--sanitizer address|thread] [--packages NAME,...] [--folder FOLDER] [--page]
                                [PYTEST...]
 
-Without options all that this machine can: ROS 1 where it is installed, ROS 2 where `rclcpp` is. The tests are those of
-`tests/ros`, or those that are named among the further arguments, which go to pytest; then `--packages` says what they
-need, the only ones that are built. What is built and what is reported stays in `--folder`, if it is named. What came of
-it goes into `sanitized.json` and `docs/sanitizers.md`; `--page` writes the latter alone. Status 1: a sanitizer has
-found something in generated code.
+Without options it runs all that this machine supports: ROS 1 if it is installed, ROS 2 if `rclcpp` is. The tests are
+those of `tests/ros`, or those named by the further arguments, which go to pytest. Then `--packages` names the packages
+that they need; only these are built. Builds and reports stay in `--folder`, if it is named. The results go into
+`sanitized.json` and `docs/sanitizers.md`; `--page` writes only the latter. Ends with 1 if a sanitizer has reported an
+error in generated code.
 """
 
 from __future__ import annotations
@@ -39,17 +39,17 @@ PACKAGES = [*CONTROLLERS, "managed_porter", "managed_watch", "guard_layer", "ush
 ROUNDS = 125
 TESTS = ["tests/ros/faults", "tests/ros/test_line_follower.py", "tests/ros/test_layer.py"]
 TESTS += ["tests/ros/test_layer_times.py", "tests/ros/test_ros{}_node.py"]
-#: What is left out, and why, for the page.
+#: Suppressed reports, and the reasons, for the page.
 OPTIONS = {
     "ASAN_OPTIONS": "detect_leaks=0:new_delete_type_mismatch=0:verify_asan_link_order=0",
     "UBSAN_OPTIONS": "print_stacktrace=1",
     "TSAN_OPTIONS": "exitcode=0:second_deadlock_stack=1:history_size=4",
 }
-#: What takes its own locks in both orders within single calls, so that none who calls it could choose another order.
+#: Libraries that take their own locks in both orders within single calls, so that no caller could change the order.
 JUDGED = re.compile(r"lib(?:roscpp|rosconsole|log4cxx)\.so")
-#: What rclcpp does where a signal interrupts: it logs, under a lock, after each lock that is held there.
+#: Logging of rclcpp in an interrupt by a signal, under a lock, while other locks are held.
 INTERRUPTED = re.compile(r"rclcpp_logging_output_handler.*(?:\n *#.*)*CallUserSignalHandler")
-#: The page without its numbers.
+#: Page without its numbers.
 ABOUT = """# Sanitizers
 
 Sanitizers of GCC watch generated packages on a live ROS graph. This page shows what they reported. The address and
@@ -112,7 +112,7 @@ Results = dict[str, dict[str, Any]]
 
 
 def drive(ros: int, sanitizer: str, packages: list[str], folder: Path, more: list[str]) -> dict[str, Any]:
-    """Builds and drives one kind of packages; the tests that passed and failed, and what was reported where."""
+    """Build and drive one kind of packages; return the tests passed and failed, and the reports by place."""
     reports = folder / f"reports-{ros}-{sanitizer}"
     reports.mkdir(parents=True, exist_ok=True)
     for old in reports.iterdir():
@@ -124,12 +124,12 @@ def drive(ros: int, sanitizer: str, packages: list[str], folder: Path, more: lis
     workspace = folder / f"ros{ros}-{sanitizer}"
     environment = {
         **os.environ,
-        # Its are the sanitizers that are loaded before Python.
+        # The sanitizer libraries loaded before Python belong to this compiler.
         "CXX": "g++",
         "CFLAGS": flags,
         "CXXFLAGS": flags,
-        # Libraries of ROS may lack what only Python has, and those of messages, too; such that a program does not use,
-        # it shall not load.
+        # Libraries of ROS and of messages may have undefined symbols that only Python provides; programs do not load
+        # libraries that they do not use.
         "LDFLAGS": "-Wl,--as-needed,--allow-shlib-undefined",
         "ROBOSC_PACKAGES": " ".join(packages),
         "ROBOSC_PRELOAD": found.stdout.strip(),
@@ -160,7 +160,7 @@ def drive(ros: int, sanitizer: str, packages: list[str], folder: Path, more: lis
 
 
 def sorted_reports(texts: Iterable[str]) -> tuple[dict[str, int], dict[str, int]]:
-    """What was reported of generated code, and of libraries alone, each with how often."""
+    """Return the reports on generated code, and on libraries alone, with their counts."""
     ours: Counter[str] = Counter()
     others: Counter[str] = Counter()
     for text in texts:
@@ -172,10 +172,10 @@ def sorted_reports(texts: Iterable[str]) -> tuple[dict[str, int], dict[str, int]
 
 
 def of_generated_code(report: str) -> bool:
-    """Whether generated code itself does what is reported: not what it called, nor what called it.
+    """Return whether generated code itself causes a report, not its callers or callees.
 
-    Libraries that were not built with the thread sanitizer tell it nothing of their atomic counters. The order of locks
-    is also that of who calls, but for libraries that were `JUDGED`, and for what rclcpp does where it is `INTERRUPTED`.
+    Libraries that were not built with the thread sanitizer hide their atomic counters from it. The order of locks also
+    depends on callers, except for libraries that were `JUDGED`, and for rclcpp when it is `INTERRUPTED`.
     """
     generated = re.compile("|".join(rf"/{package}/(?:src|include)/" for package in PACKAGES))
     orders = "lock-order-inversion" in report
@@ -191,7 +191,7 @@ def of_generated_code(report: str) -> bool:
 
 
 def page(results: Results) -> str:
-    """The page of the documentation."""
+    """Return the page of the documentation."""
     lines = [
         "| | last run | packages | tests passed | failed | reports on generated code | on libraries alone |",
         "|---|---|---:|---:|---:|---:|---:|",

@@ -1,16 +1,17 @@
-"""How synthesis and the whole tool grow with their models; writes `docs/benchmarks.md` and its plots.
+"""Measure how synthesis and the whole tool scale with their models; write `docs/benchmarks.md` and its plots.
 
     pip install -e '.[benchmarks]'
     python benchmarks/scaling.py [--quick] [--families cells line] [--tools robosc faudes] [--limit 60]
                                  [--output FOLDER]
 
-Robots of any size (`benchmarks/families.py`) go through all of robosc, each in a process of its own, until one takes
-more of the processor than the limit. Beside it synthesis by the definition (`tests/synthesis/oracle.py`) and by
-libFAUDES on the same automata, with a third of the limit. All must find as many states as the family's formula says:
-where one doesn't, this ends with 1. `robosc transform` is measured as a command.
+Robots of any size (`benchmarks/families.py`) go through all of robosc, each in its own process, until one exceeds the
+limit of processor time. For comparison, synthesis by the definition (`tests/synthesis/oracle.py`) and by libFAUDES runs
+on the same automata, with a third of the limit. All must find as many states as the family's formula: if one differs,
+this ends with 1. `robosc transform` is measured as a command.
 
-What was measured is kept in `benchmarks/scaling.json`: what is left out this time stays on the page. `--quick` tries
-the least of each family; `--output` spares the page and what is kept. All of it takes a quarter of an hour.
+The measurements are stored in `benchmarks/scaling.json`: parts that are left out this time stay on the page. `--quick`
+tries the smallest robots of each family; `--output` leaves the page and the stored measurements unchanged. The whole
+run takes a quarter of an hour.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
 RUN = ROOT / "benchmarks" / "scaling_run.py"
 INTERFACES = ROOT / "benchmarks" / "interfaces"
 TOOLS = ("robosc", "definition", "faudes", "transform")
-#: The numbers of components that go through `robosc transform`, two in each cell.
+#: Numbers of components that go through `robosc transform`, two in each cell.
 COMPONENTS = (30, 62, 100, 300, 1000, 3000)
 COMMAND = ("transform", "--to", "cif,supervisor,ros1,ros2", "--interface-path", str(INTERFACES))
 
@@ -53,7 +54,7 @@ def main() -> int:
     results |= {"machine": options.machine, "limit": options.limit}
     with ThreadPoolExecutor(options.jobs) as pool:
         tools = _installed(options.tools)
-        # What takes longest goes first.
+        # The slowest job goes first.
         running = {pool.submit(_transforms, options): ("", "transform")} if "transform" in tools else {}
         running |= {
             pool.submit(_series, FAMILIES[name], tool, options): (name, tool)
@@ -98,7 +99,7 @@ def _installed(tools: Sequence[str]) -> list[str]:
 
 
 def _series(family: Family, tool: str, options: argparse.Namespace) -> list[dict[str, Any]]:
-    """One robot after the other, up to the first that does not finish."""
+    """Measure one robot after the other, up to the first that does not finish."""
     measured = []
     limit = options.limit if tool == "robosc" else options.limit // 3
     sizes = family.sizes[: 1 if tool == "definition" else 2] if options.quick else family.sizes
@@ -113,7 +114,7 @@ def _series(family: Family, tool: str, options: argparse.Namespace) -> list[dict
 
 
 def _transforms(options: argparse.Namespace) -> list[dict[str, Any]]:
-    """The command, from a cold start, and for each model its phases."""
+    """Measure the command from a cold start, and the phases of each model."""
     measured = []
     for components in COMPONENTS[: 1 if options.quick else None]:
         text = cells(components // 2)
@@ -129,7 +130,7 @@ def _transforms(options: argparse.Namespace) -> list[dict[str, Any]]:
 
 
 def _measured(program: Sequence[str], text: str, limit: int) -> dict[str, Any]:
-    """What a program of Python takes and says of a model: seconds, seconds of the processor, megabytes at most."""
+    """Return the results and costs of a Python program for a model: wall and processor seconds, peak megabytes."""
     with tempfile.TemporaryDirectory() as folder:
         model, output = Path(folder) / "model.rscd", Path(folder) / "output"
         model.write_text(text)
@@ -150,7 +151,7 @@ def _measured(program: Sequence[str], text: str, limit: int) -> dict[str, Any]:
         if process.returncode > 0:
             raise RuntimeError(said)
         lines = output.read_text().splitlines()
-        # What a library says stands before; a command that prints no numbers may print warnings.
+        # A library may print before; a command without numbers may print warnings.
         found = json.loads(lines[-1]) if lines and lines[-1].startswith("{") else {}
     return (
         {"finished": process.returncode == 0}
@@ -164,7 +165,7 @@ def _measured(program: Sequence[str], text: str, limit: int) -> dict[str, Any]:
 
 
 def disagreements(results: dict[str, Any]) -> Iterator[str]:
-    """Where somebody counts other states than the formula says, or than another does without requirements."""
+    """Yield the robots for which a count differs from the formula, or from another tool without requirements."""
     for name, tools in results["families"].items():
         uncontrolled: dict[int, tuple[str, int]] = {}
         for tool, measured in tools.items():

@@ -1,4 +1,4 @@
-"""The page of the documentation with what `scaling.py` has measured, and its plots."""
+"""Page of the documentation with the measurements of `scaling.py`, and its plots."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ the generated files. The limit is {limit} s.
 
 
 def page(results: Results) -> str:
-    """The page, in Markdown, of all that was measured."""
+    """Return the page of all measurements, in Markdown."""
     families = {name: results["families"][name] for name in FAMILIES if name in results["families"]}
     parts = [HEAD.format(machine=results["machine"], limit=results["limit"]), FAMILIES_HEAD, _largest(families)]
     if results["transform"]:
@@ -78,7 +78,7 @@ def page(results: Results) -> str:
 
 
 def _largest(families: Results) -> str:
-    """The largest robot of each family that was finished, and the largest that the explicit syntheses finish."""
+    """Return the largest robot of each family that was finished, by robosc and by the explicit syntheses."""
     head = ["family", "N", "lines", "supervised states", "synthesis", "all", "MB", "growth"]
     rows = []
     for name in families:
@@ -108,7 +108,7 @@ def _finished(families: Results, name: str, tool: str) -> list[Results]:
 
 
 def _supervised(families: Results, name: str, tool: str) -> list[Results]:
-    """Those whose synthesis was finished, whatever became of the rest."""
+    """Return the measurements with a finished synthesis."""
     return [point for point in families.get(name, {}).get(tool, ()) if "states" in point]
 
 
@@ -121,7 +121,7 @@ def _synthesis_seconds(point: Results) -> float:
 
 
 def growth(points: Sequence[Results], measure: Callable[[Results], float]) -> str:
-    """`N^k`, or `b^N` where that leaves far less unexplained, for the last four points; a dash for fewer than three."""
+    """Return `N^k`, or `b^N` if that fits the last four points far better; a dash for fewer than three points."""
     last = [(point["n"], measure(point)) for point in points if measure(point) > 0][-4:]
     if len(last) < 3:
         return "-"
@@ -150,7 +150,7 @@ def _transform(points: Sequence[Results]) -> str:
 
 
 def _number(value: int) -> str:
-    """With commas as long as it is short, else its first digits and power of ten."""
+    """Return a short number with commas, and a long one as its first digits and a power of ten."""
     if value < 10**9:
         return f"{value:,}"
     power = len(str(value)) - 1
@@ -163,7 +163,7 @@ def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 
 def plots(results: Results) -> dict[str, str]:
-    """File name to SVG; the same for the same results. Raises ImportError where matplotlib is not installed."""
+    """Return the plots as SVG by file name, reproducibly. Raises ImportError if matplotlib is not installed."""
     import matplotlib as mpl  # noqa: PLC0415  # it may be missing
     from matplotlib.figure import Figure  # noqa: PLC0415
 

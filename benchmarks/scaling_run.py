@@ -1,9 +1,9 @@
-"""One measurement of `scaling.py`, in a process of its own: prints what it found, as JSON.
+"""Run one measurement of `scaling.py` in its own process; print the results as JSON.
 
     python benchmarks/scaling_run.py TOOL MODEL.rscd
 
-TOOL is `robosc`, all of it phase by phase, or only the synthesis by the definition (`definition`) or by `faudes`. Where
-the processor's time is limited, it prints at the limit what it has found until then.
+TOOL is `robosc`, all of it phase by phase, or only the synthesis by the definition (`definition`) or by `faudes`. At a
+limit of processor time, it prints its results up to then.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ TARGETS = ("cif", "supervisor", "ros1", "ros2")
 
 
 class Costs(Statistics):
-    """What each phase takes: seconds that went by, and seconds of the processor."""
+    """Costs of each phase: wall seconds, and processor seconds."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -49,7 +49,7 @@ class Costs(Statistics):
 
     @contextmanager
     def during(self, phase: str) -> Iterator[None]:
-        """Adds to a phase what the `with` block takes."""
+        """Add the costs of the `with` block to a phase."""
         began = perf_counter(), process_time()
         before = self.phases.get(phase, (0.0, 0.0))
         try:
@@ -89,7 +89,7 @@ def _stop(*_: object) -> None:
 
 def _robosc(path: Path, found: dict[str, Any]) -> None:
     with tempfile.TemporaryDirectory() as folder:
-        # What is loaded and built once only is no part of the phases.
+        # One-time loading and building is no part of the phases.
         first = Path(folder) / "first.rscd"
         first.write_text(FAMILIES["sensors"].text(1))
         _transform(first, Costs(), {})

@@ -1,10 +1,10 @@
-"""Searches longer: compares synthesis, verification, engines and all else with their definitions on many random models.
+"""Compare synthesis, verification, engines and other parts with their definitions on many random models.
 
     python benchmarks/search.py [times]
 
-runs the tests with random input, and those that search, with `times` as many examples as `./run-tests` does (10 unless
-told). Of listings, patterns and the two large robots as many times the operations and states are tried, which are all
-that `verify` tries.
+runs the tests with random input, and the searching tests, with `times` as many examples as `./run-tests` (default 10).
+For listings, patterns and the two large robots, as many times the operations and states are tried, which are all that
+`verify` tries.
 """
 
 import os
@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 PROJECT = Path(__file__).parents[1]
-#: What searches, beside the tests that hypothesis makes random input for.
+#: Searching tests besides those with random input of hypothesis.
 TESTS = (
     "synthesis",
     "analysis",

@@ -1,7 +1,7 @@
-"""How long a command takes from a cold start, beside what Python needs to import the libraries that it uses.
+"""Time commands from a cold start, relative to Python's import of the libraries that they use.
 
-Prints for each command the median wall time of runs in new processes, that of importing the same third-party modules
-and nothing else, and their ratio: what is above 1 is our own code and the work itself. All modules are compiled before.
+Prints for each command the median wall time of runs in new processes, the median of importing only the same third-party
+modules, and their ratio: the part above 1 is our own code and the work itself. All modules are compiled before.
 
     python benchmarks/startup.py [RUNS]
 """
@@ -17,7 +17,7 @@ from pathlib import Path
 
 MODEL = Path(__file__).parent.parent / "examples" / "line_follower" / "line_follower.rscd"
 
-#: Runs a command and prints the third-party modules that it loaded, in that order.
+#: Program that runs a command and prints the third-party modules that it loaded, in that order.
 LOADED = """
 import sys
 from robosc.cli import main
@@ -28,7 +28,7 @@ except SystemExit as end:
 ours = {"robosc", "__main__", *sys.stdlib_module_names}
 print(*(name for name in sys.modules if name.partition(".")[0] not in ours))
 """
-#: Imports modules; some libraries make modules that can't be imported by name.
+#: Program that imports modules; some libraries create modules that can't be imported by name.
 IMPORT = """
 import sys
 from importlib import import_module
@@ -68,7 +68,7 @@ def main() -> None:
         for name, command in commands.items():
             loaded = output_of(["-c", LOADED, *command]).splitlines()[-1].split()
             imports = ["-c", IMPORT, *loaded]
-            # One after the other, so that whatever else the machine does slows down both.
+            # Alternate, so that other load of the machine slows both.
             pairs = [(seconds(["-m", "robosc", *command]), seconds(imports)) for _ in range(runs)]
             ours, theirs = (statistics.median(times) for times in zip(*pairs, strict=True))
             print(f"{name:<48} {ours * 1000:>6.0f} ms {theirs * 1000:>6.0f} ms {ours / theirs:>6.2f}")

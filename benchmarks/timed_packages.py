@@ -25,7 +25,7 @@ TIMED = r"""  void tick() {
 
 @dataclass(frozen=True)
 class Scenario:
-    """A node that is measured: its title, its package, its model; whether it is a layer, and has no ticks."""
+    """Measured node: its title, its package, its model, and whether it is a layer without ticks."""
 
     title: str
     package: str
@@ -34,7 +34,7 @@ class Scenario:
 
     @property
     def name(self) -> str:
-        """As the simulator knows it."""
+        """The name in the simulator."""
         return self.model.stem
 
 
@@ -44,7 +44,7 @@ def _controller(title: str) -> Scenario:
 
 
 SUPERVISED = EXAMPLES / "supervised_line_follower"
-#: As table 6.8 of the thesis has them, and the layer.
+#: Rows of table 6.8 of the thesis, and the layer.
 SCENARIOS = [
     *map(
         _controller,
@@ -65,12 +65,12 @@ SCENARIOS = [
         layer=True,
     ),
 ]
-#: The controller behind the layer; it is not measured.
+#: Controller behind the layer; it is not measured.
 STEPPER = Scenario("Line stepper", "line_stepper_controller", SUPERVISED / "controller" / "line_stepper.rscd")
 
 
 def timed_packages(version: int, folder: Path) -> list[Path]:
-    """Generates the packages for a ROS into a folder; where they are. What has not changed is not written again."""
+    """Generate the packages for a ROS into a folder and return their paths. Unchanged files are not rewritten."""
     with tempfile.TemporaryDirectory() as generated:
         return [
             _timed(scenario, version, Path(generated), folder / scenario.package)
@@ -79,7 +79,7 @@ def timed_packages(version: int, folder: Path) -> list[Path]:
 
 
 def scenarios(version: int) -> list[Scenario]:
-    """The scenarios that run over a ROS: layers are nodes of ROS 2."""
+    """Return the scenarios that run over a ROS: layers are nodes of ROS 2."""
     return [scenario for scenario in SCENARIOS if version == 2 or not scenario.layer]
 
 

@@ -1,4 +1,4 @@
-"""`robosc run`, with the time of each tick: at its end it writes them to the file that ROBOSC_TICK_TIMES names."""
+"""Run `robosc run` and write the time of each tick at its end to the file that ROBOSC_TICK_TIMES names."""
 
 from __future__ import annotations
 

@@ -1,14 +1,14 @@
-"""How near to the shortest the tours of `--with-tests` are: prints a table of the examples.
+"""Compare the tours of `--with-tests` with the shortest possible ones; print a table of the examples.
 
     python benchmarks/tours.py [EXAMPLE...]
 
-The bound is the least number of steps of a flow through the places of the control loop that shows all that the tours
-show, in as many runs: no runs have fewer, since they are such a flow, in whole steps. A time that nobody waits for may
-be up at any place where it runs, as often as there are steps for it to run in or waits for another one; in the flow a
-tick comes before it, in a run it may be up before the tick of its period. Where a tour is planned without a look at all
-places, parts of steps are allowed, too: minutes for the sprayer. There is none for the warehouse robot, which has too
-many places. Where a tour does not show all, a line below the table says how much of what is missing is seen on any
-step. Needs scipy (`pip install 'robosc[benchmarks]'`).
+The bound is the least number of steps of a flow through the places of the control loop that shows all goals of the
+tours, in as many runs. No runs have fewer steps, since they are such a flow, in whole steps. A timer may expire at any
+place where it runs, as often as there are steps for it to run in or waits for another timer. In the flow a tick comes
+before it; in a run it may expire before the tick of its period. If a tour is planned without exploring all places, the
+bound allows parts of steps, too: this takes minutes for the sprayer. There is no bound for the warehouse robot, which
+has too many places. If a tour misses goals, a line below the table reports how many of them any step shows. Needs scipy
+(`pip install 'robosc[benchmarks]'`).
 """
 
 from __future__ import annotations
@@ -32,18 +32,18 @@ if TYPE_CHECKING:
     from robosc.node_tests.steps import Place, Step
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
-#: Seconds for each bound: of one in whole steps what is proved until then counts.
+#: Seconds for each bound. In whole steps, the bound proved until then counts.
 PATIENCE = 600
-#: There is no bound for more places.
+#: Maximum number of places for a bound.
 MOST = 20_000
 
 
 class TimelessPlan(Plan):
-    """A plan for which no time passes but on the wait for one that is up, and any time that runs may be up first."""
+    """Plan in which time passes only in waits for a timer, and any running timer may expire first."""
 
     @classmethod
     def of(cls, plan: Plan) -> TimelessPlan:
-        """The plan from the same place on."""
+        """Return the plan from the same place on."""
         made = cls(plan.model, plan.settings, plan.stimuli, plan.longest, plan.period, plan.pause)
         start = plan.places[0]
         made.place(plan._known[start].saved, pauses=start.pauses)  # noqa: SLF001 - of its own class
@@ -51,11 +51,11 @@ class TimelessPlan(Plan):
 
     @property
     def periods(self) -> list[int]:
-        """How many whole periods each time takes."""
+        """Return the duration of each timer in whole periods."""
         return [timer.milliseconds // self.period for timer in self._loop.engine.executed.timers]
 
     def expiries(self, place: Place) -> dict[int, Step]:
-        """By the time that is up, among those that run, the step that follows, whichever would be up first."""
+        """Return the step that follows each running timer, as if that timer expired first."""
         loop, found = self._loop, {}
         for number in sorted(place.running):
             loop.restore(self._known[place].saved)
@@ -68,7 +68,7 @@ class TimelessPlan(Plan):
 
 
 class Start(Tour):
-    """A tour without a step: it sees what is seen before the first one."""
+    """Tour without a step, which sees only the goals before the first one."""
 
     def _tour(self) -> list[Step]:
         super()._tour()
@@ -76,15 +76,15 @@ class Start(Tour):
 
 
 def bound(plan: TimelessPlan, runs: int, wanted: list[int]) -> int | None:
-    """The least number of steps that a flow has which shows all that is wanted; None where not all places are known.
+    """Return the least number of steps of a flow that shows all wanted goals; None if not all places are known.
 
-    What is wanted has a bit for each goal.
+    `wanted` has a bit for each goal.
     """
     if look_at_all(plan) is None:
         return None
     arcs = [arc for place in plan.places for arc in all_arcs(plan, place)]
     number = {place: row for row, place in enumerate(plan.places)}
-    # A flow of each arc, then what ends in each place. The first place is where runs begin.
+    # A flow of each arc, then the runs that end in each place. Runs begin in the first place.
     columns = len(arcs) + len(number)
     balance, starts = lil_matrix((len(number), columns)), np.zeros(len(number))
     for column, arc in enumerate(arcs):
@@ -112,21 +112,21 @@ def bound(plan: TimelessPlan, runs: int, wanted: list[int]) -> int | None:
 
 
 class Arc(NamedTuple):
-    """What a run can do at a place: a step, or on the way a time is `up` that nobody waits for, which is none."""
+    """Action of a run at a place: a step, or the expiry of a timer (`up`) without a wait, which is no step."""
 
     start: Place
     step: Step
     up: int | None
 
     def lets_run(self, timer: int, periods: int) -> int:
-        """For how many of the periods that a time takes it may have run meanwhile; below 0: it is up by itself here."""
+        """Return the periods of a timer that may pass meanwhile; negative if the timer expires here without a wait."""
         if self.up is not None:
             return -periods if self.up == timer else 0
         return periods if self.step.stimulus == WAIT else 1
 
 
 def all_arcs(plan: TimelessPlan, place: Place) -> list[Arc]:
-    """The steps from a place, with the wait for any time that runs instead of that for the first; and what is none."""
+    """Return the steps from a place, with waits for any running timer, and expiries of timers without waits."""
     steps = [step for step in plan.steps(place) if step.stimulus != WAIT or place.pauses]
     up = plan.expiries(place)
     return [
@@ -136,9 +136,9 @@ def all_arcs(plan: TimelessPlan, place: Place) -> list[Arc]:
 
 
 def look_at_all(plan: TimelessPlan) -> int | None:
-    """What is shown on any step between the places of the control loop, a bit for each goal; None: there are too many.
+    """Return the goals that any step between the places shows, as bits; None if there are too many places.
 
-    A place is the state, the times that run, and whether it pauses.
+    A place is the state, the running timers, and whether it pauses.
     """
     pending = plan.places[:1]
     seen, shown = set(pending), 0

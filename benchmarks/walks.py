@@ -1,11 +1,11 @@
-"""How all of robosc grows with models that are long in one respect; writes `docs/walks.md`.
+"""Measure how all of robosc scales with models that are long in one respect; write `docs/walks.md`.
 
     python benchmarks/walks.py [--families provides imports] [--sizes 100 400 1600 5000] [--limit 120] [--output FOLDER]
 
-The models are those of `benchmarks/walk_families.py`. Each goes through all of robosc in a process of its own, of which
-the seconds of the processor are counted after everything has been loaded and a small model has warmed it up. What was
-measured is kept in `benchmarks/walks.json`: what is left out this time stays on the page. `tests/benchmarks` holds the
-same walks to account in calls instead of seconds.
+The models are those of `benchmarks/walk_families.py`. Each goes through all of robosc in its own process. Processor
+seconds are counted after everything has been loaded and a small model has warmed it up. The measurements are stored in
+`benchmarks/walks.json`: parts that are left out this time stay on the page. `tests/benchmarks` checks the same walks in
+calls instead of seconds.
 """
 
 from __future__ import annotations
@@ -130,7 +130,7 @@ def _through(path: Path) -> None:
 
 
 def exponent(points: list[dict[str, Any]]) -> float:
-    """The exponent of the growth, of the sizes that were finished; that of too slow ones is out of sight."""
+    """Return the exponent of the growth, over the finished sizes only."""
     finished = [point for point in points if point["finished"]]
     if len(finished) < 2:
         return float("inf")
@@ -141,7 +141,7 @@ def exponent(points: list[dict[str, Any]]) -> float:
 
 
 def page(results: dict[str, Any]) -> str:
-    """The page of the documentation."""
+    """Return the page of the documentation."""
     sizes = sorted({point["n"] for points in results["families"].values() for point in points})
     lines = [HEAD.format(machine=results["machine"], most=MOST)]
     lines += [

@@ -1,4 +1,4 @@
-"""What it costs a node that somebody looks: the line follower on its line, in turn alone and with who looks."""
+"""Costs for a node of being watched: the line follower on its line, in turn alone and with observers."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 ROOT = TESTS.parents[1]
 MODEL = EXAMPLES / "line_follower" / "line_follower.rscd"
-#: A monitor of robots: it says when it has heard of the node.
+#: Monitor of robots; it reports when it has received the node's status.
 MONITOR = """\
 from topics import connect
 topics = connect("2", "monitor")
@@ -33,14 +33,15 @@ topics.listen("/diagnostics", "diagnostic_msgs/DiagnosticArray", lambda message:
 while True:
     topics.receive(1.0)
 """
-#: Seconds in which the node starts, before it is measured.
+#: Seconds in which the node starts, before the measurement.
 _WARM_UP = 5.0
 
 
 def watched(nodes: Workspace | Runner, runner: Runner, folder: Path, rounds: int, seconds: float) -> dict[str, Any]:
-    """Shares of a core that the node takes while nobody looks, the page does, a monitor does: medians of the rounds.
+    """Return the node's share of a core without observers, with the page, and with a monitor: medians of the rounds.
 
-    What a look costs is the median of the differences to nobody in the same round. `runner` runs `robosc view`.
+    The cost of an observer is the median of the differences to no observer in the same round. `runner` runs
+    `robosc view`.
     """
     with middleware(nodes, folder) as processes:
         node = processes.start("node", one_process(nodes, PACKAGE))
@@ -72,14 +73,14 @@ def watched(nodes: Workspace | Runner, runner: Runner, folder: Path, rounds: int
 
 
 def _processor(pid: int) -> float:
-    """Seconds of the processor that a process has taken."""
+    """Return the processor seconds that a process has taken."""
     fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 @contextmanager
 def page_served(processes: Processes, runner: Runner, folder: Path) -> Iterator[str]:
-    """The address of the page of `robosc view` beside the line follower."""
+    """Serve the page of `robosc view` beside the line follower; yield its address."""
     path = os.pathsep.join(filter(None, (str(ROOT), processes.environment.get("PYTHONPATH"))))
     command = ["env", f"PYTHONPATH={path}", runner.ros.python, "-m", "robosc", "view", MODEL, "--ros2"]
     process, log = processes.start("view", command), folder / "view.log"
@@ -90,7 +91,7 @@ def page_served(processes: Processes, runner: Runner, folder: Path) -> Iterator[
 
 @contextmanager
 def _page(processes: Processes, runner: Runner, folder: Path) -> Iterator[None]:
-    """The page, when it has shown what the node tells."""
+    """Open the page and wait until it has shown a report of the node."""
     with page_served(processes, runner, folder) as address:
         with urlopen(f"{address}moments", timeout=60) as stream:  # noqa: S310  # loopback
             while b'"event"' not in stream.readline():
