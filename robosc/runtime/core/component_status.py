@@ -33,7 +33,7 @@ class Own:
 
 
 class StatusReporter:
-    """Publish the states of all components once in a number of ticks if somebody subscribes; 0 disables it."""
+    """Publish the states of all components once in a number of ticks if there is a subscription; 0 disables it."""
 
     def __init__(self, graph: rosgraph.RosGraph, port: Port, data: NodeData, blocking: Blocking, own: Own) -> None:
         self._components = components(graph)

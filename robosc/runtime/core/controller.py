@@ -205,7 +205,7 @@ class Controller(EventHandler):
                 sender.send(sender.message)
                 self._log.write(self._port.now(), "outside", event_name(sending.event), sender.logged)
 
-    # What comes in
+    # Incoming data
 
     @contextmanager
     def _batch(self) -> Iterator[None]:
@@ -243,7 +243,7 @@ class Controller(EventHandler):
         with self._batch():
             pass
 
-    # What goes out
+    # Outgoing data
 
     def _may_happen(self, event: sct.Event) -> bool:
         sender, name = self._senders.get(event), event_name(event)

@@ -159,7 +159,7 @@ class EventHandler:
             goals.leave()
         self._log.close()
 
-    # What comes in
+    # Incoming data
 
     @contextmanager
     def _batch(self) -> Iterator[None]:
@@ -286,7 +286,7 @@ class EventHandler:
             return False
         return True
 
-    # What happens
+    # Events
 
     def _before(self, name: str) -> bool:
         event = self._events[name]

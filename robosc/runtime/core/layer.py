@@ -130,7 +130,7 @@ class Layer(EventHandler):
         ]
         return [*blocked, *(f"{name}: {trouble}" for name, trouble in troubles if trouble)]
 
-    # What happens
+    # Events
 
     def _follow_up(self) -> None:
         self._control.settle()
