@@ -2,7 +2,7 @@
 
     python benchmarks/cut_off.py [--every 1] [--processes 2] [EXAMPLE ...]
 
-Each text is cut off behind each of its characters, as it is while somebody types it. Each kind of request is answered
+Each text is cut off behind each of its characters, as it is while a user types it. Each kind of request is answered
 there, as tests/editor/test_robustness.py does at some positions. Prints a row for each example, and ends with the first
 failure. All examples take an hour or two of one processor. Needs `pip install 'robosc[test]'`.
 """

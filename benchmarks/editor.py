@@ -3,7 +3,7 @@
     python benchmarks/editor.py [--lines 1000 10000] [--keys 20] [--edits 2000]
 
 Prints the table of docs/editor.md. The server runs in its own process, over its standard input and output, without
-its pause while somebody types. A key is a letter within a name, typed and taken back, so that findings appear and
+its pause while a user types. A key is a letter within a name, typed and taken back, so that findings appear and
 disappear. Brackets hold processor time, of a key the mean, on which other programs have less influence. Needs
 `pip install 'robosc[test]'`.
 """
@@ -78,7 +78,7 @@ async def measure(lines: int, keys: int, edits: int) -> str:
                 at_first = _megabytes(client)
             version += 1
             replace(client, uri, version, (inserted, "x") if edit % 2 == 0 else (taken, ""))
-            if edit % 10 == 9:  # as fast as somebody types, findings come now and then
+            if edit % 10 == 9:  # at typing speed, findings arrive now and then
                 await findings(client, uri, version)
         at_last = _megabytes(client)
         await client.shutdown_session()

@@ -160,7 +160,7 @@ class Editor:
         self.page.locator(".monaco-editor .view-line").first.wait_for()
 
     def go(self, text: str, into: int = 0, *, name: str = "cart.rscd", nth: int = 0) -> None:
-        """Move the cursor `into` characters behind the start of an occurrence of a text in a file's original content."""
+        """Move the cursor to an occurrence of a text in a file's original content, `into` characters into it."""
         content = (EXTENSION / "trial" / name).read_text(encoding="utf-8")
         offset = -1
         for _ in range(nth + 1):
