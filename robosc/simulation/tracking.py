@@ -25,8 +25,8 @@ class ReportError(ValueError):
 class Told:
     """Event that has happened, None if only a state was reported; the state after it, and the transitions taken.
 
-    `variables` are the reported values of that state, by `Component.variable`, also of
-    those that the node keeps itself.
+    `variables` are the reported values of that state, by `Component.variable`, also of those that the
+    node keeps itself.
     """
 
     event: str | None
