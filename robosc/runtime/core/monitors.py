@@ -83,7 +83,7 @@ class GraphMonitor:
         return self._faults.get(element, ())
 
     def has_other_type(self, client: Client) -> bool:
-        """Return whether all servers at the last check were of another type."""
+        """Return whether the last check found servers of another type only."""
         return client in self._other_types
 
     def _look(self) -> None:
