@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic
     from robosc.metamodel import expression as ex
     from robosc.node_tests.robot import RunningGoal
+    from robosc.node_tests.samples import Read
     from robosc.ros_types import RosDistribution, RosTypes
     from robosc.runtime.core.json_text import Json
     from robosc.runtime.core.port import Client
@@ -261,9 +262,10 @@ class Player(Drive):
             kind = self.incoming[event]
             reads = [read.path for _, shown in kind.events for read in shown]
             data = None
-            if line.data is not None and not line.is_message and reads:
+            is_message = line.is_message or _is_raw([read for _, shown in kind.events for read in shown], line.data)
+            if line.data is not None and not is_message and reads:
                 data = {"value": _by_index(line.data, reads)}
-            given = dict(line.data) if line.is_message else None
+            given = dict(line.data) if is_message else None
             played = TraceLine(line.span.line, 0.0, "in", event_name(event), data, given)
             fields = merged(fields, Reader(described(kind)).message([played]))
         values = leaf_values(fields)
@@ -493,6 +495,41 @@ _WHY = {
     Blocked.REQUIREMENT: "its requirements forbid it",
     Blocked.SYNTHESIS: "synthesis forbids it",
 }
+
+
+def _is_raw(reads: Sequence[Read], data: Any) -> bool:
+    """Return whether data has the fields of the ROS message, not what the event log has in their place.
+
+    The event log has literals for enums, and lists for arrays that the model reads as a whole. Raises NamingError for
+    data with both, and for a lone value in the place of a literal.
+    """
+    values = [(read, _value_at(data, read.path)) for read in reads]
+    raw = [
+        value
+        for read, value in values
+        if value is not None
+        and (
+            not isinstance(value, str)
+            if read.conversion is not None
+            else isinstance(value, dict) and bool(value) and all(name.isdigit() for name in value)
+        )
+    ]
+    has_literals = any(read.conversion is not None and isinstance(value, str) for read, value in values)
+    if raw and (has_literals or not isinstance(data, dict)):
+        raise NamingError(
+            f"{json.dumps(raw[0])} is data of ROS in the place of a literal", "write `with message {…}` with all fields"
+        )
+    return bool(raw)
+
+
+def _value_at(data: Any, path: Sequence[str]) -> Any:
+    """Return the value at a path of fields and indices; None if there is none. A lone value has every path."""
+    for step in path:
+        if isinstance(data, list):
+            data = data[int(step)] if step.isdigit() and int(step) < len(data) else None
+        elif isinstance(data, dict):
+            data = data.get(step)
+    return data
 
 
 def _by_index(value: Any, reads: Sequence[Sequence[str]]) -> Any:

@@ -305,6 +305,8 @@ def _misfit(wire: WireType, value: Any) -> str | None:
     if kind == "integer":
         low, high = INTEGER_RANGES[wire.name]
         return None if low <= value <= high else f"an integer from {low} to {high} ({wire.name})"
+    if kind == "string" and any("\ud800" <= character <= "\udfff" for character in value):
+        return "a text that UTF-8 can encode"
     if wire.name == "float32" and abs(value) >= _FLOAT32:
         return "a number that a float32 holds"
     return None

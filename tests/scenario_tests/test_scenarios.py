@@ -124,6 +124,63 @@ def test_a_misspelt_field(folder: Path) -> None:
     assert "hint: did you mean `ranges`?" in answer.stdout
 
 
+LIDAR = """robot X {
+  interface laser use LaserScan from sensor_msgs
+  datatype object LaserScan { ranges: array(double) range_max: double }
+  datatype enum Ahead from LaserScan to { value.ranges[0] > 0.5 -> clear default -> near }
+  component Lidar {
+    outgoing message scan with identifier: "/scan", type: Ahead links laser
+    outgoing message frame with identifier: "/frame", type: string
+    outgoing message lamp with identifier: "/lamp", type: Lamp
+    outgoing message ranges with identifier: "/ranges", type: LaserScan links laser
+
+    behaviour {
+      variable number: integer(0..9)
+      variable lit: boolean
+      on response from frame
+      on response from lamp do lit := value = bright
+      on response from ranges do number := size(value.ranges)
+      initial marked state blocked { on response from scan if value = clear goto free }
+      marked state free { on response from scan if value = near goto blocked }
+    }
+  }
+  datatype enum Lamp from boolean to { value -> bright default -> dark }
+}"""
+
+
+@pytest.mark.parametrize(
+    ("line", "state"),
+    [
+        ('scan with {"ranges": [9.0]}', "Lidar.free"),
+        ('scan with {"ranges": {"0": 9.0}}', "Lidar.free"),
+        ('scan with {"ranges": [0.25]}', "Lidar.blocked"),
+        ("scan with clear", "Lidar.free"),
+        ('ranges with {"ranges": [1.0, 2.0]}', "Lidar.number = 2"),
+        ('ranges with {"ranges": {"2": 2.0}}', "Lidar.number = 3"),
+    ],
+)
+def test_data_of_ros_is_played_as_it_is(folder: Path, line: str, state: str) -> None:
+    (folder / "x.rscd").write_text(LIDAR)
+    (folder / "x.scenarios").write_text(f'scenario "one"\n  {line}\n  expect {state}\n')
+    answer = played_files("x.rscd", "x.scenarios")
+    assert answer.exit_code == 0, answer.stdout
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("lamp with true", "true is data of ROS in the place of a literal"),
+        ('frame with "\\ud800"', "expected a text that UTF-8 can encode"),
+    ],
+)
+def test_data_that_is_not_played(folder: Path, line: str, message: str) -> None:
+    (folder / "x.rscd").write_text(LIDAR)
+    (folder / "x.scenarios").write_text(f'scenario "one"\n  {line}\n  expect !Lidar.lit\n')
+    answer = played_files("x.rscd", "x.scenarios", "--traces", "traces")
+    assert answer.exit_code == 1
+    assert message in answer.stdout
+
+
 def test_what_can_not_come() -> None:
     """Nothing that follows it is tried; other scenarios are."""
     failing = "  error from dock\n  error from dock\n  expect Dock.docked\n"

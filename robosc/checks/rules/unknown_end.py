@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 #: Maximum number of unknown parts of a condition. A larger condition counts as one that can become true.
 _MOST = 10
+#: Maximum number of situations that silent transitions are followed to.
+_MOST_SITUATIONS = 200
 _CONNECTIVES = (ex.Conjunction, ex.Disjunction, ex.Implication, ex.Negation)
 
 
@@ -159,7 +161,7 @@ def _at_rest(first: _Situation) -> list[_Situation]:
         for transition in [*situation.state.transitions, *common]:
             if isinstance(transition, rsc.TauTransition) and situation.holds(transition.guard):
                 after = _taken(transition, situation)
-                if all(after.state is not other.state for other in reached):
+                if after not in reached and len(reached) < _MOST_SITUATIONS:
                     reached.append(after)
     return reached
 
