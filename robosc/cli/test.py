@@ -28,6 +28,7 @@ from robosc.cli.options import (
 from robosc.cli.progress import progress
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
+from robosc.diagnostics import Severity
 from robosc.files import reading as files
 from robosc.files.writing import temporary_folder, write
 from robosc.language import Documents
@@ -166,7 +167,7 @@ def _meant(
     types = RosTypes(paths.interfaces)
     reading = read_text(path, paths.libraries, types, Documents({path: longer.text}))
     findings = [*reading.findings, *(check(reading.base, reading.findings, types) if reading.base else ())]
-    report.add(finding for finding in map(longer.told, findings) if finding.rule == RULE)
+    report.add(longer.told(finding) for finding in findings if finding.severity is Severity.ERROR)
     report.stop_on_errors()
     robot: rsc.Robot = reading.base  # type: ignore[assignment]  # equal except for the properties
     model = robosc.to_sct(robot)

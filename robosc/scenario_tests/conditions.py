@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     from robosc.metamodel import sct
     from robosc.scenario_tests.reading import Holds
 
+_NAMED = re.compile(r"`([\w.]+)`")
+
 
 @dataclass(frozen=True)
 class Extended:
@@ -25,10 +28,14 @@ class Extended:
     conditions: Sequence[Holds]
 
     def told(self, finding: Diagnostic) -> Diagnostic:
-        """Return a finding with its place in the scenario file, if it is about a condition."""
+        """Return a finding with its place in the scenario file: at the condition that it is about."""
         number = finding.span.line - self.first
         if not 0 <= number < len(self.conditions):
-            return finding
+            # The robot has no faults of its own: a condition needs something that cannot be had.
+            names = _NAMED.findall(finding.message)
+            reading = (condition for condition in self.conditions if any(name in condition.text for name in names))
+            condition = next(reading, self.conditions[0])
+            return condition.fault(finding.message, "read a state, or a variable that the supervisor knows")
         condition = self.conditions[number]
         shift = condition.span.column - len(_before(number)) - 1
         line = condition.span.line

@@ -16,7 +16,7 @@ from robosc.node_tests.drive import Drive, DrivenController
 from robosc.node_tests.messages import Record, leaf_values
 from robosc.node_tests.trace_player import Incoming as Reader
 from robosc.node_tests.trace_player import Line as TraceLine
-from robosc.node_tests.trace_player import TraceError, merged, same
+from robosc.node_tests.trace_player import TraceError, merged, same, with_nan
 from robosc.node_tests.trace_test import described
 from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.json_text import json_text
@@ -93,6 +93,8 @@ def unknown_events(model: sct.SupervisoryControlModel, scenarios: Iterable[Scena
             continue
         if isinstance(line, Incoming):
             yield from _impossible(line, event)
+        elif isinstance(line, Sent) and not event.controllable:
+            yield line.fault(f"the {words(event)} comes from the robot: the controller does not send it")
 
 
 def unfit_data(graph: rosgraph.RosGraph, types: RosTypes, scenarios: Iterable[Scenario]) -> Iterator[Diagnostic]:
@@ -265,7 +267,7 @@ class Player(Drive):
             is_message = line.is_message or _is_raw([read for _, shown in kind.events for read in shown], line.data)
             if line.data is not None and not is_message and reads:
                 data = {"value": _by_index(line.data, reads)}
-            given = dict(line.data) if is_message else None
+            given = with_nan(dict(line.data)) if is_message else None
             played = TraceLine(line.span.line, 0.0, "in", event_name(event), data, given)
             fields = merged(fields, Reader(described(kind)).message([played]))
         values = leaf_values(fields)

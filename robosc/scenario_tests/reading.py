@@ -25,6 +25,8 @@ _EXPECTED = re.compile(
 )
 #: Other words that a line may begin with.
 _WORDS = ("scenario", "wait", "expect")
+_TEXT = re.compile(r'"[^"]*"')
+_CLOSING = {"(": ")", "[": "]", "{": "}"}
 
 
 @dataclass(frozen=True)
@@ -116,6 +118,18 @@ def read_scenarios(file: str, text: str) -> tuple[list[Scenario], list[Holds], l
     return reader.scenarios, reader.conditions, sorted(reader.findings, key=lambda finding: finding.span.line)
 
 
+def _is_whole(text: str) -> bool:
+    """Return whether the brackets of a condition are closed, and no comment begins or ends in it."""
+    plain = _TEXT.sub("", text)
+    opened = []
+    for character in plain:
+        if character in _CLOSING:
+            opened.append(_CLOSING[character])
+        elif character in _CLOSING.values() and (not opened or opened.pop() != character):
+            return False
+    return not opened and "/*" not in plain and "*/" not in plain
+
+
 def _without_comment(line: str) -> str:
     """Return a line up to `//`, unless that is within quotes."""
     quoted = False
@@ -191,6 +205,10 @@ class _Reader:
                 return
             column = line.span.end_column - len(text)
             span = Span(line.span.line, column, line.span.line, line.span.end_column)
+            if not _is_whole(text):
+                hint = "close each bracket, and write a comment behind `//`"
+                self.findings.append(Line(line.file, span).fault("this is not one condition", hint))
+                return
             self.conditions.append(Holds(line.file, span, text, len(self.conditions)))
             yield self.conditions[-1]
         elif given["sent"]:

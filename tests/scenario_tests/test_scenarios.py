@@ -116,7 +116,7 @@ def test_other_data() -> None:
 
 def test_a_misspelt_field(folder: Path) -> None:
     (folder / "line.scenarios").write_text(
-        'scenario "one"\n  scan with {"range": [0.2]}\n  expect correction not sent\n'
+        'scenario "one"\n  scan with {"range": [0.2]}\n  expect move not sent\n'
     )
     answer = played_files(str(EXAMPLE / "line_follower.rscd"), "line.scenarios")
     assert answer.exit_code == 1
@@ -179,6 +179,31 @@ def test_data_that_is_not_played(folder: Path, line: str, message: str) -> None:
     answer = played_files("x.rscd", "x.scenarios", "--traces", "traces")
     assert answer.exit_code == 1
     assert message in answer.stdout
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("expect Lidar.free) or (true", "this is not one condition"),
+        ("expect Lidar.free /* later", "this is not one condition"),
+        ("expect scan sent", "the response from `Lidar.scan` comes from the robot: the controller does not send it"),
+        ("expect Lidar.far > 0.3", "the supervisor needs it, expected boolean, an integer with a range or an enum"),
+    ],
+)
+def test_expectations_that_mean_nothing(folder: Path, line: str, message: str) -> None:
+    (folder / "x.rscd").write_text(LIDAR.replace("variable lit", "variable far: double variable lit"))
+    (folder / "x.scenarios").write_text(f'scenario "one"\n  frame with "a"\n  {line}\n')
+    answer = played_files("x.rscd", "x.scenarios")
+    assert answer.exit_code == 1
+    assert "x.scenarios:3:" in answer.stdout
+    assert message in answer.stdout
+
+
+def test_null_is_no_number(folder: Path) -> None:
+    (folder / "x.rscd").write_text(LIDAR.replace("> 0.5 -> clear default -> near", "< 0.5 -> near default -> clear"))
+    (folder / "x.scenarios").write_text('scenario "one"\n  scan with {"ranges": [null]}\n  expect Lidar.free\n')
+    answer = played_files("x.rscd", "x.scenarios")
+    assert answer.exit_code == 0, answer.stdout
 
 
 def test_what_can_not_come() -> None:

@@ -139,7 +139,8 @@ def _misleading(
     transition: rsc.ResultTransition, before: _Situation, condition: CommandCondition
 ) -> Iterator[_Situation]:
     """Yield situations after a transition, and silent ones after it, in which a condition has become true."""
-    return (after for after in _at_rest(_taken(transition, before)) if _makes_true(condition, before, after))
+    port = before.known.port(transition.communicationType, before.instance)
+    return (after for after in _at_rest(_taken(transition, before), port) if _makes_true(condition, before, after))
 
 
 def _taken(transition: rsc.Transition, before: _Situation) -> _Situation:
@@ -153,13 +154,13 @@ def _taken(transition: rsc.Transition, before: _Situation) -> _Situation:
     return before._replace(state=transition.target or before.state, reason=None, variables=assigned)
 
 
-def _at_rest(first: _Situation) -> list[_Situation]:
+def _at_rest(first: _Situation, ended: PortInstance | None) -> list[_Situation]:
     """Return a situation and those that silent transitions certainly lead to."""
     common = [transition for transition, where in first.instance.transitions if where is None]
     reached = [first]
     for situation in reached:
         for transition in [*situation.state.transitions, *common]:
-            if isinstance(transition, rsc.TauTransition) and situation.holds(transition.guard):
+            if isinstance(transition, rsc.TauTransition) and situation._replace(ended=ended).holds(transition.guard):
                 after = _taken(transition, situation)
                 if after not in reached and len(reached) < _MOST_SITUATIONS:
                     reached.append(after)
@@ -202,6 +203,8 @@ class _Situation(NamedTuple):
     state: rsc.State
     reason: str | None = None
     variables: Mapping[rsc.Variable, Value | None] = {}
+    #: The call or goal that no longer runs for the model.
+    ended: PortInstance | None = None
 
     def holds(self, guard: ex.Expression | None) -> bool | None:
         """Return whether a guard of the component holds; None if that depends on unknown values."""
@@ -243,9 +246,12 @@ class _Situation(NamedTuple):
                 return next(found.value for found in rules if found.value.name == self.reason)
             if isinstance(reference, rsc.Access) and not reference.value and not reference.segments:
                 item = reference.item
+                owner = self.known.instance(reference.component, within)
+                if self.ended is not None and (owner, item) == (self.ended.instance, self.ended.communication):
+                    return False
                 if isinstance(item, rsc.EnumValue):
                     return item
-                if isinstance(item, rsc.State) and self.known.instance(reference.component, within) == self.instance:
+                if isinstance(item, rsc.State) and owner == self.instance:
                     return item is self.state
                 owned = self.known.variable(reference, within)
                 known = self.variables.get(owned.variable) if owned and owned.instance == self.instance else None

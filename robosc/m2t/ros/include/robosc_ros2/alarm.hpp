@@ -35,11 +35,11 @@ class Alarm final : public Timeouts {
     // The times run from the start of the clock, also if nothing else happens at that moment.
     if (!clock_->started()) {
       begin_ = node.create_wall_timer(kLook, guard([this] {
-        if (!clock_->started()) return;
-        begin_->cancel();
-        at();
-        wait();
-      }));
+                                        if (!clock_->started()) return;
+                                        begin_->cancel();
+                                        at();
+                                        wait();
+                                      }));
     }
   }
 
