@@ -115,9 +115,7 @@ def test_other_data() -> None:
 
 
 def test_a_misspelt_field(folder: Path) -> None:
-    (folder / "line.scenarios").write_text(
-        'scenario "one"\n  scan with {"range": [0.2]}\n  expect move not sent\n'
-    )
+    (folder / "line.scenarios").write_text('scenario "one"\n  scan with {"range": [0.2]}\n  expect move not sent\n')
     answer = played_files(str(EXAMPLE / "line_follower.rscd"), "line.scenarios")
     assert answer.exit_code == 1
     assert "line.scenarios:2:3: error: sensor_msgs/LaserScan has no field `range`" in answer.stdout

@@ -4,6 +4,6 @@
 
 /// The namespace of all that these headers declare, named for what stands in them: one process may load packages that
 /// were generated with others, and the linker must take nothing of one for the other's.
-#define ROBOSC_VERSION v5858685b
+#define ROBOSC_VERSION v3397ac79
 
 #endif  // ROBOSC_VERSION_HPP_
