@@ -338,7 +338,7 @@ def test_no_request_is_a_fault_of_the_adapter(asked: list[tuple[str, Any]]) -> N
 
 def test_the_page_tells_of_all_there_is() -> None:
     page = (ROOT / "docs" / "debugging.md").read_text()
-    told = page.partition("## What can be done")[0]
+    told = page.partition("## Actions in a session")[0]
     assert set(re.findall(r"`(\w+)`(?=[^\n]*? \| )", told)) >= set(_KEYS)
     answered = page.partition("answers these requests:")[2].partition(". It sends")[0]
     assert set(re.findall(r"`(\w+)`", answered)) == set(Adapter._answers)

@@ -107,7 +107,7 @@ def compare(moments: list[dict[str, Any]], log: list[dict[str, Any]]) -> None:
     seen = [moment["event"] for moment in moments if "event" in moment]
     first = next((at for at in range(len(names)) if names[at : at + len(seen)] == seen), None)
     assert first is not None, "each event is shown, once, in its order"
-    # What the node tells as it ends may be lost.
+    # The last output of a node that ends may be lost.
     assert len(seen) > 0.9 * len(names)
     components = [plant.name for plant in model.plants if plant.kind == sct.PlantKind.behaviour]
     at = 0

@@ -155,7 +155,7 @@ def test_data_that_tells_no_literal(value: object, complaint: str) -> None:
     ],
 )
 def test_a_misspelt_field(value: object, fault: str | None) -> None:
-    """What one of the two ROS has is a field."""
+    """A field of either ROS is accepted."""
     model = MODEL.parents[2] / "examples/line_follower/line_follower.rscd"
     event = json.dumps({"event": "message_scan.u_response", "data": {"value": value}})
     done = simulate("--script", "-", lines=event, model=model)

@@ -99,7 +99,7 @@ class Base:
         return one_process(self.nodes, self.name, *parameters)
 
     def _careless(self) -> list[str | Path]:
-        """What starts the controller behind the layer: compiled or from its model, as the layer."""
+        """Return the command of the controller behind the layer: compiled or from its model, as the layer."""
         names = [*TOPICS, SERVICE, *(f"{ACTION}/{part}" for part in PARTS)]
         remappings = [f"{name}:=/{self.name}/{below_layer(name)}" for name in names]
         if isinstance(self.nodes, Workspace):

@@ -154,7 +154,7 @@ class Peer:
         self.at_once |= {"accept": accept, "succeed": accept and succeed}
 
     def on_cancel(self, answer):
-        """What becomes of requests to cancel: `grant`, `ignore` (taken, but the goal goes on), `refuse`, `mistake`.
+        """Set the answer to requests to cancel: `grant`, `ignore` (taken, but the goal goes on), `refuse`, `mistake`.
 
         By mistake another goal is canceled (ROS 2).
         """
