@@ -112,6 +112,9 @@ def read_scenarios(file: str, text: str) -> tuple[list[Scenario], list[Holds], l
         start = len(words) - len(words.lstrip())
         if words:
             reader.read(words[start:], Line(file, Span(number, start + 1, number, len(words) + 1)))
+    if not reader.scenarios:
+        start_of_file = Line(file, Span(1, 1, 1, 1))
+        reader.findings.append(start_of_file.fault("the file has no scenario", 'begin with `scenario "…"`'))
     for scenario in reader.scenarios:
         if not any(isinstance(step, (Holds, Allowed, Sent)) for step in scenario.steps):
             reader.findings.append(scenario.line.fault("nothing is expected in this scenario", "write `expect …`"))

@@ -444,7 +444,7 @@ def whole(data: Any, read: ex.Expression) -> Any:
     """Return the data with its fields: a lone value stands for the only field on the path to it."""
     accesses = (part for _, part in tree(read) if isinstance(part, rosgraph.WireAccess) and part.quantifier is None)
     access = next(accesses, None)
-    if access is None or isinstance(data, dict | list) or len(access.steps) != 1:
+    if access is None or isinstance(data, dict) or len(access.steps) != 1:
         return data
     return {_field(access.steps[0]): data}
 

@@ -225,8 +225,8 @@ def test_loads_definitions_only_where_a_model_links_them(tmp_path: Path, links: 
     [
         ("nav5_msgs", "ManageLifecycleNodes", Section.REQUEST, None),
         ("nav5_msgs", "Path", Section.MESSAGE, ("nav_msgs", "Path")),
-        ("nav5_msgs", "GetMap", Section.MESSAGE, None),
-        ("nav5_msgs", "GetMap", Section.REQUEST, ("nav_msgs", "GetMap")),
+        ("std5_srvs", "SetBool", Section.MESSAGE, None),
+        ("std5_srvs", "SetBool", Section.REQUEST, ("std_srvs", "SetBool")),
         ("nav5_msgs", "NavigateToPose", Section.GOAL, None),
         ("sensors_msgs", "LaserScan", Section.MESSAGE, ("sensor_msgs", "LaserScan")),
         ("std_srv", "Trigger", Section.REQUEST, ("std_srvs", "Trigger")),

@@ -237,6 +237,11 @@ def test_a_scenario_without_expectations() -> None:
     assert findings('scenario "one"\n  wait 1 s\n') == [(1, 1, "nothing is expected in this scenario")]
 
 
+@pytest.mark.parametrize("text", ["", "\n// the start\n"])
+def test_a_file_without_scenarios(text: str) -> None:
+    assert findings(text) == [(1, 1, "the file has no scenario")]
+
+
 def test_conditions_know_the_language() -> None:
     assert findings('scenario "one"\n  expect Dock.away => !(Bumper.pressed) and 1 + 1 = 2 // so it is\n') == []
 

@@ -58,3 +58,28 @@ def test_a_condition_of_each_number_in_an_array(tmp_path: Path, ranges: list[flo
     watched = Simulation(model, robosc.to_rosgraph(robot))
     assert watched.perform("message_scan.u_response", {"value": {"ranges": ranges}}).accepted
     assert watched.engine.state["component_Lidar"] == accepted
+
+
+@pytest.mark.parametrize(("numbers", "place"), [([1, 1, 5], "high"), ([1, 1], "low")])
+@pytest.mark.parametrize("is_lone", [True, False])
+def test_the_whole_array_of_the_only_field(tmp_path: Path, numbers: list[int], place: str, *, is_lone: bool) -> None:
+    """The event log has the array alone as the value of such a message."""
+    path = tmp_path / "gauge.rscd"
+    path.write_text(
+        """robot Gauge {
+          interface levels use Float64MultiArray from std_msgs
+          datatype object Levels { data: array(double) }
+          component Tank {
+            outgoing message levels with type: Levels links levels
+            behaviour {
+              on response from levels if any level in value.data: level > 4.0 goto high
+              on response from levels goto low
+              initial marked state unknown {} marked state low {} marked state high {}
+            } } }"""
+    )
+    robot = robosc.load(path)
+    model = robosc.to_sct(robot)
+    robosc.synthesize(model)
+    tank = Simulation(model, robosc.to_rosgraph(robot))
+    assert tank.perform("message_levels.u_response", {"value": numbers if is_lone else {"data": numbers}}).accepted
+    assert tank.engine.state["component_Tank"] == place

@@ -1,7 +1,7 @@
 """Rules on transitions and their assignments (thesis 4.5.2, 4.5.5 and 4.5.6).
 
-The rules are `result-type`, `nondeterminism`, `assignment-on-message-to-node`, `assignment-scope` and
-`repeated-assignment`.
+The rules are `result-type`, `nondeterminism`, `idle-transition`, `assignment-on-message-to-node`, `assignment-scope`
+and `repeated-assignment`.
 """
 
 from __future__ import annotations
@@ -163,6 +163,21 @@ def _event(transition: rsc.Transition) -> _Event | None:
     reference, event = transition.communicationType, str(transition.resultType)
     known = event in event_names(reference.communicationType)
     return (reference.component, reference.communicationType, event) if known else None
+
+
+@rule("idle-transition", Severity.WARNING)
+def idle_transition(base: rsc.Base) -> Iterator[Finding]:
+    """Every silent transition has a condition, or changes the state or a variable."""
+    for _, transition in transitions(base):
+        if not isinstance(transition, rsc.TauTransition) or transition.guard or transition.assignments:
+            continue
+        owner = transition.eContainer()
+        if transition.target is None or transition.target is owner:
+            yield Finding(
+                transition,
+                "the silent transition changes nothing, so the controller takes it again and again",
+                Removal("leave it out, or write `do …` or `goto …`; an event begins with `on`", transition),
+            )
 
 
 @rule("assignment-on-message-to-node")
