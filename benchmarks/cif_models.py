@@ -32,7 +32,7 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks.cif_models_page import agree, page  # noqa: E402
 from benchmarks.families import FAMILIES  # noqa: E402
-from tests.cif.escet import SYNTHESIS, Tools, class_path, home  # noqa: E402
+from tests.language.cif.escet import SYNTHESIS, Tools, class_path, home  # noqa: E402
 
 #: Call in a script: the name of the benchmark, its folder, its file.
 _SCRIPT = re.compile(r'^benchmark\("([^"]*)", "([^"]*)", "([^"]*)"\)', re.MULTILINE)

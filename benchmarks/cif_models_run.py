@@ -14,7 +14,7 @@ from time import process_time
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from robosc.cif import read
+from robosc.language.cif import read
 from robosc.synthesis import Statistics, count
 
 

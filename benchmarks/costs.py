@@ -49,7 +49,7 @@ def robots() -> dict[str, str]:
 def counted(path: Path) -> dict[str, Any]:
     """Count the controlled states of the model in a file, `.rscd` or `.cif`."""
     import robosc  # noqa: PLC0415  # of the commit on the path
-    from robosc.cif import read  # noqa: PLC0415
+    from robosc.language.cif import read  # noqa: PLC0415
     from robosc.synthesis import Statistics, count  # noqa: PLC0415
 
     if path.suffix == ".cif":

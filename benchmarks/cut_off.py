@@ -3,8 +3,8 @@
     python benchmarks/cut_off.py [--every 1] [--processes 2] [EXAMPLE ...]
 
 Each text is cut off behind each of its characters, as it is while a user types it. Each kind of request is answered
-there, as tests/editor/test_robustness.py does at some positions. Prints a row for each example, and ends with the first
-failure. All examples take an hour or two of one processor. Needs `pip install 'robosc[test]'`.
+there, as tests/tools/editor/test_robustness.py does at some positions. Prints a row for each example, and ends with the
+first failure. All examples take an hour or two of one processor. Needs `pip install 'robosc[test]'`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pathlib import Path
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
-from tests.editor.test_robustness import EXAMPLES, ask_everything, project  # noqa: E402
+from tests.tools.editor.test_robustness import EXAMPLES, ask_everything, project  # noqa: E402
 
 
 def cut_off(every: int, path: Path) -> tuple[int, float]:

@@ -24,7 +24,7 @@ from lsprotocol import types
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
-from tests.editor.server import COMMAND, Editor, findings, initialize, open_text, position, replace  # noqa: E402
+from tests.tools.editor.server import COMMAND, Editor, findings, initialize, open_text, position, replace  # noqa: E402
 
 #: Twelve lines; the requirements of each component name the next one.
 COMPONENT = """  component Door{number} {{

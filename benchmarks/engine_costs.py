@@ -11,18 +11,18 @@ import subprocess
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from robosc.configuration import ControlLoop
+from robosc.language.configuration import ControlLoop
 from robosc.m2m.sct_to_engine import transform
 from robosc.m2t.c import engine
 from robosc.m2t.c.names import CNames
-from robosc.semantics.domains import domain
-from robosc.semantics.roles import Roles
+from robosc.model.semantics.domains import domain
+from robosc.model.semantics.roles import Roles
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from robosc.metamodel.sct import SupervisoryControlModel
+    from robosc.model.sct import SupervisoryControlModel
 
 #: Batches in a walk; every fourth is followed by a tick.
 BATCHES = 400

@@ -34,8 +34,6 @@ from typing import TYPE_CHECKING, Any
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
-from tests.cif.comparing import agrees  # noqa: E402
-from tests.cif.random_specifications import Specification  # noqa: E402
 from tests.fuzz.broken_off import broken_off_tried  # noqa: E402
 from tests.fuzz.cif_mutants import cif_mutant  # noqa: E402
 from tests.fuzz.mutants import mutant  # noqa: E402
@@ -43,6 +41,8 @@ from tests.fuzz.saved_mutants import saved_mutant  # noqa: E402
 from tests.fuzz.special import special_tried  # noqa: E402
 from tests.fuzz.trial import called, cif_tried, saved_tried, time_limit, tried  # noqa: E402
 from tests.fuzz.valid import checked, compared, compiled, valid_robot  # noqa: E402
+from tests.language.cif.comparing import agrees  # noqa: E402
+from tests.language.cif.random_specifications import Specification  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Callable

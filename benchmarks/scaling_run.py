@@ -26,7 +26,7 @@ from robosc_faudes.automata import faudes_states  # noqa: E402
 import robosc  # noqa: E402
 from benchmarks.families import FAMILIES  # noqa: E402
 from robosc.analysis.supervise import diagnose  # noqa: E402
-from robosc.diagnostics import has_errors  # noqa: E402
+from robosc.base.diagnostics import has_errors  # noqa: E402
 from robosc.language import reading  # noqa: E402
 from robosc.synthesis import Phase, Statistics  # noqa: E402
 from tests.synthesis.oracle import Oracle  # noqa: E402
@@ -34,7 +34,7 @@ from tests.synthesis.oracle import Oracle  # noqa: E402
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.metamodel.robosc import Robot
+    from robosc.model.robosc import Robot
 
 INTERFACES = [ROOT / "benchmarks" / "interfaces"]
 TARGETS = ("cif", "supervisor", "ros1", "ros2")

@@ -20,7 +20,7 @@ MODEL = Path(__file__).parent.parent / "examples" / "line_follower" / "line_foll
 #: Program that runs a command and prints the third-party modules that it loaded, in that order.
 LOADED = """
 import sys
-from robosc.cli import main
+from robosc.tools.cli import main
 try:
     main(sys.argv[1:])
 except SystemExit as end:

@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 from time import perf_counter_ns
 
-from robosc.cli import run
-from robosc.runtime.core.controller import Controller
+from robosc.run.runtime.core.controller import Controller
+from robosc.tools.cli import run
 
 
 def main() -> None:

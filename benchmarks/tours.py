@@ -22,14 +22,14 @@ from scipy.optimize import LinearConstraint, milp
 from scipy.sparse import lil_matrix
 
 import robosc
-from robosc import configuration as config
-from robosc.node_tests.plan import Plan
-from robosc.node_tests.steps import WAIT
-from robosc.node_tests.tour import Tour
-from robosc.ros_types import RosTypes
+from robosc.base.ros_types import RosTypes
+from robosc.language import configuration as config
+from robosc.run.node_tests.plan import Plan
+from robosc.run.node_tests.steps import WAIT
+from robosc.run.node_tests.tour import Tour
 
 if TYPE_CHECKING:
-    from robosc.node_tests.steps import Place, Step
+    from robosc.run.node_tests.steps import Place, Step
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 #: Seconds for each bound. In whole steps, the bound proved until then counts.

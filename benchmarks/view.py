@@ -42,11 +42,11 @@ from playwright.sync_api import Error as PlaywrightError
 from playwright.sync_api import sync_playwright
 
 import robosc
-from robosc import view
 from robosc.m2t.models import Models
-from robosc.simulation import Simulation
-from robosc.view import serving
-from robosc.view.server import application
+from robosc.run.simulation import Simulation
+from robosc.tools import view
+from robosc.tools.view import serving
+from robosc.tools.view.server import application
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -28,9 +28,9 @@ sys.path.insert(0, str(ROOT))
 
 import robosc  # noqa: E402
 from benchmarks.walk_families import FAMILIES, write  # noqa: E402
-from robosc.checks import check  # noqa: E402
-from robosc.diagnostics import has_errors  # noqa: E402
-from robosc.language import read  # noqa: E402
+from robosc.base.diagnostics import has_errors  # noqa: E402
+from robosc.language.checks import check  # noqa: E402
+from robosc.language.reading import read  # noqa: E402
 from robosc.m2t.targets import together  # noqa: E402
 
 SIZES = (100, 400, 1600, 5000)

@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from robosc.analysis.supervise import EmptySupervisorError
-    from robosc.configuration import Configuration
-    from robosc.diagnostics import Diagnostic, ModelError
+    from robosc.base.diagnostics import Diagnostic, ModelError
+    from robosc.language.configuration import Configuration
     from robosc.m2m.trace import Trace
     from robosc.m2t.models import Models
-    from robosc.metamodel.engine import EngineModel
-    from robosc.metamodel.robosc import Base, Robot
-    from robosc.metamodel.rosgraph import RosGraph
-    from robosc.metamodel.sct import Supervisor, SupervisoryControlModel
+    from robosc.model.engine import EngineModel
+    from robosc.model.robosc import Base, Robot
+    from robosc.model.rosgraph import RosGraph
+    from robosc.model.sct import Supervisor, SupervisoryControlModel
 
 __version__ = "0.1.0"
 
@@ -49,10 +49,10 @@ __all__ = [
 ]
 
 _LOADED_WHEN_ASKED = {
-    "Configuration": "robosc.configuration",
-    "Diagnostic": "robosc.diagnostics",
+    "Configuration": "robosc.language.configuration",
+    "Diagnostic": "robosc.base.diagnostics",
     "EmptySupervisorError": "robosc.analysis.supervise",
-    "ModelError": "robosc.diagnostics",
+    "ModelError": "robosc.base.diagnostics",
     "Models": "robosc.m2t.models",
 }
 
@@ -86,19 +86,20 @@ def load(
     Raises ModelError with all findings if the text or its names have errors, ValueError if the file holds no robot,
     OSError if it cannot be read, and TypeError without path and text. Does not run the rules; see `check`.
     """
-    from robosc.diagnostics import ModelError, has_errors
-    from robosc.metamodel import robosc
+    from robosc.base.diagnostics import ModelError, has_errors
+    from robosc.model import robosc
 
     if path is None and text is None:
         raise TypeError("load needs a path or a text")
     path = "<text>" if path is None else str(path)
     if path.endswith(".xmi") and text is None:
-        from robosc import validity
+        from robosc.model import validity
 
         base = validity.load(path)
     else:
-        from robosc.language import Documents, read
-        from robosc.ros_types import RosTypes
+        from robosc.base.ros_types import RosTypes
+        from robosc.language.reading import read
+        from robosc.language.text import Documents
 
         texts = {str(name): content for name, content in (documents or {}).items()} | (
             {} if text is None else {path: text}
@@ -118,8 +119,8 @@ def check(robot: Base, interface_paths: Sequence[str | PathLike[str]] = ()) -> l
     `interface_paths` are folders with ROS packages below them. Types of other packages are searched in the folders of
     ROBOSC_INTERFACE_PATH, in the ROS installation and among the standard types.
     """
-    from robosc.checks import check as checked
-    from robosc.ros_types import RosTypes
+    from robosc.base.ros_types import RosTypes
+    from robosc.language.checks import check as checked
 
     return checked(robot, (), RosTypes(interface_paths))
 
@@ -138,8 +139,8 @@ def to_rosgraph(robot: Robot, interface_paths: Sequence[str | PathLike[str]] = (
 
     ROS types are searched as in `check`. The field of a basic value is the only field of its type, else `data`.
     """
+    from robosc.base.ros_types import RosTypes
     from robosc.m2m import robosc_to_rosgraph
-    from robosc.ros_types import RosTypes
 
     return robosc_to_rosgraph.transform(_plants(robot)[1], RosTypes(interface_paths))
 
@@ -163,7 +164,7 @@ def synthesize(model: SupervisoryControlModel) -> Supervisor:
     about the supervisor, use `robosc.analysis.supervise.supervise`.
     """
     from robosc.analysis.supervise import supervise
-    from robosc.diagnostics import ModelError, has_errors
+    from robosc.base.diagnostics import ModelError, has_errors
 
     supervision = supervise(model)
     if has_errors(supervision.findings):
@@ -200,8 +201,8 @@ def generate(
     through `fragment.cmake`. Raises ModelError if the models or the configuration violate the target's preconditions.
     Raises ValueError if the target is unknown or cannot be included, or if a model that it reads is missing.
     """
-    from robosc.configuration import Configuration
-    from robosc.diagnostics import ModelError, has_errors
+    from robosc.base.diagnostics import ModelError, has_errors
+    from robosc.language.configuration import Configuration
     from robosc.m2t.targets import targets, together
 
     known = targets()
@@ -221,7 +222,7 @@ def generate(
             raise ModelError(findings)
         tests = None
         if with_tests:
-            from robosc.node_tests.trace_test import trace_test_of
+            from robosc.run.node_tests.trace_test import trace_test_of
 
             tests = trace_test_of(made, models, configuration)
         return made.files(models, configuration, tests, into=into)

@@ -9,7 +9,7 @@ def run() -> NoReturn:
     # During the import there is nothing to clean up: an interrupt ends the process at once, without a traceback.
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
-    from robosc import cli  # noqa: PLC0415
+    from robosc.tools import cli  # noqa: PLC0415
 
     cli.run()
 

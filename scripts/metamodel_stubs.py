@@ -4,9 +4,9 @@ from pathlib import Path
 
 from pyecore.ecore import EClass, EClassifier, EPackage, EStructuralFeature
 
-from robosc import metamodel
-from robosc.metamodel._ecore import PACKAGES, packages
-from robosc.metamodel.reflection import documentation
+from robosc import model
+from robosc.model._ecore import PACKAGES, packages
+from robosc.model.reflection import documentation
 
 _TYPES = {
     "EString": "str",
@@ -53,8 +53,8 @@ def stub(name: str) -> str:
         "from typing import Any, ClassVar",
         "",
     ]
-    lines += [f"from robosc.metamodel import {', '.join(others)}"] if others else []
-    lines += ["from robosc.metamodel.places import Place"] if "Place" in {target.name for target in used} else []
+    lines += [f"from robosc.model import {', '.join(others)}"] if others else []
+    lines += ["from robosc.model.places import Place"] if "Place" in {target.name for target in used} else []
     lines += [""]
     for classifier in package.eClassifiers:
         if classifier.name == "Place":
@@ -92,4 +92,4 @@ def _types(package: EPackage) -> set[EClassifier]:
 
 if __name__ == "__main__":
     for package in PACKAGES:
-        Path(metamodel.__file__).with_name(f"{package}.pyi").write_text(stub(package), encoding="utf-8")
+        Path(model.__file__).with_name(f"{package}.pyi").write_text(stub(package), encoding="utf-8")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from robosc.view.page import PageError, page_files
+from robosc.tools.view.page import PageError, page_files
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -22,13 +22,13 @@ from click.testing import CliRunner
 from hypothesis import settings
 
 from robosc.analysis.verify import verify
-from robosc.cli import main
-from robosc.configuration import Configuration
 from robosc.engine import remembered
 from robosc.language import grammar, recovery
+from robosc.language.configuration import Configuration
 from robosc.m2t.models import TraceTest
-from robosc.metamodel.rosgraph import RosGraph
-from robosc.node_tests.trace_test import trace_test
+from robosc.model.rosgraph import RosGraph
+from robosc.run.node_tests.trace_test import trace_test
+from robosc.tools.cli import main
 from tests.examples.conftest import SCENARIOS
 from tests.searching import examples, less_effort
 from tests.sharing import made_once
@@ -126,7 +126,7 @@ def verified(shared_folder: Path, verified_once: Callable[[Path], Callable[..., 
 
     def asked(path: Path) -> str:
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(import_module("robosc.cli.verify"), "verify", verified_once(path))
+            patch.setattr(import_module("robosc.tools.cli.verify"), "verify", verified_once(path))
             done = CliRunner().invoke(main, ["verify", "--json", str(path)])
         assert done.exit_code == 0, done.output
         return done.stdout

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from random import Random
 from typing import Any
 
-from robosc.semantics.naming import ROBOSC_KEYWORDS, written
+from robosc.model.semantics.naming import ROBOSC_KEYWORDS, written
 
 #: Names that are words of some language, that generated names look like, or that give the same when joined.
 ODD_NAMES = (

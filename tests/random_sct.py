@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from hypothesis import strategies as st
 
-from robosc.metamodel import sct
+from robosc.model import sct
 from tests.sct_models import disables, edge, model, needs, plant
 
 _ENUMERATIONS = {"E": ["e0", "e1", "e2"], "F": ["f0"]}

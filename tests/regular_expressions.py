@@ -16,7 +16,7 @@ from typing import Any
 import arpeggio
 import textx
 
-from robosc.highlighting.rules import rules
+from robosc.language.highlighting.rules import rules
 
 ROOT = Path(__file__).parents[1]
 SCANNING = frozenset({"search", "finditer", "findall", "sub", "subn", "split"})
@@ -184,7 +184,7 @@ def _grammars() -> Iterator[Expression]:
 
 def _colors() -> Iterator[Expression]:
     for rule in rules():
-        yield Expression("robosc/highlighting/rules.py", rule.pattern, 0, frozenset({"search"}))
+        yield Expression("robosc/language/highlighting/rules.py", rule.pattern, 0, frozenset({"search"}))
 
 
 def _schemas() -> Iterator[Expression]:

@@ -24,8 +24,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
+from robosc.model import expression as ex
+from robosc.model import sct
 
 _BINARY = {
     ast.And: ex.Conjunction,

@@ -8,10 +8,10 @@ import pytest
 from click.testing import CliRunner
 
 import robosc
-from robosc.cli import main
 from robosc.m2t.targets import TARGETS
-from robosc.metamodel import expression as ex
-from tests.cli.conftest import COURIER, DOOR, LAMPS
+from robosc.model import expression as ex
+from robosc.tools.cli import main
+from tests.tools.cli.conftest import COURIER, DOOR, LAMPS
 
 
 @pytest.fixture

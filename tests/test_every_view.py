@@ -10,9 +10,9 @@ import pytest
 from click.testing import CliRunner
 
 import robosc
-from robosc.cli import main
-from robosc.diagrams import GRAPH_NOTATIONS, behaviour_graph, diagram, plants_graph, ros_graph
 from robosc.m2t.targets import TARGETS
+from robosc.tools.cli import main
+from robosc.tools.diagrams import GRAPH_NOTATIONS, behaviour_graph, diagram, plants_graph, ros_graph
 from tests.fuzz.valid import compared, compiled, taken_through
 
 if TYPE_CHECKING:

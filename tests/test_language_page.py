@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import robosc
-from robosc.files.resources import locate
+from robosc.base.files.resources import locate
 
 DOCS = Path(__file__).parent.parent / "docs"
 

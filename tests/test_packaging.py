@@ -124,7 +124,7 @@ def test_the_installed_wheel_generates_the_same(wheel: Path, tmp_path: Path) -> 
     assert Path(where).is_relative_to(tmp_path)
     run(programs / "robosc", "transform", "line_follower.rscd", "--to", TARGETS, "-o", "out", cwd=model)
     run(programs / "robosc", "rule", "marked-state", cwd=model)
-    if any((ROOT / "robosc" / "view" / "built").glob("page.js")):
+    if any((ROOT / "robosc" / "tools" / "view" / "built").glob("page.js")):
         run(*install, f"{wheel}[view]", cwd=model)
         assert "smoke test passed" in run(ROOT / "scripts" / "smoke", tmp_path / "environment", cwd=model)
     packages = Path(run(programs / "robosc", "--cmake-dir", cwd=model).strip())

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from robosc.cli import main
+from robosc.tools.cli import main
 from tests.searching import less_effort
 
 DOCS = Path(__file__).parent.parent / "docs"

@@ -24,7 +24,11 @@ def test_all_of_them_are_collected() -> None:
     places = [expression.place for expression in collect()]
     for file in (
         *("grammar/robosc.tx", "grammar/cif.tx", "grammar/generated_cif.tx", "robosc/language/tokens.py"),
-        *("robosc/highlighting/rules.py", "robosc/schemas/state.schema.json", "editors/vscode/src/extension.ts"),
+        *(
+            "robosc/language/highlighting/rules.py",
+            "robosc/schemas/state.schema.json",
+            "editors/vscode/src/extension.ts",
+        ),
         *("web/src/commands.ts", "robosc/m2t/ros/ros2/templates/play_trace.py.j2", "robosc/language/completing.py"),
     ):
         assert any(place.startswith(file) for place in places), file

@@ -13,18 +13,18 @@ from click.testing import CliRunner
 import robosc
 from robosc.analysis.verify import validate_c, validate_cif, verify_system
 from robosc.analysis.verify.verdict import Outcome
-from robosc.cli import main
-from robosc.configuration import Configuration, ControlLoop
-from robosc.diagnostics import ModelError
+from robosc.base.diagnostics import ModelError
 from robosc.engine import Engine
+from robosc.language.configuration import Configuration, ControlLoop
 from robosc.m2m.sct_to_engine import transform
 from robosc.m2t import cif, supervisor
 from robosc.m2t.c import engine
 from robosc.m2t.models import Models
-from robosc.metamodel import sct
-from robosc.metamodel.reflection import tree
+from robosc.model import sct
+from robosc.model.reflection import tree
+from robosc.tools.cli import main
 from tests.m2t.supervisor.driver import build, run
-from tests.runtime.fake import World
+from tests.run.runtime.fake import World
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -4,7 +4,7 @@ import { copyFile, mkdir, readdir, readFile, writeFile } from "node:fs/promises"
 import { resolve } from "node:path";
 
 const source = new URL("./", import.meta.url).pathname;
-const target = new URL("../robosc/view/built/", import.meta.url).pathname;
+const target = new URL("../robosc/tools/view/built/", import.meta.url).pathname;
 
 await mkdir(target, { recursive: true });
 const { metafile } = await build({

@@ -11,15 +11,15 @@ from itertools import count
 from pathlib import Path
 
 import robosc
-from robosc import configuration as config
-from robosc.configuration.parameters import controller_parameters, layer_parameters
-from robosc.runtime.core.controller import Controller
-from robosc.runtime.core.event_loop import EventLoop
-from robosc.runtime.core.layer import Layer
-from robosc.runtime.core.node_data import BLANK
-from robosc.runtime.core.port import CancelAnswer, Outcome
-from robosc.runtime.core.settings import SafeMessages, Settings
-from robosc.semantics.messages import message_named
+from robosc.language import configuration as config
+from robosc.language.configuration.parameters import controller_parameters, layer_parameters
+from robosc.model.semantics.messages import message_named
+from robosc.run.runtime.core.controller import Controller
+from robosc.run.runtime.core.event_loop import EventLoop
+from robosc.run.runtime.core.layer import Layer
+from robosc.run.runtime.core.node_data import BLANK
+from robosc.run.runtime.core.port import CancelAnswer, Outcome
+from robosc.run.runtime.core.settings import SafeMessages, Settings
 
 from .playing import tell
 from .simulation import Answer, GoalNews

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from robosc.analysis.system import Codes, SynthesizedSystem
-    from robosc.metamodel import sct
+    from robosc.model import sct
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element
     from robosc.synthesis.relation import EventRelation, Move

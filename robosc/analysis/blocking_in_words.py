@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.analysis.wording import NAMED, called, forbid, in_words, listed, name, violates, words
-from robosc.metamodel import sct
+from robosc.model import sct
 
 if TYPE_CHECKING:
     from robosc.analysis.blocking import BlockingCounterexample, Reason

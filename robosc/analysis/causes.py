@@ -6,16 +6,16 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from robosc.analysis.observations import Forbidden
-from robosc.metamodel import sct
-from robosc.semantics.edges import edges_of
-from robosc.semantics.roles import event_name
+from robosc.model import sct
+from robosc.model.semantics.edges import edges_of
+from robosc.model.semantics.roles import event_name
 from robosc.synthesis.encoding import referenced
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from robosc.analysis.observations import NeverEnabled, Observations, UnreachableState
-    from robosc.diagnostics import Diagnostic
+    from robosc.base.diagnostics import Diagnostic
 
     #: Event that never happens, or state that is never reached.
     Absent: TypeAlias = sct.Event | sct.Location

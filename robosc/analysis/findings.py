@@ -9,12 +9,12 @@ from robosc.analysis.blocking_in_words import counterexample_in_words, way_out
 from robosc.analysis.causes import causes, with_causes
 from robosc.analysis.observations import Forbidden
 from robosc.analysis.wording import called, condition, forbid, in_words, listed, name, words
-from robosc.diagnostics import Diagnostic, Severity, in_order
-from robosc.metamodel import sct
-from robosc.metamodel.places import place
-from robosc.metamodel.reflection import tree
-from robosc.semantics.edges import edges_from, edges_of
-from robosc.semantics.roles import plant_of
+from robosc.base.diagnostics import Diagnostic, Severity, in_order
+from robosc.model import sct
+from robosc.model.places import place
+from robosc.model.reflection import tree
+from robosc.model.semantics.edges import edges_from, edges_of
+from robosc.model.semantics.roles import plant_of
 from robosc.synthesis.encoding import referenced
 
 if TYPE_CHECKING:

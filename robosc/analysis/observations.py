@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, TypeVar
 
 from robosc.analysis.blocking import BlockingCounterexample, blocking_counterexample, forbidding, never_ready
 from robosc.analysis.paths import Layers, Path
-from robosc.metamodel import sct
-from robosc.semantics.communication import RUNNING
-from robosc.semantics.roles import plant_of, provide_numbers
+from robosc.model import sct
+from robosc.model.semantics.communication import RUNNING
+from robosc.model.semantics.roles import plant_of, provide_numbers
 from robosc.synthesis.decoding import Value, value
 from robosc.synthesis.encoding import pick
 

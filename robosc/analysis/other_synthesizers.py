@@ -5,15 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.analysis.system import GuardedSystem
-from robosc.diagnostics import Diagnostic, ModelError, Severity
-from robosc.metamodel import sct
-from robosc.metamodel.places import place
-from robosc.semantics.roles import event_name
+from robosc.base.diagnostics import Diagnostic, ModelError, Severity
+from robosc.model import sct
+from robosc.model.places import place
+from robosc.model.semantics.roles import event_name
+from robosc.model.validity import faults
 from robosc.synthesis import MEMORY, Statistics, Synthesis, encoded
-from robosc.validity import faults
 
 if TYPE_CHECKING:
-    from robosc.extensions import Extension
+    from robosc.base.extensions import Extension
     from robosc.synthesis.encoding import Encoding
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from robosc.semantics.roles import event_name
+from robosc.model.semantics.roles import event_name
 from robosc.synthesis.decoding import Value, text, value
 from robosc.synthesis.encoding import pick
 

@@ -11,15 +11,15 @@ from robosc.analysis.findings import findings_of
 from robosc.analysis.observations import Observations, Observer, Weight
 from robosc.analysis.system import SynthesizedSystem
 from robosc.analysis.wording import forbid, in_words, name
-from robosc.diagnostics import Diagnostic, ModelError, Severity, has_errors
-from robosc.metamodel import sct
-from robosc.metamodel.places import place
-from robosc.semantics.edges import edges_from
-from robosc.semantics.roles import plant_of
+from robosc.base.diagnostics import Diagnostic, ModelError, Severity, has_errors
+from robosc.model import sct
+from robosc.model.places import place
+from robosc.model.semantics.edges import edges_from
+from robosc.model.semantics.roles import plant_of
 from robosc.synthesis import MEMORY, Phase, Solution, Statistics, Synthesis, solve
 
 if TYPE_CHECKING:
-    from robosc.diagnostics import Span
+    from robosc.base.diagnostics import Span
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 
 from robosc.analysis.paths import Layers, trace
 from robosc.analysis.wording import condition
-from robosc.metamodel import sct
-from robosc.semantics.definition import named_state
-from robosc.semantics.roles import Roles, plant_of
+from robosc.model import sct
+from robosc.model.semantics.definition import named_state
+from robosc.model.semantics.roles import Roles, plant_of
 from robosc.synthesis.decoding import value
 from robosc.synthesis.fixpoint import reachable, supervise
 from robosc.synthesis.relation import event_relations, plant_moves, required_moves, steps, violations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
 
     from robosc.analysis.paths import Path, TraceStep
-    from robosc.metamodel import expression as ex
+    from robosc.model import expression as ex
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.decoding import Value
     from robosc.synthesis.encoding import Element, Encoding

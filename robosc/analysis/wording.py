@@ -5,10 +5,10 @@ from __future__ import annotations
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import sct
-from robosc.semantics.durations import timer_text
-from robosc.semantics.edges import edges_from
-from robosc.semantics.roles import event_name, plant_of, provide_number
+from robosc.model import sct
+from robosc.model.semantics.durations import timer_text
+from robosc.model.semantics.edges import edges_from
+from robosc.model.semantics.roles import event_name, plant_of, provide_number
 from robosc.synthesis.decoding import text
 
 if TYPE_CHECKING:

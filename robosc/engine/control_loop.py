@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.engine.interpreter import Engine
 from robosc.engine.timers import Timers
-from robosc.metamodel import engine
+from robosc.model import engine
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping
 
     from robosc.engine.state import State, Value
-    from robosc.metamodel import sct
+    from robosc.model import sct
 
 
 @dataclass(frozen=True)

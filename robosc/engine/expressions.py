@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from robosc.metamodel import engine
-from robosc.metamodel import expression as ex
-from robosc.semantics.operators import BY_CLASS
-from robosc.semantics.walks import fold, operands
+from robosc.model import engine
+from robosc.model import expression as ex
+from robosc.model.semantics.operators import BY_CLASS
+from robosc.model.semantics.walks import fold, operands
 
 #: Returns the value of an expression for the cells of a state and the inputs: an integer; false and true are 0 and 1.
 Function = Callable[[Sequence[int], Sequence[int]], int]

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 from robosc.engine.expressions import Compiler, Function, all_inside
 from robosc.engine.state import Domain, Layout, State, Value
 from robosc.m2m.sct_to_engine import transform
-from robosc.metamodel import engine, sct
-from robosc.metamodel import expression as ex
-from robosc.semantics.roles import Roles, event_name
+from robosc.model import engine, sct
+from robosc.model import expression as ex
+from robosc.model.semantics.roles import Roles, event_name
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

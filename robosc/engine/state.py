@@ -6,12 +6,12 @@ import json
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import engine
-from robosc.metamodel import expression as ex
-from robosc.semantics.domains import domain
+from robosc.model import engine
+from robosc.model import expression as ex
+from robosc.model.semantics.domains import domain
 
 if TYPE_CHECKING:
-    from robosc.metamodel import sct
+    from robosc.model import sct
 
 #: External form of a value: a boolean, an integer, or the name of a location or literal.
 Value = bool | int | str

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from robosc.engine.interpreter import Engine
-    from robosc.metamodel import sct
+    from robosc.model import sct
 
 
 class Timers:

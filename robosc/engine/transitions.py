@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.semantics.edges import edges_by_event, origin
-from robosc.semantics.evaluation import evaluate
-from robosc.semantics.roles import event_name
+from robosc.model.semantics.edges import edges_by_event, origin
+from robosc.model.semantics.evaluation import evaluate
+from robosc.model.semantics.roles import event_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.engine.interpreter import Engine
-    from robosc.metamodel import sct
+    from robosc.model import sct
 
 
 class Transitions:

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.language.outlining import own_elements, span
 from robosc.language.units import units
-from robosc.metamodel import robosc as rsc
-from robosc.semantics.typing import UNKNOWN, ArrayType, ObjectType, Type, value_type
+from robosc.model import robosc as rsc
+from robosc.model.semantics.typing import UNKNOWN, ArrayType, ObjectType, Type, value_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from robosc.base.ros_types import RosTypes
     from robosc.language.scopes import File
-    from robosc.ros_types import RosTypes
 
 
 class Note(NamedTuple):

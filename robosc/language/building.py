@@ -7,19 +7,19 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from robosc.diagnostics import Repair
-from robosc.interruption import checkpoint
+from robosc.base.diagnostics import Repair
+from robosc.base.interruption import checkpoint
 from robosc.language.grammar import attribute
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc as rsc
-from robosc.semantics.failures import FAILURE
-from robosc.semantics.operators import BY_CLASS, Associativity
+from robosc.model import expression as ex
+from robosc.model import robosc as rsc
+from robosc.model.semantics.failures import FAILURE
+from robosc.model.semantics.operators import BY_CLASS, Associativity
 
 if TYPE_CHECKING:
-    from robosc.diagnostics import Diagnostic
+    from robosc.base.diagnostics import Diagnostic
     from robosc.language.grammar import Node
     from robosc.language.text import Text
-    from robosc.metamodel.places import Place
+    from robosc.model.places import Place
 
 _LARGEST = 2**63 - 1
 _ESCAPES = {"b": "\b", "t": "\t", "n": "\n", "f": "\f", "r": "\r", '"': '"', "'": "'", "\\": "\\"}

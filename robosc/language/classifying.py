@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.language.grammar import first_words, words_of
 from robosc.language.tokens import Kind
-from robosc.metamodel import robosc as rsc
-from robosc.semantics.naming import ROBOSC_QUANTIFIERS
-from robosc.semantics.operators import FUNCTIONS
+from robosc.model import robosc as rsc
+from robosc.model.semantics.naming import ROBOSC_QUANTIFIERS
+from robosc.model.semantics.operators import FUNCTIONS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

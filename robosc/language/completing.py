@@ -17,21 +17,21 @@ from robosc.language.linking import Linker
 from robosc.language.outline import Outline
 from robosc.language.scopes import by_name
 from robosc.language.tokens import Kind, Tokens, too_complex
-from robosc.metamodel import robosc as rsc
-from robosc.metamodel.reflection import literals
-from robosc.semantics.communication import RUNNING_WORD, event_names, sent_type
-from robosc.semantics.failures import FAILURE, FAILURES, reasons
-from robosc.semantics.naming import written
-from robosc.semantics.operators import FUNCTIONS
-from robosc.semantics.typing import ObjectType, access_types, declared_type, provided_data_type, value_type
+from robosc.model import robosc as rsc
+from robosc.model.reflection import literals
+from robosc.model.semantics.communication import RUNNING_WORD, event_names, sent_type
+from robosc.model.semantics.failures import FAILURE, FAILURES, reasons
+from robosc.model.semantics.naming import written
+from robosc.model.semantics.operators import FUNCTIONS
+from robosc.model.semantics.typing import ObjectType, access_types, declared_type, provided_data_type, value_type
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
+    from robosc.base.ros_types import RosTypes
     from robosc.language.outline import Block
     from robosc.language.reading import Reading
     from robosc.language.scopes import File
-    from robosc.ros_types import RosTypes
 
 #: Declarations that can have the type `Failure`.
 _KEEPS = (rsc.Variable, rsc.Constant, rsc.FormalParameter, rsc.Function)

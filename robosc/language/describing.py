@@ -6,21 +6,21 @@ import re
 from textwrap import dedent
 from typing import TYPE_CHECKING, Any
 
+from robosc.base.ros_types import DefinitionError, Section
 from robosc.language.interface_types import is_made
 from robosc.language.outlining import span
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc as rsc
-from robosc.ros_types import DefinitionError, Section
-from robosc.semantics.communication import carried, events, section_of
-from robosc.semantics.expansion import constant_value
-from robosc.semantics.naming import enumeration
+from robosc.model import expression as ex
+from robosc.model import robosc as rsc
+from robosc.model.semantics.communication import carried, events, section_of
+from robosc.model.semantics.expansion import constant_value
+from robosc.model.semantics.naming import enumeration
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from robosc.base.ros_types import RosTypes
     from robosc.language.reading import Reading
     from robosc.language.scopes import File, Reference
-    from robosc.ros_types import RosTypes
 
 #: Limits of a description: lines of a declaration, fields of a ROS type.
 _LINES, _FIELDS = 12, 40

@@ -6,11 +6,11 @@ from decimal import Decimal, InvalidOperation
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
-from robosc.diagnostics import Repair
+from robosc.base.diagnostics import Repair
 from robosc.language.grammar import first, following, is_reserved, words_of
 from robosc.language.outline import COMPONENT, DEFINITIONS, RULES
 from robosc.language.tokens import Kind, Token
-from robosc.semantics.naming import ROBOSC_QUANTIFIERS, enumeration, written
+from robosc.model.semantics.naming import ROBOSC_QUANTIFIERS, enumeration, written
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence

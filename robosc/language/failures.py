@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc as rsc
-from robosc.semantics.failures import FAILURE, is_failure
-from robosc.semantics.typing import EnumType, declared_type, type_of
+from robosc.model import expression as ex
+from robosc.model import robosc as rsc
+from robosc.model.semantics.failures import FAILURE, is_failure
+from robosc.model.semantics.typing import EnumType, declared_type, type_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

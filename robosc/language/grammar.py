@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import arpeggio
 import textx
 
-from robosc.files.resources import locate
-from robosc.interruption import current_check
+from robosc.base.files.resources import locate
+from robosc.base.interruption import current_check
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

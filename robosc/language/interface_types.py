@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.diagnostics import Repair
-from robosc.metamodel import robosc as rsc
-from robosc.metamodel.reflection import contents, tree
-from robosc.ros_types import OWN_OBJECT, DefinitionError, Section
-from robosc.ros_types.wire import PRIMITIVES, Basic, Sequence
-from robosc.semantics.communication import section_of
+from robosc.base.diagnostics import Repair
+from robosc.base.ros_types import OWN_OBJECT, DefinitionError, Section
+from robosc.base.ros_types.wire import PRIMITIVES, Basic, Sequence
+from robosc.model import robosc as rsc
+from robosc.model.reflection import contents, tree
+from robosc.model.semantics.communication import section_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.ros_types import Fields, RosDistribution, RosTypes, WireType
+    from robosc.base.ros_types import Fields, RosDistribution, RosTypes, WireType
 
 #: Integer types whose range becomes the range of the property.
 _NARROW = ("int8", "uint8", "int16", "uint16")

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robosc.files.resources import locate
+from robosc.base.files.resources import locate
 from robosc.language.tokens import Tokens
 
 if TYPE_CHECKING:

@@ -7,20 +7,20 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from robosc.diagnostics import Related, Repair
-from robosc.interruption import checkpoint
+from robosc.base.diagnostics import Related, Repair
+from robosc.base.interruption import checkpoint
 from robosc.language.explaining import BASIC_TYPES, CONSTRUCTS, did_you_mean
 from robosc.language.failures import expects_failure
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
 from robosc.language.scopes import Declared, File, Names, Scope, by_name
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc as rsc
-from robosc.semantics.communication import RUNNING_WORD
-from robosc.semantics.expansion import constant_value
-from robosc.semantics.failures import FAILURE, FAILURES
-from robosc.semantics.naming import enumeration, written
-from robosc.semantics.operators import FUNCTIONS
-from robosc.semantics.typing import (
+from robosc.model import expression as ex
+from robosc.model import robosc as rsc
+from robosc.model.semantics.communication import RUNNING_WORD
+from robosc.model.semantics.expansion import constant_value
+from robosc.model.semantics.failures import FAILURE, FAILURES
+from robosc.model.semantics.naming import enumeration, written
+from robosc.model.semantics.operators import FUNCTIONS
+from robosc.model.semantics.typing import (
     UNKNOWN,
     ArrayType,
     EnumType,
@@ -36,11 +36,11 @@ from robosc.semantics.typing import (
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from robosc.diagnostics import Diagnostic
+    from robosc.base.diagnostics import Diagnostic
+    from robosc.base.ros_types import RosTypes
     from robosc.language.building import Name
     from robosc.language.tokens import Token
-    from robosc.ros_types import RosTypes
-    from robosc.semantics.instances import Resolved
+    from robosc.model.semantics.instances import Resolved
 
 _Element = TypeVar("_Element")
 RULE = "unresolved-reference"

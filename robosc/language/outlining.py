@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from robosc.metamodel import robosc as rsc
-from robosc.metamodel.reflection import contents
+from robosc.model import robosc as rsc
+from robosc.model.reflection import contents
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -7,25 +7,25 @@ from functools import partial
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
-from robosc.diagnostics import Repair, in_order
-from robosc.files.resources import locate
+from robosc.base.diagnostics import Repair, in_order
+from robosc.base.files.resources import locate
+from robosc.base.ros_types import RosTypes
 from robosc.language.explaining import did_you_mean
 from robosc.language.failures import names_failures
 from robosc.language.libraries import LibraryPath
 from robosc.language.linking import RULE, link
 from robosc.language.recovery import parse_file
 from robosc.language.text import Documents, decode
-from robosc.metamodel import robosc as rsc
-from robosc.ros_types import RosTypes
-from robosc.semantics.failures import PREDEFINED
+from robosc.model import robosc as rsc
+from robosc.model.semantics.failures import PREDEFINED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from robosc.diagnostics import Diagnostic
+    from robosc.base.diagnostics import Diagnostic
     from robosc.language.building import Name
     from robosc.language.scopes import File
-    from robosc.semantics.instances import Resolved
+    from robosc.model.semantics.instances import Resolved
 
 #: Path of the library that every model can use without an import.
 _PREDEFINED = "stdlib/predefined/predefined.rscd"

@@ -10,7 +10,7 @@ from dataclasses import replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
-from robosc.diagnostics import Related, Repair
+from robosc.base.diagnostics import Related, Repair
 from robosc.language.building import Builder
 from robosc.language.explaining import expected, found, hint, misread
 from robosc.language.grammar import Failure, first_words, is_reserved, parse
@@ -21,9 +21,9 @@ from robosc.language.tokens import Kind, Token, too_complex
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from robosc.diagnostics import Diagnostic
+    from robosc.base.diagnostics import Diagnostic
     from robosc.language.text import Text
-    from robosc.metamodel import robosc as rsc
+    from robosc.model import robosc as rsc
 
 _LEAVE_OUT = "leave it out"
 #: First keywords of items that declare no name usable elsewhere.

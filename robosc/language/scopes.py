@@ -8,16 +8,16 @@ from enum import Enum, auto
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
-from robosc.metamodel import robosc as rsc
-from robosc.semantics.instances import Instances, definition_of
+from robosc.model import robosc as rsc
+from robosc.model.semantics.instances import Instances, definition_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from robosc.diagnostics import Diagnostic, Span
+    from robosc.base.diagnostics import Diagnostic, Span
     from robosc.language.building import Name
     from robosc.language.text import Text
-    from robosc.semantics.instances import Resolved
+    from robosc.model.semantics.instances import Resolved
 
 #: Elements by name. Of duplicate names the first counts (the uniqueness rules report the second).
 Names: TypeAlias = "Mapping[str, Any]"

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from robosc.language.describing import type_text
 from robosc.language.tokens import Kind, Tokens
-from robosc.metamodel import robosc as rsc
-from robosc.semantics.operators import FUNCTIONS
+from robosc.model import robosc as rsc
+from robosc.model.semantics.operators import FUNCTIONS
 
 if TYPE_CHECKING:
     from robosc.language.reading import Reading

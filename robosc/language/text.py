@@ -10,11 +10,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robosc.diagnostics import Alternative, Diagnostic, Edit, Repair, Severity, Span
-from robosc.diagnostics.lines import Lines
-from robosc.files import reading as files
+from robosc.base.diagnostics import Alternative, Diagnostic, Edit, Repair, Severity, Span
+from robosc.base.diagnostics.lines import Lines
+from robosc.base.files import reading as files
 from robosc.language.tokens import Tokens
-from robosc.metamodel.places import Place, SourceFile
+from robosc.model.places import Place, SourceFile
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

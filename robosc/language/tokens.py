@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.language.grammar import first, first_words, following, is_reserved, pattern, words_of
-from robosc.semantics.naming import ROBOSC_QUANTIFIERS
+from robosc.model.semantics.naming import ROBOSC_QUANTIFIERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

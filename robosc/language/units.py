@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from robosc.base.ros_types import DefinitionError, Section
+from robosc.base.ros_types.units import UNITS
+from robosc.base.ros_types.wire import PRIMITIVES, Basic, Nested, Sequence
 from robosc.language.outlining import own_elements, span
-from robosc.metamodel import robosc as rsc
-from robosc.ros_types import DefinitionError, Section
-from robosc.ros_types.units import UNITS
-from robosc.ros_types.wire import PRIMITIVES, Basic, Nested, Sequence
-from robosc.semantics.communication import carried, event, sent
+from robosc.model import robosc as rsc
+from robosc.model.semantics.communication import carried, event, sent
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from robosc.base.ros_types import RosTypes, WireType
     from robosc.language.scopes import File
-    from robosc.ros_types import RosTypes, WireType
-    from robosc.semantics.communication import PortEvent
+    from robosc.model.semantics.communication import PortEvent
 
 
 class _Measured(NamedTuple):

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc
-from robosc.semantics.evaluation import Value, literal, saturate
-from robosc.semantics.expansion import constant_value
-from robosc.semantics.failures import reasons
-from robosc.semantics.naming import Names
-from robosc.semantics.typing import EnumType
+from robosc.model import expression as ex
+from robosc.model import robosc
+from robosc.model.semantics.evaluation import Value, literal, saturate
+from robosc.model.semantics.expansion import constant_value
+from robosc.model.semantics.failures import reasons
+from robosc.model.semantics.naming import Names
+from robosc.model.semantics.typing import EnumType
 
 if TYPE_CHECKING:
-    from robosc.metamodel import rosgraph, sct
-    from robosc.semantics.inputs import Computed, FailureReason
-    from robosc.semantics.instances import InstanceVariable
+    from robosc.model import rosgraph, sct
+    from robosc.model.semantics.inputs import Computed, FailureReason
+    from robosc.model.semantics.instances import InstanceVariable
 
 #: Target type of each basic type without bounds, and the value of a variable without an initial value.
 _BASIC: dict[type[robosc.DataType], tuple[type[ex.Type], Value]] = {

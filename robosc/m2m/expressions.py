@@ -4,28 +4,28 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from robosc.diagnostics import Diagnostic, ModelError, Severity
+from robosc.base.diagnostics import Diagnostic, ModelError, Severity
 from robosc.m2m.tabulation import TooLargeError, tabulate
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc, rosgraph, sct
-from robosc.metamodel.places import place
-from robosc.semantics.communication import RUNNING
-from robosc.semantics.cone_of_influence import accesses, read_data
-from robosc.semantics.evaluation import Value, evaluate, literal
-from robosc.semantics.instances import PortInstance
-from robosc.semantics.naming import Names
-from robosc.semantics.operators import COMPARISONS, FUNCTIONS, Rule, operator_of
-from robosc.semantics.printing import conjunction, disjunction
-from robosc.semantics.typing import DOUBLE, STRING, ArrayType, ObjectType, Types, declared_type
-from robosc.semantics.walks import fold, operands, with_operands
+from robosc.model import expression as ex
+from robosc.model import robosc, rosgraph, sct
+from robosc.model.places import place
+from robosc.model.semantics.communication import RUNNING
+from robosc.model.semantics.cone_of_influence import accesses, read_data
+from robosc.model.semantics.evaluation import Value, evaluate, literal
+from robosc.model.semantics.instances import PortInstance
+from robosc.model.semantics.naming import Names
+from robosc.model.semantics.operators import COMPARISONS, FUNCTIONS, Rule, operator_of
+from robosc.model.semantics.printing import conjunction, disjunction
+from robosc.model.semantics.typing import DOUBLE, STRING, ArrayType, ObjectType, Types, declared_type
+from robosc.model.semantics.walks import fold, operands, with_operands
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from robosc.m2m.declarations import Declarations
     from robosc.m2m.trace import Trace
-    from robosc.semantics.cone_of_influence import Reading
-    from robosc.semantics.instances import Instance, InstanceParameter, InstanceVariable
+    from robosc.model.semantics.cone_of_influence import Reading
+    from robosc.model.semantics.instances import Instance, InstanceParameter, InstanceVariable
 
     #: Translates an access with segments, whose indices are translated already. Returns the expression and the type of
     #: its value.

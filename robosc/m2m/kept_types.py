@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc, rosgraph
-from robosc.ros_types import DefinitionError, Section
-from robosc.ros_types.wire import PRIMITIVES, Basic, Nested, Sequence
+from robosc.base.ros_types import DefinitionError, Section
+from robosc.base.ros_types.wire import PRIMITIVES, Basic, Nested, Sequence
+from robosc.model import expression as ex
+from robosc.model import robosc, rosgraph
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from collections.abc import Sequence as Several
 
+    from robosc.base.ros_types import Fields, RosDistribution, RosTypes, WireType
     from robosc.m2m.declarations import Declarations
-    from robosc.ros_types import Fields, RosDistribution, RosTypes, WireType
 
 #: Maximum number of objects and values in an object. Larger objects get no fields: their log would be unreadable.
 MOST_VALUES = 1000

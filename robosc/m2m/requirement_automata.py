@@ -9,22 +9,22 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from robosc.diagnostics import Diagnostic, ModelError, Severity
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc, sct
-from robosc.metamodel.places import place
-from robosc.semantics.communication import meant
-from robosc.semantics.expansion import constant_value
-from robosc.semantics.instances import MOST
-from robosc.semantics.printing import conjunction, disjunction
-from robosc.semantics.walks import copied
+from robosc.base.diagnostics import Diagnostic, ModelError, Severity
+from robosc.model import expression as ex
+from robosc.model import robosc, sct
+from robosc.model.places import place
+from robosc.model.semantics.communication import meant
+from robosc.model.semantics.expansion import constant_value
+from robosc.model.semantics.instances import MOST
+from robosc.model.semantics.printing import conjunction, disjunction
+from robosc.model.semantics.walks import copied
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from robosc.m2m.expressions import SctExpressions
     from robosc.m2m.trace import Trace
-    from robosc.semantics.instances import Instance, Statement
+    from robosc.model.semantics.instances import Instance, Statement
 
 
 @dataclass

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.base.ros_types import RosTypes
 from robosc.m2m.declarations import Declarations, default_value
 from robosc.m2m.expressions import Carried, NodeExpressions
 from robosc.m2m.kept_types import KeptTypes
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc, rosgraph, sct
-from robosc.ros_types import RosTypes
-from robosc.semantics.communication import (
+from robosc.model import expression as ex
+from robosc.model import robosc, rosgraph, sct
+from robosc.model.semantics.communication import (
     CONTROLLABLE,
     basis,
     data_type,
@@ -19,24 +19,24 @@ from robosc.semantics.communication import (
     happens_anyway,
     ros_type,
 )
-from robosc.semantics.cone_of_influence import guard_of
-from robosc.semantics.durations import set_on_robot
-from robosc.semantics.expansion import constant_value
-from robosc.semantics.inputs import Data, FailureReason
-from robosc.semantics.instances import bound_arguments
-from robosc.semantics.messages import EACH, holds_objects, is_structured, origins, reads_elements
-from robosc.semantics.naming import Names
-from robosc.semantics.printing import RoboscPrinter, conjunction
-from robosc.semantics.typing import ObjectType, declared_type
+from robosc.model.semantics.cone_of_influence import guard_of
+from robosc.model.semantics.durations import set_on_robot
+from robosc.model.semantics.expansion import constant_value
+from robosc.model.semantics.inputs import Data, FailureReason
+from robosc.model.semantics.instances import bound_arguments
+from robosc.model.semantics.messages import EACH, holds_objects, is_structured, origins, reads_elements
+from robosc.model.semantics.naming import Names
+from robosc.model.semantics.printing import RoboscPrinter, conjunction
+from robosc.model.semantics.typing import ObjectType, declared_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from robosc.base.ros_types import Section
     from robosc.m2m.trace import Trace
-    from robosc.ros_types import Section
-    from robosc.semantics.communication import PortEvent
-    from robosc.semantics.inputs import Told
-    from robosc.semantics.instances import Instance, InstanceParameter, InstanceVariable, PortInstance
+    from robosc.model.semantics.communication import PortEvent
+    from robosc.model.semantics.inputs import Told
+    from robosc.model.semantics.instances import Instance, InstanceParameter, InstanceVariable, PortInstance
 
 #: Field of a basic value in a type of std_msgs.
 _FIELD = "data"

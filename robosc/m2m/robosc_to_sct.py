@@ -8,9 +8,9 @@ from robosc.m2m.declarations import Declarations
 from robosc.m2m.expressions import SctExpressions
 from robosc.m2m.requirement_automata import RequirementAutomaton
 from robosc.m2m.trace import Trace
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc, sct
-from robosc.semantics.communication import (
+from robosc.model import expression as ex
+from robosc.model import robosc, sct
+from robosc.model.semantics.communication import (
     CANCELING,
     CONTROLLABLE,
     ERROR,
@@ -20,19 +20,19 @@ from robosc.semantics.communication import (
     WAITING,
     events,
 )
-from robosc.semantics.cone_of_influence import cone_of_influence, guard_of
-from robosc.semantics.durations import UNITS, bounds, milliseconds, set_milliseconds, set_on_robot
-from robosc.semantics.expansion import constant_value
-from robosc.semantics.inputs import Data, FailureReason
-from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance, Statement
-from robosc.semantics.naming import Names
-from robosc.semantics.printing import RoboscPrinter, conjunction, disjunction
+from robosc.model.semantics.cone_of_influence import cone_of_influence, guard_of
+from robosc.model.semantics.durations import UNITS, bounds, milliseconds, set_milliseconds, set_on_robot
+from robosc.model.semantics.expansion import constant_value
+from robosc.model.semantics.inputs import Data, FailureReason
+from robosc.model.semantics.instances import Instance, Instances, InstanceVariable, PortInstance, Statement
+from robosc.model.semantics.naming import Names
+from robosc.model.semantics.printing import RoboscPrinter, conjunction, disjunction
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from robosc.metamodel.places import Place
-    from robosc.semantics.inputs import Told
+    from robosc.model.places import Place
+    from robosc.model.semantics.inputs import Told
 
 _Stated = TypeVar("_Stated", bound=robosc.StatedDefinition)
 

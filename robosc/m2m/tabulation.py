@@ -7,13 +7,13 @@ from itertools import groupby, product
 from operator import itemgetter
 from typing import NamedTuple, TypeAlias
 
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.cone_of_influence import LARGEST_TABLE
-from robosc.semantics.evaluation import Program, Value, literal
-from robosc.semantics.printing import conjunction, disjunction
-from robosc.semantics.typing import BOOLEAN, infer
-from robosc.semantics.walks import copied, fold, operands, parts, with_operands
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.cone_of_influence import LARGEST_TABLE
+from robosc.model.semantics.evaluation import Program, Value, literal
+from robosc.model.semantics.printing import conjunction, disjunction
+from robosc.model.semantics.typing import BOOLEAN, infer
+from robosc.model.semantics.walks import copied, fold, operands, parts, with_operands
 
 
 class TooLargeError(Exception):

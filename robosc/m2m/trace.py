@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import robosc
-from robosc.semantics.communication import event_of
+from robosc.model import robosc
+from robosc.model.semantics.communication import event_of
 
 if TYPE_CHECKING:
     from robosc.m2m.declarations import Declarations
-    from robosc.metamodel import expression as ex
-    from robosc.metamodel import sct
-    from robosc.semantics.cone_of_influence import ConeOfInfluence
-    from robosc.semantics.inputs import Told
-    from robosc.semantics.instances import (
+    from robosc.model import expression as ex
+    from robosc.model import sct
+    from robosc.model.semantics.cone_of_influence import ConeOfInfluence
+    from robosc.model.semantics.inputs import Told
+    from robosc.model.semantics.instances import (
         Instance,
         InstanceParameter,
         Instances,

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from robosc.metamodel import engine, robosc, rosgraph, sct
-    from robosc.ros_types import RosTypes
+    from robosc.base.ros_types import RosTypes
+    from robosc.model import engine, robosc, rosgraph, sct
 
 
 @dataclass(frozen=True)

@@ -10,14 +10,14 @@ from importlib import import_module
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypedDict, cast
 
-from robosc.extensions import Extension, extensions
+from robosc.base.extensions import Extension, extensions
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
     from typing import Unpack
 
-    from robosc.configuration import Configuration
-    from robosc.diagnostics import Diagnostic
+    from robosc.base.diagnostics import Diagnostic
+    from robosc.language.configuration import Configuration
     from robosc.m2t.models import Models, TraceTest
 
 

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from robosc.metamodel import robosc, xmi
-from robosc.metamodel.reflection import tree
-from robosc.semantics.failures import is_failure
-from robosc.semantics.instances import libraries
-from robosc.semantics.naming import Names
-from robosc.semantics.roles import is_from_cif
+from robosc.model import robosc, xmi
+from robosc.model.reflection import tree
+from robosc.model.semantics.failures import is_failure
+from robosc.model.semantics.instances import libraries
+from robosc.model.semantics.naming import Names
+from robosc.model.semantics.roles import is_from_cif
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.configuration import Configuration
-    from robosc.diagnostics import Diagnostic
+    from robosc.base.diagnostics import Diagnostic
+    from robosc.language.configuration import Configuration
     from robosc.m2t.models import Models
 
 

@@ -20,10 +20,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeVar
 
-from robosc.diagnostics import Diagnostic, ModelError, Severity
-from robosc.metamodel import sct
-from robosc.metamodel.places import place
-from robosc.semantics.roles import event_name, is_from_cif
+from robosc.base.diagnostics import Diagnostic, ModelError, Severity
+from robosc.model import sct
+from robosc.model.places import place
+from robosc.model.semantics.roles import event_name, is_from_cif
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.cover import separating_expression
 from robosc.synthesis.encoding import Encoding, Layout

@@ -11,9 +11,9 @@ from __future__ import annotations
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
-from robosc.diagnostics import Diagnostic, ModelError, Severity
-from robosc.metamodel import sct
-from robosc.metamodel.places import place
+from robosc.base.diagnostics import Diagnostic, ModelError, Severity
+from robosc.model import sct
+from robosc.model.places import place
 from robosc.synthesis.bdd import and_exists
 from robosc.synthesis.encoding import domain_size
 from robosc.synthesis.relation import Step

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.printing import conjunction, disjunction
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.printing import conjunction, disjunction
 from robosc.synthesis.decoding import Ranges, codes, complement, cost, is_one_of
 from robosc.synthesis.encoding import pick
 

@@ -13,14 +13,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
 
-from robosc.diagnostics import Diagnostic, ModelError, Severity
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.metamodel.places import place
-from robosc.metamodel.reflection import tree
-from robosc.semantics import domains
-from robosc.semantics.edges import edges_of
-from robosc.semantics.walks import fold, operands
+from robosc.base.diagnostics import Diagnostic, ModelError, Severity
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.places import place
+from robosc.model.reflection import tree
+from robosc.model.semantics import domains
+from robosc.model.semantics.edges import edges_of
+from robosc.model.semantics.walks import fold, operands
 from robosc.synthesis import arithmetic
 from robosc.synthesis.order import variable_order
 

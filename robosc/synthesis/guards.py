@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.printing import conjunction
-from robosc.semantics.walks import copied
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.printing import conjunction
+from robosc.model.semantics.walks import copied
 from robosc.synthesis.cover import separating_expression
 from robosc.synthesis.simplification import simplified
 

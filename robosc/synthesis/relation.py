@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import sct
-from robosc.semantics.edges import edges_by_event
+from robosc.model import sct
+from robosc.model.semantics.edges import edges_by_event
 from robosc.synthesis import arithmetic
 from robosc.synthesis.bdd import Diagram, and_exists
 from robosc.synthesis.encoding import referenced

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from robosc.semantics.roles import SILENT
+from robosc.model.semantics.roles import SILENT
 from robosc.synthesis.encoding import referenced
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from robosc.metamodel import sct
+    from robosc.model import sct
     from robosc.synthesis.bdd import Diagram, Diagrams
     from robosc.synthesis.encoding import Element
     from robosc.synthesis.relation import EventRelation, Step

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import expression as ex
-from robosc.semantics.walks import copied, walk
+from robosc.model import expression as ex
+from robosc.model.semantics.walks import copied, walk
 
 if TYPE_CHECKING:
     from collections.abc import Generator

@@ -10,9 +10,9 @@ from robosc.analysis.blocking import Reason
 from robosc.analysis.blocking_in_words import blocking
 from robosc.analysis.paths import Layers, TraceStep
 from robosc.analysis.supervise import diagnose
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.roles import event_name
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.roles import event_name
 from tests.random_sct import sct_models
 from tests.sct_models import disables, edge, model, needs, plant
 from tests.synthesis.oracle import Oracle, State, values_of

@@ -5,7 +5,7 @@ import pytest
 import robosc
 from robosc.analysis.explain import Renderer, emptiness, event_named, explored, possibility
 from robosc.analysis.supervise import EmptySupervisorError, supervise
-from robosc.diagnostics import Diagnostic, in_order
+from robosc.base.diagnostics import Diagnostic, in_order
 
 #: A drill goes down between two feeds; its cover can be opened at any time, so it never may.
 TURNS = """robot Drill {

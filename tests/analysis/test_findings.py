@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 
 from robosc.analysis.supervise import supervise
-from robosc.checks import check
-from robosc.cli.report import Report
-from robosc.diagnostics import Diagnostic, Severity, as_text, in_order
-from robosc.language import read
+from robosc.base.diagnostics import Diagnostic, Severity, as_text, in_order
+from robosc.language.checks import check
+from robosc.language.reading import read
 from robosc.m2m import robosc_to_sct
+from robosc.tools.cli.report import Report
 
 MODELS = Path(__file__).parent / "models"
 ROBOTS = sorted(path for path in MODELS.glob("*.rscd") if path.name != "parts.rscd")

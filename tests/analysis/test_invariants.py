@@ -10,15 +10,15 @@ from robosc.analysis.explain.explaining import emptiness, explored
 from robosc.analysis.supervise import EmptySupervisorError, supervise
 from robosc.analysis.verify import validate_cif, verify_system
 from robosc.analysis.verify.verdict import Outcome
-from robosc.checks import check
-from robosc.configuration import Configuration
-from robosc.language import read
+from robosc.language.checks import check
+from robosc.language.configuration import Configuration
 from robosc.language.formatting import format_text
+from robosc.language.reading import read
 from robosc.language.text import Text
 from robosc.m2m import robosc_to_sct, sct_to_engine
 from robosc.m2t import cif
 from robosc.m2t.models import Models
-from robosc.metamodel import sct
+from robosc.model import sct
 
 ARM = """
     component {0} {{

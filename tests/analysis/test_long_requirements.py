@@ -8,8 +8,8 @@ from robosc.analysis.explain import explain, explored, possibility
 from robosc.analysis.supervise import diagnose
 from robosc.analysis.verify import Outcome, verify_system
 from robosc.m2m.sct_to_cif import transform
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
+from robosc.model import expression as ex
+from robosc.model import sct
 from tests.sct_models import edge, model, needs, plant
 from tests.small_stack import on_small_stack
 

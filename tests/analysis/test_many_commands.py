@@ -8,10 +8,11 @@ import robosc
 from robosc.analysis import findings as findings_module
 from robosc.analysis.observations import Observer
 from robosc.analysis.supervise import supervise
-from robosc.checks import check
-from robosc.checks.rules import shared_names
-from robosc.diagnostics import Diagnostic
-from robosc.language import Documents, read
+from robosc.base.diagnostics import Diagnostic
+from robosc.language.checks import check
+from robosc.language.checks.rules import shared_names
+from robosc.language.reading import read
+from robosc.language.text import Documents
 from robosc.m2m import robosc_to_sct
 
 COMMANDS = 60

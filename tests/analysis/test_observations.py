@@ -19,9 +19,9 @@ from robosc.analysis.observations import (
     UnreachableState,
 )
 from robosc.analysis.supervise import diagnose
-from robosc.metamodel import sct
-from robosc.semantics.edges import edges_from
-from robosc.semantics.roles import event_name, plant_of
+from robosc.model import sct
+from robosc.model.semantics.edges import edges_from
+from robosc.model.semantics.roles import event_name, plant_of
 from tests.analysis.test_blocking import Replay, distance, is_blocked, is_never_marked
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, needs, plant

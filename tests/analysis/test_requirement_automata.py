@@ -7,16 +7,16 @@ import pytest
 from robosc.analysis.supervise import EmptySupervisorError, supervise
 from robosc.analysis.verify import validate_c, validate_cif, verify_system
 from robosc.analysis.verify.verdict import Outcome
-from robosc.checks import check
-from robosc.configuration import Configuration
 from robosc.engine import Engine
-from robosc.language import read
+from robosc.language.checks import check
+from robosc.language.configuration import Configuration
 from robosc.language.formatting import format_text
+from robosc.language.reading import read
 from robosc.language.text import Text
 from robosc.m2m import robosc_to_sct
 from robosc.m2t import cif, supervisor
 from robosc.m2t.models import Models
-from robosc.metamodel import sct
+from robosc.model import sct
 
 ARM = """
     component Arm {

@@ -5,12 +5,12 @@ from pathlib import Path
 import pytest
 
 from robosc.analysis.supervise import supervise
-from robosc.checks import check
-from robosc.diagnostics import Diagnostic, ModelError, Severity
-from robosc.diagnostics.rules import page, summary
-from robosc.language import read
+from robosc.base.diagnostics import Diagnostic, ModelError, Severity
+from robosc.base.diagnostics.rules import page, summary
+from robosc.language.checks import check
+from robosc.language.reading import read
 from robosc.m2m import robosc_to_sct
-from tests.checks.test_rule_pages import models
+from tests.language.checks.test_rule_pages import models
 
 RULES = {
     "empty-supervisor": Severity.ERROR,

@@ -6,7 +6,7 @@ import pytest
 
 import robosc
 from robosc.analysis.supervise import EmptySupervisorError, supervise
-from robosc.diagnostics import has_errors
+from robosc.base.diagnostics import has_errors
 from tests.synthesis.classics import philosophers
 
 LIBRARY = """\

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from robosc.analysis.supervise import supervise
-from robosc.language import read
+from robosc.language.reading import read
 from robosc.m2m import robosc_to_sct
 
 ROBOT = """robot R {

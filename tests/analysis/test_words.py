@@ -7,11 +7,11 @@ from click.testing import CliRunner
 import robosc
 from robosc.analysis.supervise import supervise
 from robosc.analysis.wording import with_words
-from robosc.cli import main
-from robosc.configuration import Configuration
+from robosc.language.configuration import Configuration
 from robosc.m2t import cif, supervisor
 from robosc.m2t.models import Models
-from robosc.semantics.roles import Roles, event_name
+from robosc.model.semantics.roles import Roles, event_name
+from robosc.tools.cli import main
 
 MODEL = """robot Courier {
   component Base {

@@ -12,12 +12,13 @@ import pytest
 import robosc
 from benchmarks import walks
 from benchmarks.walk_families import FAMILIES, write
-from robosc.checks import check
-from robosc.diagnostics import Edit, ModelError
-from robosc.language import grammar, read, recovery
+from robosc.base.diagnostics import Edit, ModelError
+from robosc.language import grammar, recovery
+from robosc.language.checks import check
 from robosc.language.outlining import around, folds, outline
+from robosc.language.reading import read
 from robosc.language.text import Text
-from robosc.metamodel import sct
+from robosc.model import sct
 
 pytestmark = pytest.mark.slow
 

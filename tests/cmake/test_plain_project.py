@@ -14,7 +14,7 @@ from click.testing import CliRunner
 from ruamel.yaml import YAML
 
 import robosc
-from robosc.cli import main
+from robosc.tools.cli import main
 from tests.cmake.building import blocks, built_again, no_work_is_done, touched_later
 
 HERE = Path(__file__).parent
@@ -176,7 +176,7 @@ def test_the_tool_says_where_they_are() -> None:
 def test_what_a_node_is_generated_with_reaches_the_program(tmp_path: Path, arguments: str, told: str) -> None:
     """By the function behind `robosc_generate_controller` of both ROS, which hands on all that it is given."""
     project = Project(tmp_path)
-    shutil.copy(HERE.parent / "runtime" / "guard.rscd", project.source)
+    shutil.copy(HERE.parent / "run" / "runtime" / "guard.rscd", project.source)
     settings = project.source / "settings" / "own.json"
     settings.parent.mkdir()
     settings.write_text('{"package": {"name": "steward"}}', encoding="utf-8")

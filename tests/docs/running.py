@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from click.testing import CliRunner
 
-from robosc.cli import main
+from robosc.tools.cli import main
 from tests.docs.pages import ROOT, Block
 
 if TYPE_CHECKING:

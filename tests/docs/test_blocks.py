@@ -19,8 +19,9 @@ import pytest
 from ruamel.yaml import YAML
 
 import robosc
-from robosc.cli import main
-from robosc.language import Documents, read
+from robosc.language.reading import read
+from robosc.language.text import Documents
+from robosc.tools.cli import main
 from tests.docs.pages import MARKS, PAGES, ROOT, Block, blocks, without_blocks
 from tests.docs.running import Desk, commands, matches
 from tests.searching import less_effort
@@ -31,11 +32,11 @@ if TYPE_CHECKING:
 
 #: Pages all of whose blocks another test holds.
 HELD = {
-    "docs/rules/*.md": "tests/checks/test_rule_pages.py",
-    "docs/rules/xmi.md": "tests/validity/test_validity.py",
+    "docs/rules/*.md": "tests/language/checks/test_rule_pages.py",
+    "docs/rules/xmi.md": "tests/model/validity/test_validity.py",
     "docs/patterns*.md": "tests/test_patterns.py",
-    "docs/explain.md": "tests/cli/test_explain_page.py",
-    "docs/cif-simulator.md": "tests/cif/test_simulator_page.py",
+    "docs/explain.md": "tests/tools/cli/test_explain_page.py",
+    "docs/cif-simulator.md": "tests/language/cif/test_simulator_page.py",
 }
 BLOCKS = {page: blocks(page) for page in PAGES}
 

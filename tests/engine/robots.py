@@ -3,7 +3,7 @@
 from hypothesis import assume
 from hypothesis import strategies as st
 
-from robosc.metamodel import sct
+from robosc.model import sct
 from robosc.synthesis import synthesize
 from tests.sct_models import disables, edge, model, needs, plant
 

@@ -9,10 +9,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from robosc.engine import ControlLoop, Hooks, Settings
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.domains import domain
-from robosc.semantics.roles import event_name, plant_of
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.domains import domain
+from robosc.model.semantics.roles import event_name, plant_of
 from tests.engine.robots import robots
 from tests.searching import examples
 

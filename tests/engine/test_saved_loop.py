@@ -9,7 +9,7 @@ import pytest
 
 import robosc
 from robosc.engine import ControlLoop, Settings
-from robosc.metamodel.engine import Role
+from robosc.model.engine import Role
 from tests.searching import slow_but
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from robosc.cli import main
-from robosc.diagrams import behaviour_graph, diagram, ros_graph
-from robosc.language import read
-from robosc.metamodel import robosc as rsc
+from robosc.language.reading import read
+from robosc.model import robosc as rsc
+from robosc.tools.cli import main
+from robosc.tools.diagrams import behaviour_graph, diagram, ros_graph
 from tests.searching import slow_but
 
 from .conftest import EXAMPLES, MODELS, PAGES, SCENARIOS, SHOWCASES, models_of

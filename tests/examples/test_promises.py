@@ -7,8 +7,8 @@ import pytest
 
 from robosc.engine import ControlLoop, Engine, Hooks
 from robosc.engine.state import State
-from robosc.metamodel import expression as ex
-from robosc.semantics.roles import event_name
+from robosc.model import expression as ex
+from robosc.model.semantics.roles import event_name
 
 from .conftest import MODELS, SHOWCASES, models_of
 

@@ -7,7 +7,7 @@ from itertools import accumulate, pairwise
 import pytest
 from click.testing import CliRunner
 
-from robosc.cli import main
+from robosc.tools.cli import main
 
 from .conftest import MODELS
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 
-from robosc.cli import main
+from robosc.tools.cli import main
 
 from .conftest import MODELS, PAGES, SHOWCASES
 
@@ -43,7 +43,7 @@ def test_the_page_shows_the_table(
     """All of it but the seconds."""
     page = (ROOT / "docs" / "verify.md").read_text()
     shown = page.partition("$ robosc verify examples/line_follower/line_follower.rscd\n")[2].partition("```")[0]
-    monkeypatch.setattr(import_module("robosc.cli.verify"), "verify", verified_once(MODELS["line_follower"]))
+    monkeypatch.setattr(import_module("robosc.tools.cli.verify"), "verify", verified_once(MODELS["line_follower"]))
     told = CliRunner().invoke(main, ["verify", str(MODELS["line_follower"])])
     assert _without_seconds(shown) == _without_seconds(told.stdout)
 

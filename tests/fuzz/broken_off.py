@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from random import Random
 
-from robosc.cli import main
+from robosc.tools.cli import main
 from tests.fuzz.trial import said
 from tests.interruptions import interrupted
 

@@ -11,8 +11,8 @@ from functools import cache
 from random import Random
 from typing import TYPE_CHECKING
 
-from tests.cif.random_specifications import Specification
 from tests.fuzz.mutants import HOSTILE, ROOT
+from tests.language.cif.random_specifications import Specification
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -66,7 +66,7 @@ _WORDS = (
 def _small() -> list[str]:
     """The specifications that tests and pages of the documentation have in them."""
     found = []
-    for module in sorted((ROOT / "tests" / "cif").glob("test_*.py")):
+    for module in sorted((ROOT / "tests" / "language" / "cif").glob("test_*.py")):
         nodes = ast.walk(ast.parse(module.read_text(encoding="utf-8")))
         texts = (node.value for node in nodes if isinstance(node, ast.Constant))
         found += [text for text in texts if isinstance(text, str) and "location" in text]

@@ -12,19 +12,19 @@ from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING
 
-from robosc.semantics.naming import ROBOSC_KEYWORDS
+from robosc.model.semantics.naming import ROBOSC_KEYWORDS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 ROOT = Path(__file__).parents[2]
-LIBRARIES = ROOT / "tests" / "checks" / "libraries"
+LIBRARIES = ROOT / "tests" / "language" / "checks" / "libraries"
 _FOLDERS = (
     "examples",
     "robosc/stdlib",
-    "tests/checks/accepted",
-    "tests/checks/rejected",
-    "tests/metamodel",
+    "tests/language/checks/accepted",
+    "tests/language/checks/rejected",
+    "tests/model",
     "../shared/thesis/models",
 )
 #: A word with the blanks and comments before it.

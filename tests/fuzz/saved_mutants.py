@@ -21,7 +21,7 @@ MODELS = (
     "examples/line_follower/line_follower.rscd",
     "examples/obstacle_navigation/obstacle_navigation.rscd",
     "tests/m2t/cpp/courier.rscd",
-    "tests/metamodel/warehouse.rscd",
+    "tests/model/warehouse.rscd",
 )
 #: What stands in a file beside the folder of the models.
 UNTOLD = "what nobody may read"
@@ -47,7 +47,7 @@ _PLACE = re.compile(r'(?<= )(source|file|origin|text|href|name)="([^"]*)"')
 def saved(model: str) -> dict[str, str]:
     """The files that `transform --to xmi` writes of a model: name to text."""
     robot = robosc.load(ROOT / model, [LIBRARIES])
-    assert isinstance(robot, robosc.metamodel.robosc.Robot)
+    assert isinstance(robot, robosc.model.robosc.Robot)
     models = Models(robosc.to_sct(robot), robosc.to_rosgraph(robot), robot)
     supervise(models.sct)
     files = xmi.generate(models, robosc.Configuration())

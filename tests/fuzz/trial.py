@@ -13,17 +13,17 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from click.testing import CliRunner
 
 import robosc
-import robosc.cif
-from robosc import cli
+import robosc.language.cif
 from robosc.analysis.supervise import EmptySupervisorError, supervise
-from robosc.checks import check
-from robosc.configuration import FILE_NAME
-from robosc.diagnostics import START, Diagnostic, ModelError, as_json, as_sarif, as_text, has_errors
-from robosc.language import read
+from robosc.base.diagnostics import START, Diagnostic, ModelError, as_json, as_sarif, as_text, has_errors
+from robosc.language.checks import check
+from robosc.language.configuration import FILE_NAME
+from robosc.language.reading import read
 from robosc.m2t.models import Models
 from robosc.m2t.targets import TARGETS
-from robosc.metamodel import robosc as rsc
-from robosc.validity import faults
+from robosc.model import robosc as rsc
+from robosc.model.validity import faults
+from robosc.tools import cli
 from tests.fuzz.mutants import LIBRARIES
 from tests.fuzz.saved_mutants import UNTOLD, saved_mutant
 
@@ -177,7 +177,7 @@ def cif_tried(folder: Path, files: dict[str, bytes]) -> int:
     for name, content in files.items():
         (folder / name).write_bytes(content)
     path = folder / next(iter(files))
-    reading = robosc.cif.read(path)
+    reading = robosc.language.cif.read(path)
     _located(reading.findings, reading.texts)
     assert (reading.model is None) == has_errors(reading.findings)
     checking = _run("check", str(path))

@@ -7,16 +7,15 @@ from dataclasses import dataclass
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-from robosc import configuration as config
-from robosc import validity
-from robosc.configuration import Configuration
-from robosc.diagnostics import has_errors
+from robosc.base.diagnostics import has_errors
 from robosc.engine import Settings
+from robosc.language import configuration as config
+from robosc.language.configuration import Configuration
 from robosc.m2m.sct_to_cif import transform
 from robosc.m2t import cif, xmi
 from robosc.m2t.cif.names import CifNames
 from robosc.m2t.models import Models
-from robosc.metamodel import sct
+from robosc.model import sct, validity
 from robosc.synthesis import synthesize
 from tests.fuzz.trial import Outcome, tried
 from tests.m2t.cif.differences import differences

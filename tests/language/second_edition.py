@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import robosc
-from robosc.diagnostics import ModelError, Severity
+from robosc.base.diagnostics import ModelError, Severity
 from robosc.engine import Engine
 
 if TYPE_CHECKING:
-    from robosc.metamodel import sct
+    from robosc.model import sct
 
 
 def errors(text: str) -> list[tuple[str, int]]:

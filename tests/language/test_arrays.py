@@ -7,9 +7,9 @@ import pytest
 import robosc
 from robosc.language.formatting import format_text
 from robosc.language.text import Text
-from robosc.metamodel import robosc as rsc
-from robosc.metamodel.reflection import tree
-from robosc.semantics.printing import RoboscPrinter
+from robosc.model import robosc as rsc
+from robosc.model.reflection import tree
+from robosc.model.semantics.printing import RoboscPrinter
 
 MODEL = """\
 robot Scan {{

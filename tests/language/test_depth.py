@@ -10,7 +10,8 @@ ROOT = Path(__file__).parents[2]
 SCRIPT = """
 import sys
 import threading
-from robosc.language import Documents, read
+from robosc.language.reading import read
+from robosc.language.text import Documents
 from robosc.language.formatting import format_text
 from robosc.language.text import decode
 from robosc.language.tokens import DEEPEST, LONGEST

@@ -5,8 +5,9 @@ from pathlib import Path
 import pytest
 
 import robosc
-from robosc.language import Documents, Reading, Text, read
-from robosc.metamodel import robosc as rsc
+from robosc.language.reading import Reading, read
+from robosc.language.text import Documents, Text
+from robosc.model import robosc as rsc
 
 LIBRARY = """library Wheels {
   component Motors { outgoing message speed with type: double }

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from robosc.cli import main
+from robosc.tools.cli import main
 
 ROVER = """
 robot Rover {

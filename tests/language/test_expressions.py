@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from robosc.language.building import Builder
 from robosc.language.grammar import Failure, parse
 from robosc.language.text import Text
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc as rsc
-from robosc.semantics.naming import ROBOSC_KEYWORDS
-from robosc.semantics.operators import PRECEDENCE
-from robosc.semantics.printing import RoboscPrinter
+from robosc.model import expression as ex
+from robosc.model import robosc as rsc
+from robosc.model.semantics.naming import ROBOSC_KEYWORDS
+from robosc.model.semantics.operators import PRECEDENCE
+from robosc.model.semantics.printing import RoboscPrinter
 
 NAMES = st.sampled_from(["a", "B2", "_", "not", *sorted(ROBOSC_KEYWORDS)])
 SEGMENTS = st.lists(

@@ -22,7 +22,7 @@ from tests.searching import examples
 ROOT = Path(__file__).parent.parent.parent
 FILES = [
     path
-    for folder in ("examples", "robosc/stdlib", "tests/checks", "tests/supervision")
+    for folder in ("examples", "robosc/stdlib", "tests/language/checks", "tests/supervision")
     for path in sorted((ROOT / folder).rglob("*.rscd"))
 ]
 _STRING_OR_COMMENT = re.compile(r"""("(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*')|//[^\n]*|/\*[\s\S]*?\*/""")

@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 
-from robosc.files.resources import locate
+from robosc.base.files.resources import locate
 from robosc.language.building import element_class
 from robosc.language.grammar import first, first_words, following, is_reserved, language
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc as rsc
-from robosc.semantics.naming import ROBOSC_KEYWORDS
+from robosc.model import expression as ex
+from robosc.model import robosc as rsc
+from robosc.model.semantics.naming import ROBOSC_KEYWORDS
 
 TEXT = locate("grammar/robosc.tx").read_text(encoding="utf-8")
 RULES = re.findall(r"^(\w+):", TEXT, re.MULTILINE)

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from robosc.checks import check
-from robosc.language import read
+from robosc.base.ros_types import RosTypes
+from robosc.language.checks import check
+from robosc.language.reading import read
 from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
-from robosc.metamodel import robosc as rsc
-from robosc.metamodel.reflection import tree
-from robosc.ros_types import RosTypes
+from robosc.model import robosc as rsc
+from robosc.model.reflection import tree
 
 ROBOT = """
 robot Carrier {

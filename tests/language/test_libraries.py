@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from robosc.checks import check
-from robosc.files.resources import locate
-from robosc.language import read
+from robosc.base.files.resources import locate
+from robosc.language.checks import check
+from robosc.language.reading import read
 from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
-from robosc.metamodel import robosc as rsc
-from robosc.metamodel.places import place
+from robosc.model import robosc as rsc
+from robosc.model.places import place
 from tests.language.texts import places, reading, underlined
 
 ROBOT = "robot R {\n  component C from L import C\n}\n"

@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from robosc.language import Reading
-from robosc.metamodel import robosc as rsc
+from robosc.language.reading import Reading
+from robosc.model import robosc as rsc
 from tests.language.texts import reading, underlined
 
 STOP = """

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from robosc.files.resources import locate
-from robosc.language import read
-from robosc.metamodel import robosc as rsc
+from robosc.base.files.resources import locate
+from robosc.language.reading import read
+from robosc.model import robosc as rsc
 
 LISTINGS = Path(__file__).parent.parent.parent.parent / "shared" / "thesis" / "models"
 NAMES = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import robosc
-from robosc.metamodel import sct
+from robosc.model import sct
 from tests.language.second_edition import errors, requirements, running, supervised
 
 _ROBOT = """robot Cart {{

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robosc.metamodel import robosc as rsc
-from robosc.semantics.failures import FAILURES, REASONS, is_failure
+from robosc.model import robosc as rsc
+from robosc.model.semantics.failures import FAILURES, REASONS, is_failure
 from tests.language.second_edition import errors, running, supervised
 from tests.language.texts import reading, underlined
 from tests.searching import examples

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from robosc.diagnostics import as_text
-from robosc.language import read
-from robosc.metamodel import robosc as rsc
-from robosc.semantics.naming import ROBOSC_KEYWORDS
+from robosc.base.diagnostics import as_text
+from robosc.language.reading import read
+from robosc.model import robosc as rsc
+from robosc.model.semantics.naming import ROBOSC_KEYWORDS
 from tests.language.texts import places, reading, underlined
 
 MODEL = """

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import robosc
-from robosc.metamodel import robosc as rsc
+from robosc.model import robosc as rsc
 from tests.language.second_edition import requirements, running
 from tests.language.texts import reading, underlined
 

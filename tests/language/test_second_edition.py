@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 import pytest
 
 import robosc
-from robosc.diagnostics import ModelError, Severity
+from robosc.base.diagnostics import ModelError, Severity
 from robosc.engine import Engine
-from robosc.metamodel import rosgraph, sct
-from robosc.metamodel.reflection import tree
+from robosc.model import rosgraph, sct
+from robosc.model.reflection import tree
 from tests.language.second_edition import errors, running, supervised
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from robosc.diagnostics import Diagnostic
+    from robosc.base.diagnostics import Diagnostic
 
 # Names
 

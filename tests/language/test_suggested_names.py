@@ -5,15 +5,16 @@ from pathlib import Path
 
 import pytest
 
-from robosc import cif
-from robosc.checks import check
-from robosc.cif.parsing import identifier
-from robosc.diagnostics import Diagnostic
-from robosc.language import Documents, Text, read
+from robosc.base.diagnostics import Diagnostic
+from robosc.base.ros_types import RosTypes
+from robosc.language import cif
+from robosc.language.checks import check
+from robosc.language.cif.parsing import identifier
+from robosc.language.reading import read
+from robosc.language.text import Documents, Text
 from robosc.language.tokens import Kind, Tokens
 from robosc.m2t.cif.names import KEYWORDS
-from robosc.ros_types import RosTypes
-from tests.cif.test_language import COUNTS
+from tests.language.cif.test_language import COUNTS
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 ROBOTS = [EXAMPLES / name / f"{name}.rscd" for name in ("line_follower", "person_follower")]

@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 
-from robosc.diagnostics import Span
-from robosc.language import read
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc as rsc
-from robosc.semantics.naming import ROBOSC_KEYWORDS
+from robosc.base.diagnostics import Span
+from robosc.language.reading import read
+from robosc.model import expression as ex
+from robosc.model import robosc as rsc
+from robosc.model.semantics.naming import ROBOSC_KEYWORDS
 from tests.language.texts import reading, underlined
 
 PROVIDE = "robot R { component C { incoming message m with type: none } provide m with "

@@ -3,7 +3,7 @@
 from pathlib import Path
 from textwrap import dedent
 
-from robosc.language import Reading, read
+from robosc.language.reading import Reading, read
 
 
 def reading(folder: Path, text: str, **libraries: str) -> Reading:

@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from robosc.language import read
+from robosc.language.reading import read
 from robosc.m2m import robosc_to_sct
-from robosc.metamodel import sct
+from robosc.model import sct
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
     from robosc.m2m.trace import Trace
-    from robosc.metamodel import robosc
+    from robosc.model import robosc
 
 Transformed = tuple[sct.SupervisoryControlModel, "Trace"]
 

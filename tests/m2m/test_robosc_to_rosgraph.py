@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from robosc.base.ros_types import RosTypes
 from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
-from robosc.metamodel import expression as ex
-from robosc.metamodel import rosgraph, sct
-from robosc.ros_types import RosTypes
+from robosc.model import expression as ex
+from robosc.model import rosgraph, sct
 
 SCANNER = """
 robot R {

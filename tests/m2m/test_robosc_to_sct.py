@@ -1,8 +1,8 @@
 """What a robot model means as plants and requirements."""
 
-from robosc.metamodel import expression as ex
-from robosc.semantics.edges import edges_from
-from robosc.semantics.printing import SctPrinter
+from robosc.model import expression as ex
+from robosc.model.semantics.edges import edges_from
+from robosc.model.semantics.printing import SctPrinter
 
 MESSAGES = """
 robot R {

@@ -7,10 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robosc.m2m.tabulation import TooLargeError, tabulate
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.cone_of_influence import LARGEST_TABLE
-from robosc.semantics.evaluation import evaluate
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.cone_of_influence import LARGEST_TABLE
+from robosc.model.semantics.evaluation import evaluate
 
 VARIABLES = [sct.DiscreteVariable(name=name) for name in ("x", "y")]
 COMPARISONS = [ex.Equation, ex.Inequation, ex.LessThan, ex.LessOrEqual, ex.GreaterThan, ex.GreaterOrEqual]

@@ -11,12 +11,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from robosc.checks import check
-from robosc.diagnostics import Diagnostic, as_text, has_errors
-from robosc.language import read
+from robosc.base.diagnostics import Diagnostic, as_text, has_errors
+from robosc.language.checks import check
+from robosc.language.reading import read
 from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
-from robosc.metamodel import robosc
-from robosc.validity import faults
+from robosc.model import robosc
+from robosc.model.validity import faults
 from tests.fuzz.mutants import LIBRARIES, sources
 from tests.random_robots import random_robot
 from tests.searching import examples

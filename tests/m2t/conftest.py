@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import robosc
-from robosc import configuration as config
+from robosc.language import configuration as config
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

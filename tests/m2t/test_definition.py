@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from jsonschema import Draft202012Validator
 
-from robosc.files.resources import locate
-from robosc.semantics.definition import definition, definition_text
+from robosc.base.files.resources import locate
+from robosc.model.semantics.definition import definition, definition_text
 
 if TYPE_CHECKING:
     import robosc

@@ -6,7 +6,7 @@ from shutil import copyfile
 import pytest
 from click.testing import CliRunner
 
-from robosc.cli import main
+from robosc.tools.cli import main
 
 HERE = Path(__file__).parent
 SAVED = HERE / "first_edition"

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 import pytest
 
 import robosc
-from robosc import configuration as config
+from robosc.language import configuration as config
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from robosc.configuration import Configuration
+    from robosc.language.configuration import Configuration
 
 HERE = Path(__file__).parent / "fragments"
 USHER = HERE.parent / "layer"

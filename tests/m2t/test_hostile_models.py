@@ -13,10 +13,10 @@ from xml.etree import ElementTree as ET
 import pytest
 
 import robosc
-from robosc.configuration import Configuration
+from robosc.language.configuration import Configuration
 from robosc.m2t.models import Models
-from robosc.metamodel import expression as ex
-from robosc.metamodel.reflection import tree
+from robosc.model import expression as ex
+from robosc.model.reflection import tree
 
 pytestmark = pytest.mark.slow
 

@@ -11,8 +11,8 @@ import pytest
 
 import robosc
 from robosc.m2t.models import Models
-from robosc.simulation import Simulation
-from robosc.validity import faults, load
+from robosc.model.validity import faults, load
+from robosc.run.simulation import Simulation
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -13,8 +13,8 @@ from catkin_pkg.package import parse_package_string
 from rosbags.typesys import get_types_from_msg
 
 import robosc
-from robosc.configuration import Configuration
-from robosc.diagnostics import ModelError
+from robosc.base.diagnostics import ModelError
+from robosc.language.configuration import Configuration
 from robosc.m2t.models import Models
 from robosc.m2t.targets import TARGETS
 

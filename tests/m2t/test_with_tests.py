@@ -18,7 +18,7 @@ from tests.m2t.conftest import differences
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from robosc.configuration import Configuration
+    from robosc.language.configuration import Configuration
 
 HERE = Path(__file__).parent
 TEST_DEPENDS = {
@@ -51,7 +51,7 @@ def test_what_is_added(
     assert set(changed) == {"CMakeLists.txt", "package.xml"}
     golden(folder.parent / f"{target}.diff", differences(plain, changed))
     player = new.pop("test/trace_player.py")
-    assert player == (Path(robosc.__file__).parent / "node_tests" / "trace_player.py").read_text(encoding="utf-8")
+    assert player == (Path(robosc.__file__).parent / "run/node_tests/trace_player.py").read_text(encoding="utf-8")
     # Neither pytest nor the linters of this house shall take the scripts for their own.
     new = {f"{path}.golden" if path.endswith(".py") else path: text for path, text in new.items()}
     for path in SAME:

@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from robosc.configuration import Configuration
-from robosc.language import read
+from robosc.language.configuration import Configuration
+from robosc.language.reading import read
 from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
 from robosc.m2t import xmi
 from robosc.m2t.models import Models
-from robosc.validity import load
+from robosc.model.validity import load
 
 LIBRARY = """
 library {name} {{

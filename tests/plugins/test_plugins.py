@@ -12,17 +12,17 @@ from click import Context
 from click.testing import CliRunner
 
 import robosc
-from robosc import extensions
-from robosc.cli import main
-from robosc.configuration import Configuration
+from robosc.base import extensions
 from robosc.engine import Engine
+from robosc.language.configuration import Configuration
 from robosc.m2t.models import Models
-from robosc.semantics.roles import event_name
-from tests.cli.conftest import not_longer_than
-from tests.debugger.client import Program
+from robosc.model.semantics.roles import event_name
+from robosc.tools.cli import main
 from tests.examples.conftest import MODELS, models_of
 from tests.m2t.supervisor import corners
 from tests.m2t.supervisor.test_supervisor import dock
+from tests.tools.cli.conftest import not_longer_than
+from tests.tools.debugger.client import Program
 
 from .structured_text import Block
 
@@ -146,7 +146,7 @@ def test_a_broken_target_is_a_finding(broken, text: str, tmp_path: Path) -> None
     assert not (tmp_path / "out").exists()
 
 
-SYNTHESIZER = "from robosc.metamodel import sct\n\n\ndef synthesize(model):\n    "
+SYNTHESIZER = "from robosc.model import sct\n\n\ndef synthesize(model):\n    "
 SYNTHESIZERS = {
     f"{SYNTHESIZER}return None\n": ("empty-supervisor", "the supervisor is empty: `broken` finds none"),
     f"{SYNTHESIZER}return 3\n": ("extension", "it gives a int and no supervisor"),
@@ -181,8 +181,8 @@ def test_verify_refutes_a_supervisor_that_allows_too_much(broken) -> None:
 
 #: The robot never moves, though it could.
 SHY = (
-    f"{SYNTHESIZER}from robosc.metamodel import expression\n"
-    "    from robosc.semantics.roles import event_name\n"
+    f"{SYNTHESIZER}from robosc.model import expression\n"
+    "    from robosc.model.semantics.roles import event_name\n"
     "    from robosc.synthesis import synthesize\n"
     "    found = synthesize(model).supervisor\n"
     "    for guard in found.guards:\n"

@@ -12,8 +12,8 @@ from pathlib import Path
 import rclpy
 from std_msgs.msg import Empty
 
-from robosc.cli import main
-from robosc.runtime.ros2.node import Ros2Node
+from robosc.run.runtime.ros2.node import Ros2Node
+from robosc.tools.cli import main
 
 #: Twice as long as the model bears without a scan, and then some.
 SLEEP = 2.0

@@ -24,7 +24,7 @@ PROJECT = HERE.parents[1]
 MODELS = {
     "line_follower_controller": PROJECT / "examples" / "line_follower" / "line_follower.rscd",
     "courier_controller": HERE.parent / "m2t" / "cpp" / "courier.rscd",
-    "cruise_controller": HERE.parent / "runtime" / "cruise.rscd",
+    "cruise_controller": HERE.parent / "run" / "runtime" / "cruise.rscd",
     "patience_controller": HERE / "times" / "patience.rscd",
     "keeper_controller": HERE / "kept" / "keeper.rscd",
 }

@@ -7,8 +7,8 @@ from rclpy.qos import QoSProfile
 from std_msgs.msg import Empty, Int32
 
 import robosc
-from robosc.configuration import Configuration
-from robosc.runtime.ros2.node import Ros2Node
+from robosc.language.configuration import Configuration
+from robosc.run.runtime.ros2.node import Ros2Node
 
 MODEL = """
 robot Taker {

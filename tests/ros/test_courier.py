@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from jsonschema import Draft202012Validator
 
-from robosc.files.resources import locate
+from robosc.base.files.resources import locate
 
 if TYPE_CHECKING:
     from tests.ros.conftest import Courier

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from robosc.ros_types import RosTypes, Section
-from robosc.ros_types.wire import Basic, Sequence
+from robosc.base.ros_types import RosTypes, Section
+from robosc.base.ros_types.wire import Basic, Sequence
 
 if TYPE_CHECKING:
     from tests.ros.running import Runner

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import robosc
 from robosc.engine import Engine
-from robosc.metamodel import sct
-from robosc.runtime.core.json_text import json_text
-from robosc.semantics.component_parts import components
-from robosc.semantics.edges import edges_from, edges_of
-from robosc.semantics.roles import event_name
-from robosc.simulation.tracking import Tracker
+from robosc.model import sct
+from robosc.model.semantics.component_parts import components
+from robosc.model.semantics.edges import edges_from, edges_of
+from robosc.model.semantics.roles import event_name
+from robosc.run.runtime.core.json_text import json_text
+from robosc.run.simulation.tracking import Tracker
 from tests.ros.test_layer import trial
 from tests.ros.workspaces import EXAMPLES, USHER
 

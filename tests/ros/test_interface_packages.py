@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from robosc.checks import check
-from robosc.language import read
-from robosc.ros_types import RosTypes
+from robosc.base.ros_types import RosTypes
+from robosc.language.checks import check
+from robosc.language.reading import read
 
 if TYPE_CHECKING:
     from tests.ros.workspaces import Workspace

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 from click.testing import CliRunner
 
-from robosc.cli import main
+from robosc.tools.cli import main
 from tests.ros.running import PROJECT, Runner
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ def test_a_node_without_modules_names_the_command(run_ros2: Runner) -> None:
 
 
 def test_another_python_is_told_of_the_wheels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delitem(sys.modules, "robosc.runtime.ros2.interfaces", raising=False)
+    monkeypatch.delitem(sys.modules, "robosc.run.runtime.ros2.interfaces", raising=False)
     monkeypatch.setitem(sys.modules, "numpy", None)
     answer = CliRunner().invoke(main, ["interfaces", "build", str(tmp_path)])
     assert answer.exit_code == 2

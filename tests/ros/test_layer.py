@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from jsonschema import Draft202012Validator
 
-from robosc.files.resources import locate
+from robosc.base.files.resources import locate
 from tests.ros.launching import launched
 from tests.ros.running import Runner
 from tests.ros.workspaces import DRIVER, HERE, USHER, Workspace, middleware

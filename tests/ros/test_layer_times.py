@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from tests.ros.workspaces import Workspace
 
-LAYER, GUARD = "guard_layer", HERE.parent / "runtime" / "guard.rscd"
+LAYER, GUARD = "guard_layer", HERE.parent / "run" / "runtime" / "guard.rscd"
 SCAN, BLIND, ROTATING = "message_scan.u_response", "component_Base.u_after1", "component_Base.u_after2"
 MOVE = "message_move.c_trigger"
 

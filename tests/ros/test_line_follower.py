@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from jsonschema import Draft202012Validator
 
-from robosc.files.resources import locate
+from robosc.base.files.resources import locate
 from tests.ros.line_follower_rules import commands_in, late_moves, violations
 from tests.scenarios.rules.books import BOOKS
 from tests.scenarios.runs import moved_while_stopped, poses

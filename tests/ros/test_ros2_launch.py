@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import robosc
-from robosc.configuration import Configuration
+from robosc.language.configuration import Configuration
 from tests.ros.installations import Ros, find_ros2
 
 HERE = Path(__file__).parent

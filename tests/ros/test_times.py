@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from tests.ros.workspaces import Workspace
 
 TRIALS = 10
-GUARD = HERE.parent / "runtime" / "guard.rscd"
+GUARD = HERE.parent / "run" / "runtime" / "guard.rscd"
 
 
 def test_a_time_is_never_up_early(nodes: Workspace | Runner, tmp_path: Path) -> None:

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 from urllib.request import urlopen
 
 import robosc
-from robosc.metamodel import sct
-from robosc.simulation import Simulation
-from robosc.simulation.simulation import whole_state
+from robosc.model import sct
+from robosc.run.simulation import Simulation
+from robosc.run.simulation.simulation import whole_state
 from tests.chromium import chromium, opened, shown
 from tests.ros.workspaces import middleware
-from tests.view.robots import wholes
+from tests.tools.view.robots import wholes
 
 if TYPE_CHECKING:
     import subprocess

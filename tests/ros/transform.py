@@ -7,7 +7,7 @@ import sys
 
 from click.testing import CliRunner
 
-from robosc.cli import main
+from robosc.tools.cli import main
 
 if __name__ == "__main__":
     for arguments in json.load(sys.stdin):

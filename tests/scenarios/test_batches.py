@@ -12,14 +12,14 @@ from examples.simulator.devices import GO_ON, STOP
 from examples.simulator.engine import connected, load, model_of
 from examples.simulator.scenarios import SCENARIOS
 from examples.simulator.simulation import Message, Simulation
-from robosc.runtime.core.controller import Controller
+from robosc.run.runtime.core.controller import Controller
 from tests.scenarios.rules.books import BOOKS
 from tests.scenarios.runs import played, run_of
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from robosc.metamodel import rosgraph
+    from robosc.model import rosgraph
 
 
 #: With all who look at the same runs.

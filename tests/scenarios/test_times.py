@@ -11,18 +11,18 @@ import robosc
 from robosc.analysis.verify import validate_loop
 from robosc.analysis.verify.verdict import Outcome
 from robosc.analysis.wording import words
-from robosc.configuration import Configuration, ControlLoop
-from robosc.files.json_reading import json_value
-from robosc.files.resources import locate
+from robosc.base.files.json_reading import json_value
+from robosc.base.files.resources import locate
+from robosc.language.configuration import Configuration, ControlLoop
 from robosc.language.formatting import format_text
 from robosc.language.text import Text
 from robosc.m2m.sct_to_engine import transform
 from robosc.m2t import cif
 from robosc.m2t.c import engine
 from robosc.m2t.models import Models
-from robosc.metamodel import sct, xmi
-from robosc.semantics.definition import definition
-from robosc.validity import load
+from robosc.model import sct, xmi
+from robosc.model.semantics.definition import definition
+from robosc.model.validity import load
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

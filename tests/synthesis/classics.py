@@ -1,6 +1,6 @@
 """Models that the literature knows the supervisors of."""
 
-from robosc.metamodel import sct
+from robosc.model import sct
 from tests.sct_models import edge, model, needs, plant
 
 

@@ -5,9 +5,9 @@ from functools import cached_property
 from itertools import product
 from typing import Any
 
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.edges import edges_from, edges_of
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.edges import edges_from, edges_of
 
 #: For each plant its location, for each variable its value, in the order of the model.
 State = tuple[Any, ...]

@@ -5,8 +5,8 @@ from unittest.mock import patch
 import pytest
 from hypothesis import given
 
-from robosc.diagnostics import ModelError
-from robosc.metamodel.places import Place
+from robosc.base.diagnostics import ModelError
+from robosc.model.places import Place
 from robosc.synthesis import acceleration, encoding, synthesize
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, needs, plant

@@ -5,9 +5,9 @@ from unittest.mock import patch
 import pytest
 from hypothesis import HealthCheck, event, given, settings
 
-from robosc.metamodel import sct
-from robosc.semantics.printing import SctPrinter
-from robosc.semantics.roles import event_name
+from robosc.model import sct
+from robosc.model.semantics.printing import SctPrinter
+from robosc.model.semantics.roles import event_name
 from robosc.synthesis import Synthesis, count, encoding, synthesize
 from tests.random_sct import sct_models
 from tests.searching import examples

@@ -2,8 +2,8 @@
 
 import pytest
 
-from robosc.semantics.printing import SctPrinter
-from robosc.semantics.roles import event_name
+from robosc.model.semantics.printing import SctPrinter
+from robosc.model.semantics.roles import event_name
 from robosc.synthesis import synthesize
 from tests.sct_models import disables, edge, model, needs, plant
 from tests.searching import slow_but

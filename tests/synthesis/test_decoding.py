@@ -6,10 +6,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.metamodel.reflection import tree
-from robosc.semantics.printing import SctPrinter
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.reflection import tree
+from robosc.model.semantics.printing import SctPrinter
 from robosc.synthesis.bdd import Diagrams
 from robosc.synthesis.decoding import codes, complement, cost, is_one_of
 from robosc.synthesis.encoding import Encoding, Layout

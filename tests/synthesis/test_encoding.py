@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from robosc.metamodel import engine, sct
-from robosc.metamodel import expression as ex
-from robosc.semantics.evaluation import evaluate
-from robosc.semantics.operators import BY_CLASS, FUNCTIONS, Operator, Rule
+from robosc.model import engine, sct
+from robosc.model import expression as ex
+from robosc.model.semantics.evaluation import evaluate
+from robosc.model.semantics.operators import BY_CLASS, FUNCTIONS, Operator, Rule
 from robosc.synthesis import encoded
 from tests.sct_models import edge, model, plant
 

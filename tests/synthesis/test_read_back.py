@@ -3,12 +3,12 @@
 import pytest
 from hypothesis import event, given
 
-from robosc.configuration import Configuration
+from robosc.language.configuration import Configuration
 from robosc.m2t import cif
 from robosc.m2t.models import Models
-from robosc.metamodel import sct
-from robosc.metamodel.reflection import tree
-from robosc.semantics.edges import edges_from
+from robosc.model import sct
+from robosc.model.reflection import tree
+from robosc.model.semantics.edges import edges_from
 from robosc.synthesis import synthesize
 from tests.m2t.cif.rebuilding import rebuild
 from tests.random_sct import sct_models

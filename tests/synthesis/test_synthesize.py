@@ -8,16 +8,16 @@ from time import sleep
 
 import pytest
 
-from robosc.diagnostics import ModelError
-from robosc.metamodel.places import Place
-from robosc.semantics.printing import SctPrinter
+from robosc.base.diagnostics import ModelError
+from robosc.model.places import Place
+from robosc.model.semantics.printing import SctPrinter
 from robosc.synthesis import Phase, Statistics, bdd, count, solve, synthesize
 from tests.sct_models import edge, model, needs, plant
 from tests.synthesis.classics import philosophers
 
 ROOT = Path(__file__).parents[2]
 SCRIPT = """
-from robosc.semantics.printing import SctPrinter
+from robosc.model.semantics.printing import SctPrinter
 from robosc.synthesis import synthesize
 from robosc.synthesis import bdd
 from tests.sct_models import model, needs

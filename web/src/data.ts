@@ -1,4 +1,4 @@
-// What the server tells: see robosc/view/description.py and robosc/view/record.py.
+// What the server tells: see robosc/tools/view/description.py and robosc/tools/view/record.py.
 
 /** null: nobody knows it, or it is no finite number. */
 export type Value = string | number | boolean | null;

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from robosc.analysis.blocking import BlockingCounterexample, Reason
     from robosc.analysis.paths import TraceStep
-    from robosc.metamodel import sct
+    from robosc.model import sct
     from robosc.synthesis.decoding import Value
     from robosc.synthesis.encoding import Element
 

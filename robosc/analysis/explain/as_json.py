@@ -8,7 +8,7 @@ from robosc.analysis.blocking_in_words import blocking
 from robosc.analysis.explain.answers import Emptiness, Explanation, Possibility
 from robosc.analysis.paths import trace_data
 from robosc.analysis.wording import name
-from robosc.semantics.roles import event_name
+from robosc.model.semantics.roles import event_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

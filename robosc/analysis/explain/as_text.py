@@ -9,8 +9,8 @@ from robosc.analysis.explain.answers import Emptiness, Explanation, Possibility,
 from robosc.analysis.system import counted
 from robosc.analysis.wording import in_words, listed, name, what_is, words
 from robosc.engine import Blocked
-from robosc.metamodel import sct
-from robosc.semantics.roles import Roles, event_name
+from robosc.model import sct
+from robosc.model.semantics.roles import Roles, event_name
 from robosc.synthesis.decoding import value
 
 if TYPE_CHECKING:

@@ -23,8 +23,8 @@ from robosc.analysis.paths import Path, shortest_path
 from robosc.analysis.system import ExplainedSystem, SynthesizedSystem, whole_state
 from robosc.analysis.wording import listed, name, words
 from robosc.engine import Blocked
-from robosc.semantics.edges import edges_from
-from robosc.semantics.printing import RobotPrinter
+from robosc.model.semantics.edges import edges_from
+from robosc.model.semantics.printing import RobotPrinter
 from robosc.synthesis import MEMORY, encoded
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from robosc.analysis.blocking import BlockingCounterexample, Reason
     from robosc.analysis.paths import TraceStep
     from robosc.analysis.system import Codes
-    from robosc.metamodel import sct
+    from robosc.model import sct
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.relation import EventRelation
 

@@ -8,10 +8,10 @@ from contextlib import suppress
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
-from robosc.files.json_reading import JsonError, json_value
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.roles import Roles, event_name, plant_of
+from robosc.base.files.json_reading import JsonError, json_value
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.roles import Roles, event_name, plant_of
 from robosc.synthesis.decoding import text, value
 from robosc.synthesis.encoding import domain_size, smallest
 

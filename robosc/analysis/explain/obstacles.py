@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from robosc.analysis.explain.answers import Note
 from robosc.analysis.paths import Path, trace
 from robosc.analysis.wording import in_words, listed, name, what_is, words
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.communication import CANCELING, ERROR, EXECUTING, IDLE, READY, WAITING
-from robosc.semantics.edges import edges_from
-from robosc.semantics.printing import RobotPrinter, disjunction
-from robosc.semantics.walks import copied
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.communication import CANCELING, ERROR, EXECUTING, IDLE, READY, WAITING
+from robosc.model.semantics.edges import edges_from
+from robosc.model.semantics.printing import RobotPrinter, disjunction
+from robosc.model.semantics.walks import copied
 from robosc.synthesis.decoding import text, value
 from robosc.synthesis.encoding import pick, referenced
 

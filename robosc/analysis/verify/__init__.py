@@ -25,15 +25,15 @@ from robosc.analysis.verify.model_reading import validate_model
 from robosc.analysis.verify.properties import properties
 from robosc.analysis.verify.verdict import Outcome, Verdict, timed
 from robosc.m2t import cif, supervisor
-from robosc.semantics.roles import is_from_cif
+from robosc.model.semantics.roles import is_from_cif
 from robosc.synthesis import MEMORY, encoded
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from robosc.configuration import Configuration
+    from robosc.language.configuration import Configuration
     from robosc.m2t.models import Models
-    from robosc.metamodel import sct
+    from robosc.model import sct
     from robosc.synthesis.encoding import Encoding
 
 __all__ = [

@@ -11,8 +11,8 @@ from robosc.analysis.verify.c_program import TEXT, CProgram
 from robosc.analysis.verify.differences import different, event_in_words, on_one_side, refuted, where
 from robosc.analysis.verify.transitions import AmbiguityError, of_system
 from robosc.analysis.verify.verdict import Outcome, Verdict
-from robosc.semantics.roles import event_name
-from robosc.semantics.start import first_state
+from robosc.model.semantics.roles import event_name
+from robosc.model.semantics.start import first_state
 from robosc.synthesis import MEMORY
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.encoding import Encoding, Layout, domain_size, smallest
@@ -20,7 +20,7 @@ from robosc.synthesis.encoding import Encoding, Layout, domain_size, smallest
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from robosc.metamodel import sct
+    from robosc.model import sct
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element
 

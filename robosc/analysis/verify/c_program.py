@@ -13,17 +13,17 @@ from contextlib import contextmanager
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from robosc.files.resources import locate
+from robosc.base.files.resources import locate
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.names import CNames
-from robosc.semantics.roles import event_name, is_from_cif
+from robosc.model.semantics.roles import event_name, is_from_cif
 from robosc.synthesis.encoding import smallest
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from robosc.metamodel import sct
+    from robosc.model import sct
     from robosc.synthesis.encoding import Element
 
 TEXT = "the generated C"

@@ -10,13 +10,13 @@ from robosc.analysis.verify.c_program import COMPILERS, CompileError, CProgram, 
 from robosc.analysis.verify.differences import refuted
 from robosc.analysis.verify.loop_exploration import LoopEffort, explore_loop
 from robosc.analysis.verify.verdict import Outcome, Verdict, timed
-from robosc.files.writing import temporary_folder
-from robosc.semantics.roles import is_from_cif
+from robosc.base.files.writing import temporary_folder
+from robosc.model.semantics.roles import is_from_cif
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from robosc.metamodel import sct
+    from robosc.model import sct
 
     #: Functions that examine a program, by the name of the property.
     Examinations = Mapping[str, Callable[[CProgram], Verdict]]

@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robosc.metamodel import expression as ex
-from robosc.semantics.cif_types import BOOLEAN, OPERATORS, Type, combined, joined, shown
+from robosc.model import expression as ex
+from robosc.model.semantics.cif_types import BOOLEAN, OPERATORS, Type, combined, joined, shown
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -15,10 +15,10 @@ from robosc.analysis.system import GuardedSystem, counted
 from robosc.analysis.verify.differences import event_in_words, on_one_side, refuted, where
 from robosc.analysis.verify.transitions import in_range
 from robosc.analysis.verify.verdict import Outcome, Verdict
-from robosc.cif import read_supervised
-from robosc.metamodel import sct
-from robosc.semantics.domains import domain
-from robosc.semantics.edges import edges_by_event
+from robosc.language.cif import read_supervised
+from robosc.model import sct
+from robosc.model.semantics.domains import domain
+from robosc.model.semantics.edges import edges_by_event
 from robosc.synthesis import MEMORY
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.encoding import Encoding, Layout
@@ -27,7 +27,7 @@ from robosc.synthesis.relation import EventRelation, requirements_by_event
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from robosc.metamodel import expression as ex
+    from robosc.model import expression as ex
     from robosc.synthesis.bdd import Diagram
 
 PROPERTY = "cif-translation"

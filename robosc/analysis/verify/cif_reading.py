@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import textx
 
 from robosc.analysis.verify.cif_expressions import ExpressionError, ExpressionReader, Typed
-from robosc.files.resources import locate
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics import cif_types as types
-from robosc.semantics.walks import copied
+from robosc.base.files.resources import locate
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics import cif_types as types
+from robosc.model.semantics.walks import copied
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

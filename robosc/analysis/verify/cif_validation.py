@@ -18,10 +18,10 @@ from robosc.analysis.verify.transitions import (
     together,
 )
 from robosc.analysis.verify.verdict import Outcome, Verdict
-from robosc.diagnostics import ModelError
-from robosc.metamodel import sct
-from robosc.semantics.edges import edges_by_event
-from robosc.semantics.roles import is_from_cif
+from robosc.base.diagnostics import ModelError
+from robosc.model import sct
+from robosc.model.semantics.edges import edges_by_event
+from robosc.model.semantics.roles import is_from_cif
 from robosc.synthesis import MEMORY, arithmetic
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.encoding import Encoding, Layout, pick, referenced, smallest

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.verify.cif_reading import CifError
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.domains import domain
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.domains import domain
 from robosc.synthesis.encoding import domain_size, smallest
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from robosc.analysis.paths import TraceStep
 from robosc.analysis.verify.verdict import Outcome, Verdict
 from robosc.analysis.wording import condition, with_words
-from robosc.semantics.roles import event_name
+from robosc.model.semantics.roles import event_name
 from robosc.synthesis.decoding import value
 from robosc.synthesis.encoding import domain_size, referenced, smallest
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from robosc.analysis.system import GuardedSystem
-    from robosc.metamodel import sct
+    from robosc.model import sct
     from robosc.synthesis.decoding import Value
     from robosc.synthesis.encoding import Element
 

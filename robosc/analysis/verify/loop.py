@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from robosc.analysis.paths import Path
 from robosc.analysis.verify.verdict import Outcome, Verdict
-from robosc.diagnostics import ModelError
-from robosc.metamodel import sct
-from robosc.semantics.roles import SILENT, plant_of
+from robosc.base.diagnostics import ModelError
+from robosc.model import sct
+from robosc.model.semantics.roles import SILENT, plant_of
 from robosc.synthesis.acceleration import Acceleration
 from robosc.synthesis.encoding import pick
 from robosc.synthesis.fixpoint import coreachable, reachable

@@ -14,7 +14,7 @@ from robosc.analysis.verify.differences import refuted
 from robosc.analysis.verify.loop_lockstep import DifferenceError, Kept, Lockstep
 from robosc.analysis.verify.verdict import Outcome, Verdict
 from robosc.engine import Settings, remembered
-from robosc.semantics.roles import Roles
+from robosc.model.semantics.roles import Roles
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

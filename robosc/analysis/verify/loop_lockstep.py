@@ -12,7 +12,7 @@ from robosc.analysis.paths import TraceStep
 from robosc.analysis.verify.c_program import TEXT
 from robosc.engine import ControlLoop, Hooks
 from robosc.engine.state import Domain
-from robosc.semantics.roles import event_name
+from robosc.model.semantics.roles import event_name
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from robosc.engine import Settings
     from robosc.engine.control_loop import SavedLoop
-    from robosc.metamodel import sct
+    from robosc.model import sct
 
 #: Operations by their letter in the follower's protocol, with their names in messages.
 OPERATIONS = {

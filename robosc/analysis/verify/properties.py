@@ -15,12 +15,12 @@ from robosc.analysis.verify.loop import ControlLoop, asked_of_the_loop
 from robosc.analysis.verify.response import bounded_response, confluence, finite_response
 from robosc.analysis.verify.verdict import Outcome, Verdict, trace_step
 from robosc.analysis.wording import listed, name, words
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.metamodel.places import place
-from robosc.semantics.printing import RobotPrinter
-from robosc.semantics.roles import event_name, is_from_cif, plant_of
-from robosc.semantics.walks import copied
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.places import place
+from robosc.model.semantics.printing import RobotPrinter
+from robosc.model.semantics.roles import event_name, is_from_cif, plant_of
+from robosc.model.semantics.walks import copied
 from robosc.synthesis.encoding import referenced
 from robosc.synthesis.fixpoint import coreachable, supervise
 from robosc.synthesis.relation import required_moves, steps

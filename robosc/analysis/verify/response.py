@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from robosc.analysis.paths import Path, TraceStep
     from robosc.analysis.system import GuardedSystem
     from robosc.analysis.verify.loop import ControlLoop
-    from robosc.metamodel import sct
+    from robosc.model import sct
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element
     from robosc.synthesis.run_to_completion import InternalEvent

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.semantics.edges import edges_by_event
-from robosc.semantics.roles import event_name
+from robosc.model.semantics.edges import edges_by_event
+from robosc.model.semantics.roles import event_name
 from robosc.synthesis import arithmetic
 from robosc.synthesis.encoding import domain_size, smallest
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from robosc.analysis.system import GuardedSystem
-    from robosc.metamodel import sct
+    from robosc.model import sct
     from robosc.synthesis.arithmetic import Vector
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element, Encoding

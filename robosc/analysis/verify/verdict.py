@@ -11,13 +11,13 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from robosc.analysis.paths import TraceStep, trace_data
 from robosc.analysis.wording import in_words
-from robosc.diagnostics.visible import visible, visible_lines
-from robosc.semantics.roles import event_name
+from robosc.base.diagnostics.visible import visible, visible_lines
+from robosc.model.semantics.roles import event_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from robosc.metamodel import sct
+    from robosc.model import sct
 
 P = ParamSpec("P")
 

@@ -12,7 +12,7 @@ from robosc.language.recovery import recovered
 from robosc.language.tokens import Tokens, too_complex
 
 if TYPE_CHECKING:
-    from robosc.diagnostics import Diagnostic
+    from robosc.base.diagnostics import Diagnostic
     from robosc.language.text import Text
 
 

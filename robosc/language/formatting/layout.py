@@ -9,7 +9,7 @@ from robosc.language.building import element_class
 from robosc.language.formatting.comments import Space, spaces
 from robosc.language.formatting.documents import Document, Gap, Group, Indent
 from robosc.language.grammar import attribute
-from robosc.semantics.operators import PRECEDENCE
+from robosc.model.semantics.operators import PRECEDENCE
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence

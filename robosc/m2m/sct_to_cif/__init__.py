@@ -7,18 +7,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robosc.diagnostics import Diagnostic, ModelError, Severity
+from robosc.base.diagnostics import Diagnostic, ModelError, Severity
 from robosc.m2m.remembering import once
 from robosc.m2m.sct_to_cif.linear import LARGEST, Unsupported, bounds, shift
 from robosc.m2m.sct_to_cif.lower_arithmetic import Lowering
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.metamodel.places import place
-from robosc.metamodel.reflection import tree
-from robosc.semantics.domains import domain
-from robosc.semantics.edges import edges_of
-from robosc.semantics.printing import conjunction
-from robosc.semantics.walks import copied
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.places import place
+from robosc.model.reflection import tree
+from robosc.model.semantics.domains import domain
+from robosc.model.semantics.edges import edges_of
+from robosc.model.semantics.printing import conjunction
+from robosc.model.semantics.walks import copied
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping

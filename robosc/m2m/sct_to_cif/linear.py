@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from functools import reduce
 from typing import TYPE_CHECKING, TypeAlias
 
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
+from robosc.model import expression as ex
+from robosc.model import sct
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

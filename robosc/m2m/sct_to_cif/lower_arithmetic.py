@@ -10,10 +10,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.m2m.sct_to_cif.linear import LARGEST, Linear, Unsupported, bounds, shift
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.operators import BY_CLASS, COMPARISONS
-from robosc.semantics.walks import copied, operands, walk, with_operands
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.operators import BY_CLASS, COMPARISONS
+from robosc.model.semantics.walks import copied, operands, walk, with_operands
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Mapping

@@ -19,15 +19,15 @@ from robosc.m2m.sct_to_engine.name_reasons import name_reasons
 from robosc.m2m.sct_to_engine.place_state import place_inputs, place_state
 from robosc.m2m.sct_to_engine.share_conditions import Shared, share_conditions
 from robosc.m2m.sct_to_engine.terms import Term, Terms
-from robosc.metamodel import engine, sct
-from robosc.semantics.roles import Roles, event_name, plant_of
+from robosc.model import engine, sct
+from robosc.model.semantics.roles import Roles, event_name, plant_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from robosc.m2m.sct_to_engine.collect_events import EdgeTable
     from robosc.m2m.sct_to_engine.combine_guards import GuardTerms
-    from robosc.metamodel import expression as ex
+    from robosc.model import expression as ex
 
 #: Maximum number of events for a control loop that checks all events after each change. For fewer events, tracking the
 #: affected ones costs more. Measured, see docs/engine.md.

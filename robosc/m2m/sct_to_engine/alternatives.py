@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import engine, sct
-from robosc.semantics.edges import origin
+from robosc.model import engine, sct
+from robosc.model.semantics.edges import origin
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.m2m.sct_to_engine.terms import COMPLEMENTS
-from robosc.metamodel import engine, sct
-from robosc.metamodel import expression as ex
-from robosc.semantics.domains import Width, working_width
+from robosc.model import engine, sct
+from robosc.model import expression as ex
+from robosc.model.semantics.domains import Width, working_width
 
 if TYPE_CHECKING:
     from collections.abc import Collection

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import engine, sct
-from robosc.semantics.durations import timer_text
-from robosc.semantics.edges import edges_by_event, origin
-from robosc.semantics.printing import RobotPrinter, remark
-from robosc.semantics.roles import Roles, event_name, plant_of, provide_numbers
+from robosc.model import engine, sct
+from robosc.model.semantics.durations import timer_text
+from robosc.model.semantics.edges import edges_by_event, origin
+from robosc.model.semantics.printing import RobotPrinter, remark
+from robosc.model.semantics.roles import Roles, event_name, plant_of, provide_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.diagnostics import Diagnostic, ModelError, Severity
+from robosc.base.diagnostics import Diagnostic, ModelError, Severity
 from robosc.m2m.sct_to_engine.alternatives import left_open
-from robosc.metamodel import engine, sct
-from robosc.metamodel import expression as ex
-from robosc.metamodel.places import place
-from robosc.semantics.roles import event_name
+from robosc.model import engine, sct
+from robosc.model import expression as ex
+from robosc.model.places import place
+from robosc.model.semantics.roles import event_name
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

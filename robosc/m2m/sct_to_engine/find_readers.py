@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import engine, sct
+from robosc.model import engine, sct
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.m2m.sct_to_engine.terms import COMPLEMENTS, Term, Terms
-from robosc.metamodel import engine, sct
-from robosc.metamodel import expression as ex
-from robosc.semantics.walks import operands
+from robosc.model import engine, sct
+from robosc.model import expression as ex
+from robosc.model.semantics.walks import operands
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence

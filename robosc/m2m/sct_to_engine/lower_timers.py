@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from robosc.m2m.sct_to_engine.alternatives import Alternatives
 from robosc.m2m.sct_to_engine.build_expressions import build_expression
-from robosc.metamodel import engine, sct
-from robosc.semantics.roles import plant_of
+from robosc.model import engine, sct
+from robosc.model.semantics.roles import plant_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -7,9 +7,9 @@ from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
 from robosc.m2m.sct_to_engine.alternatives import Alternatives, exclusive
-from robosc.metamodel import engine, sct
-from robosc.semantics.domains import Interval
-from robosc.semantics.edges import origin
+from robosc.model import engine, sct
+from robosc.model.semantics.domains import Interval
+from robosc.model.semantics.edges import origin
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence

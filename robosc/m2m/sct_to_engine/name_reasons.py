@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.m2m.sct_to_engine.build_expressions import build_expression
-from robosc.metamodel import engine, sct
+from robosc.model import engine, sct
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

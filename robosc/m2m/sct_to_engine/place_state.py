@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeVar
 
-from robosc.metamodel import engine, sct
-from robosc.metamodel import expression as ex
-from robosc.semantics.domains import domain, storage
-from robosc.semantics.naming import Names
-from robosc.semantics.start import first_state
-from robosc.semantics.walks import copied
+from robosc.model import engine, sct
+from robosc.model import expression as ex
+from robosc.model.semantics.domains import domain, storage
+from robosc.model.semantics.naming import Names
+from robosc.model.semantics.start import first_state
+from robosc.model.semantics.walks import copied
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

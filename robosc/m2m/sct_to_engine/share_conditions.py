@@ -6,14 +6,14 @@ from collections import Counter
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import engine, sct
+from robosc.model import engine, sct
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from robosc.m2m.sct_to_engine.combine_guards import GuardTerms
     from robosc.m2m.sct_to_engine.terms import Term, Terms
-    from robosc.metamodel import expression as ex
+    from robosc.model import expression as ex
 
 #: Minimum number of guards with a comparison of a variable that an incremental loop computes once for all.
 _MANY = 4

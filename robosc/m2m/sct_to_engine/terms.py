@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from robosc.metamodel import engine, sct
-from robosc.metamodel import expression as ex
-from robosc.semantics.domains import BOOLEAN, Interval, domain
-from robosc.semantics.operators import BY_CLASS
+from robosc.model import engine, sct
+from robosc.model import expression as ex
+from robosc.model.semantics.domains import BOOLEAN, Interval, domain
+from robosc.model.semantics.operators import BY_CLASS
 
 if TYPE_CHECKING:
     from collections.abc import Container, Hashable, Iterable, Iterator, Mapping, Sequence

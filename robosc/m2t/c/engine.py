@@ -6,21 +6,21 @@ import textwrap
 from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
-from robosc.files.templates import environment
+from robosc.base.files.templates import environment
 from robosc.m2t.c.comments import comment, comment_text, string_literal
 from robosc.m2t.c.expressions import CPrinter, clamp, type_name, unsigned_type
 from robosc.m2t.c.names import CNames
-from robosc.metamodel import engine, sct
-from robosc.metamodel import expression as ex
-from robosc.metamodel.reflection import tree
-from robosc.semantics.durations import duration_text
-from robosc.semantics.roles import is_from_cif
+from robosc.model import engine, sct
+from robosc.model import expression as ex
+from robosc.model.reflection import tree
+from robosc.model.semantics.durations import duration_text
+from robosc.model.semantics.roles import is_from_cif
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from robosc.configuration import ControlLoop
+    from robosc.language.configuration import ControlLoop
 
 _INDENT = 4
 #: Maximum number of events that a comment on a shared condition names.

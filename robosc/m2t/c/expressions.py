@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import engine, sct
-from robosc.metamodel import expression as ex
-from robosc.semantics.domains import Width, domain, storage
-from robosc.semantics.operators import COMPARISONS, PRECEDENCE, SYMBOLS
-from robosc.semantics.printing import Printed, Printer
+from robosc.model import engine, sct
+from robosc.model import expression as ex
+from robosc.model.semantics.domains import Width, domain, storage
+from robosc.model.semantics.operators import COMPARISONS, PRECEDENCE, SYMBOLS
+from robosc.model.semantics.printing import Printed, Printer
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import engine
-from robosc.semantics.naming import Names, snake_case
+from robosc.model import engine
+from robosc.model.semantics.naming import Names, snake_case
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from robosc.metamodel import expression as ex
-    from robosc.metamodel import sct
+    from robosc.model import expression as ex
+    from robosc.model import sct
 
 #: Keywords of C99, C11, C23 and C++20, and names that headers and compilers define.
 _KEYWORDS = """

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.diagnostics import Diagnostic, Severity
+from robosc.base.diagnostics import Diagnostic, Severity
 from robosc.m2m.sct_to_engine import lowering
-from robosc.metamodel import expression as ex
-from robosc.metamodel.places import place
-from robosc.metamodel.reflection import contents
-from robosc.semantics.domains import Width
-from robosc.semantics.edges import edges_of
+from robosc.model import expression as ex
+from robosc.model.places import place
+from robosc.model.reflection import contents
+from robosc.model.semantics.domains import Width
+from robosc.model.semantics.edges import edges_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.m2m.sct_to_engine.lower_expressions import Lowering
-    from robosc.metamodel import sct
+    from robosc.model import sct
 
 RULE = "c-overflow"
 _LOGICAL = (ex.Conjunction, ex.Disjunction, ex.Implication, ex.Negation)

@@ -9,19 +9,19 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from robosc.diagnostics import Diagnostic, ModelError, Severity
+from robosc.base.diagnostics import Diagnostic, ModelError, Severity
 from robosc.m2m.sct_to_cif import transform
 from robosc.m2t.cif.extension import extended
 from robosc.m2t.cif.specification import Writer
-from robosc.metamodel import expression as ex
-from robosc.metamodel.places import place
-from robosc.metamodel.reflection import tree
-from robosc.semantics.roles import is_from_cif
+from robosc.model import expression as ex
+from robosc.model.places import place
+from robosc.model.reflection import tree
+from robosc.model.semantics.roles import is_from_cif
 
 if TYPE_CHECKING:
     from typing import Any
 
-    from robosc.configuration import Configuration
+    from robosc.language.configuration import Configuration
     from robosc.m2t.models import Models
 
 _NAME = re.compile("[A-Za-z_][A-Za-z0-9_]*")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.operators import COMPARISONS, PRECEDENCE, SYMBOLS
-from robosc.semantics.printing import Printed, Printer
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.operators import COMPARISONS, PRECEDENCE, SYMBOLS
+from robosc.model.semantics.printing import Printed, Printer
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

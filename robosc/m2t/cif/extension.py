@@ -14,16 +14,16 @@ from typing import TYPE_CHECKING
 from robosc.m2t.cif.expressions import CifPrinter
 from robosc.m2t.cif.names import AbsoluteNames, escaped
 from robosc.m2t.cif.specification import document, edge_text, folded, listed
-from robosc.semantics.naming import Names
-from robosc.semantics.printing import conjunction
-from robosc.semantics.roles import event_name
-from robosc.semantics.walks import copied
+from robosc.model.semantics.naming import Names
+from robosc.model.semantics.printing import conjunction
+from robosc.model.semantics.roles import event_name
+from robosc.model.semantics.walks import copied
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.metamodel import expression as ex
-    from robosc.metamodel import sct
+    from robosc.model import expression as ex
+    from robosc.model import sct
 
 
 def extended(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor, folder: Path | None) -> str:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from robosc.semantics.naming import Names
+from robosc.model.semantics.naming import Names
 
 if TYPE_CHECKING:
-    from robosc.metamodel import expression as ex
-    from robosc.metamodel import sct
+    from robosc.model import expression as ex
+    from robosc.model import sct
 
 #: Words of CIF that are names only with a `$` before them.
 _WORDS = """

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 from robosc.m2t.cif.expressions import BREAK, CifPrinter
 from robosc.m2t.cif.names import CifNames
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.durations import timer_text
-from robosc.semantics.edges import edges_from
-from robosc.semantics.roles import input_values, provide_numbers
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.durations import timer_text
+from robosc.model.semantics.edges import edges_from
+from robosc.model.semantics.roles import input_values, provide_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.expressions import number
-from robosc.metamodel import expression as ex
-from robosc.metamodel import rosgraph, sct
-from robosc.semantics.messages import reads_parameters
-from robosc.semantics.operators import ARITHMETIC, PRECEDENCE, SYMBOLS, Rule, operator_of
-from robosc.semantics.printing import Printed, Printer
-from robosc.semantics.typing import DOUBLE, Types
-from robosc.semantics.walks import fold, operands
+from robosc.model import expression as ex
+from robosc.model import rosgraph, sct
+from robosc.model.semantics.messages import reads_parameters
+from robosc.model.semantics.operators import ARITHMETIC, PRECEDENCE, SYMBOLS, Rule, operator_of
+from robosc.model.semantics.printing import Printed, Printer
+from robosc.model.semantics.typing import DOUBLE, Types
+from robosc.model.semantics.walks import fold, operands
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

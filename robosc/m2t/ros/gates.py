@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.expressions import CPrinter, integer_type
 from robosc.m2t.ros.names import CppNames
-from robosc.metamodel import engine, rosgraph, sct
-from robosc.semantics.printing import Printed
-from robosc.semantics.roles import plant_of
+from robosc.model import engine, rosgraph, sct
+from robosc.model.semantics.printing import Printed
+from robosc.model.semantics.roles import plant_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from robosc.m2t.ros.node import Node
-    from robosc.metamodel import expression as ex
+    from robosc.model import expression as ex
 
 #: Method of the header's `BlockReasons` that adds a reason, by the origin of the reason.
 _ADDED_BY = {

@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.m2t.ros.names import CppNames
-from robosc.metamodel.engine import Role
+from robosc.model.engine import Role
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from robosc.m2t.ros.gates import Gate
     from robosc.m2t.ros.node import EventHandler, Node
-    from robosc.metamodel import engine, rosgraph
+    from robosc.model import engine, rosgraph
 
 
 class LayerNode:

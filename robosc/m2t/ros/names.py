@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeVar
 
-from robosc.configuration.parameters import topic_words
+from robosc.language.configuration.parameters import topic_words
 from robosc.m2t.c.names import TAKEN, CNames, identifier
-from robosc.metamodel import expression as ex
-from robosc.metamodel import rosgraph, sct
-from robosc.semantics.naming import Names
-from robosc.semantics.operators import PRECEDENCE
-from robosc.semantics.printing import Printed
+from robosc.model import expression as ex
+from robosc.model import rosgraph, sct
+from robosc.model.semantics.naming import Names
+from robosc.model.semantics.operators import PRECEDENCE
+from robosc.model.semantics.printing import Printed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from robosc.configuration.parameters import model_parameters
+from robosc.language.configuration.parameters import model_parameters
 from robosc.m2t.c.expressions import type_name
 from robosc.m2t.ros import reports
 from robosc.m2t.ros.expressions import CppPrinter
 from robosc.m2t.ros.names import CppNames
-from robosc.metamodel import engine, rosgraph, sct
-from robosc.metamodel import expression as ex
-from robosc.metamodel.reflection import tree
-from robosc.semantics.definition import reported
-from robosc.semantics.messages import (
+from robosc.model import engine, rosgraph, sct
+from robosc.model import expression as ex
+from robosc.model.reflection import tree
+from robosc.model.semantics.definition import reported
+from robosc.model.semantics.messages import (
     first_value,
     holds_objects,
     is_structured,
@@ -25,10 +25,10 @@ from robosc.semantics.messages import (
     reads_parameters,
     reads_reason,
 )
-from robosc.semantics.naming import Names
-from robosc.semantics.operators import PRECEDENCE
-from robosc.semantics.typing import DOUBLE, ArrayType, infer
-from robosc.semantics.walks import parts
+from robosc.model.semantics.naming import Names
+from robosc.model.semantics.operators import PRECEDENCE
+from robosc.model.semantics.typing import DOUBLE, ArrayType, infer
+from robosc.model.semantics.walks import parts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

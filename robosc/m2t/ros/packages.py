@@ -6,9 +6,9 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
-from robosc.configuration import NO_STOP, NO_STOP_ON_SILENCE
-from robosc.configuration.parameters import controller_parameters, layer_parameters
-from robosc.files.resources import locate
+from robosc.base.files.resources import locate
+from robosc.language.configuration import NO_STOP, NO_STOP_ON_SILENCE
+from robosc.language.configuration.parameters import controller_parameters, layer_parameters
 from robosc.m2t.c import engine
 from robosc.m2t.ros import preconditions, typed_state
 from robosc.m2t.ros.gates import gates
@@ -17,18 +17,18 @@ from robosc.m2t.ros.names import CppNames
 from robosc.m2t.ros.node import Node, Variable
 from robosc.m2t.ros.rendering import fold, node_environment
 from robosc.m2t.ros.statuses import statuses
-from robosc.metamodel import rosgraph
-from robosc.semantics.definition import definition_text
+from robosc.model import rosgraph
+from robosc.model.semantics.definition import definition_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 
-    from robosc.configuration import Configuration
-    from robosc.configuration.parameters import Parameter
-    from robosc.diagnostics import Diagnostic
+    from robosc.base.diagnostics import Diagnostic
+    from robosc.language.configuration import Configuration
+    from robosc.language.configuration.parameters import Parameter
     from robosc.m2t.models import Models, TraceTest
     from robosc.m2t.ros.statuses import Status
-    from robosc.metamodel.engine import EngineModel
+    from robosc.model.engine import EngineModel
 
     Values = Mapping[str, Any]
 

@@ -7,22 +7,22 @@ from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from robosc.configuration import Configuration
-from robosc.configuration.parameters import controller_parameters, layer_parameters, model_parameters
-from robosc.diagnostics import START, Diagnostic, Severity
+from robosc.base.diagnostics import START, Diagnostic, Severity
+from robosc.language.configuration import Configuration
+from robosc.language.configuration.parameters import controller_parameters, layer_parameters, model_parameters
 from robosc.m2t.c.preconditions import preconditions as engine_preconditions
-from robosc.metamodel import expression as ex
-from robosc.metamodel import rosgraph
-from robosc.metamodel.places import place
-from robosc.metamodel.reflection import tree
-from robosc.semantics.messages import holds_objects, message_named, parts_of, path_of
-from robosc.semantics.typing import DOUBLE, ArrayType, declared_type, infer
+from robosc.model import expression as ex
+from robosc.model import rosgraph
+from robosc.model.places import place
+from robosc.model.reflection import tree
+from robosc.model.semantics.messages import holds_objects, message_named, parts_of, path_of
+from robosc.model.semantics.typing import DOUBLE, ArrayType, declared_type, infer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from robosc.m2t.models import Models
-    from robosc.metamodel import engine
+    from robosc.model import engine
 
 RULE, LAYER_RULE = "ros-node", "layer-topic"
 

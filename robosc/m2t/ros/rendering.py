@@ -10,9 +10,9 @@ from operator import itemgetter
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape, quoteattr
 
-from robosc.files.templates import environment
+from robosc.base.files.templates import environment
 from robosc.m2t.c.comments import comment_text, string_literal
-from robosc.semantics.communication import QUEUE_DEPTH
+from robosc.model.semantics.communication import QUEUE_DEPTH
 
 if TYPE_CHECKING:
     from jinja2 import Environment

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.ros.expressions import CppPrinter, converted
-from robosc.metamodel import expression as ex
-from robosc.metamodel import rosgraph, sct
-from robosc.semantics.messages import Read, access_to, reads_elements, shown
+from robosc.model import expression as ex
+from robosc.model import rosgraph, sct
+from robosc.model.semantics.messages import Read, access_to, reads_elements, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from robosc.m2t.ros.names import CppNames
-    from robosc.semantics.messages import Path, Shown
+    from robosc.model.semantics.messages import Path, Shown
 
 
 @dataclass(frozen=True)

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.names import identifier
-from robosc.semantics.component_parts import STATELESS, components, request
-from robosc.semantics.naming import Names
+from robosc.model.semantics.component_parts import STATELESS, components, request
+from robosc.model.semantics.naming import Names
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from robosc.m2t.ros.gates import Gate
     from robosc.m2t.ros.node import Client, Node, Subscription
-    from robosc.metamodel import rosgraph
+    from robosc.model import rosgraph
 
 
 @dataclass(frozen=True)

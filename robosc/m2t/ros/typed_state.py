@@ -12,10 +12,10 @@ from itertools import chain, count
 from typing import TYPE_CHECKING
 
 from robosc.m2t.c.names import TAKEN
-from robosc.metamodel import expression as ex
-from robosc.metamodel import rosgraph, sct
-from robosc.semantics.component_parts import components
-from robosc.semantics.naming import snake_case
+from robosc.model import expression as ex
+from robosc.model import rosgraph, sct
+from robosc.model.semantics.component_parts import components
+from robosc.model.semantics.naming import snake_case
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

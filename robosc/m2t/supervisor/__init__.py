@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.files.templates import environment
+from robosc.base.files.templates import environment
 from robosc.m2t.c import engine
 from robosc.m2t.c import preconditions as c_preconditions
 from robosc.m2t.c.names import CNames
 
 if TYPE_CHECKING:
-    from robosc.configuration import Configuration
-    from robosc.diagnostics import Diagnostic
+    from robosc.base.diagnostics import Diagnostic
+    from robosc.language.configuration import Configuration
     from robosc.m2t.models import Models
 
 

@@ -17,9 +17,9 @@ from robosc.analysis.supervise import diagnose
 from robosc.analysis.system import SynthesizedSystem, whole_state
 from robosc.engine import Blocked, Engine
 from robosc.engine.state import State
-from robosc.metamodel import sct
-from robosc.semantics.edges import edges_from
-from robosc.semantics.roles import event_name
+from robosc.model import sct
+from robosc.model.semantics.edges import edges_from
+from robosc.model.semantics.roles import event_name
 from robosc.synthesis import synthesize
 from robosc.synthesis.decoding import Value, text
 from tests.analysis.test_blocking import Replay, is_blocked, is_never_marked

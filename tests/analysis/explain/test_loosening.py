@@ -8,9 +8,9 @@ import robosc
 from robosc.analysis.explain.explaining import explored
 from robosc.analysis.system import SynthesizedSystem
 from robosc.m2m import robosc_to_sct
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc as rsc
-from robosc.semantics.instances import Instances
+from robosc.model import expression as ex
+from robosc.model import robosc as rsc
+from robosc.model.semantics.instances import Instances
 from robosc.synthesis import synthesize
 from tests.searching import slow_but
 

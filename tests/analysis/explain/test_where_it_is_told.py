@@ -7,19 +7,19 @@ import pytest
 from jsonschema import Draft202012Validator
 
 import robosc
-from robosc.configuration import Configuration
-from robosc.configuration.parameters import layer_parameters
-from robosc.files.resources import locate
+from robosc.base.files.resources import locate
+from robosc.language.configuration import Configuration
+from robosc.language.configuration.parameters import layer_parameters
 from robosc.m2t.models import Models
-from robosc.metamodel import rosgraph
-from robosc.runtime.core.event_loop import EventLoop
-from robosc.runtime.core.layer import Layer
-from robosc.runtime.core.settings import Settings
-from robosc.semantics.roles import event_name
-from robosc.simulation import Simulation
-from robosc.simulation.session import Session
-from robosc.validity import load
-from tests.runtime.fake import FakePort, supervised
+from robosc.model import rosgraph
+from robosc.model.semantics.roles import event_name
+from robosc.model.validity import load
+from robosc.run.runtime.core.event_loop import EventLoop
+from robosc.run.runtime.core.layer import Layer
+from robosc.run.runtime.core.settings import Settings
+from robosc.run.simulation import Simulation
+from robosc.run.simulation.session import Session
+from tests.run.runtime.fake import FakePort, supervised
 
 PORTER = Path(__file__).parent / "porter.rscd"
 WHY = (

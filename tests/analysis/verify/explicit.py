@@ -6,9 +6,9 @@ from functools import cached_property
 from itertools import combinations, product
 
 from robosc.analysis.paths import TraceStep
-from robosc.metamodel import sct
-from robosc.semantics.edges import edges_from
-from robosc.semantics.roles import Roles, event_name, plant_of
+from robosc.model import sct
+from robosc.model.semantics.edges import edges_from
+from robosc.model.semantics.roles import Roles, event_name, plant_of
 from robosc.synthesis.decoding import Value
 from tests.synthesis.oracle import Oracle, State, values_of
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from robosc.analysis.verify import Outcome, Verdict, verify_system
 from robosc.analysis.verify.properties import requirement_name
-from robosc.metamodel import sct
+from robosc.model import sct
 from robosc.synthesis import acceleration, encoding, synthesize
 from tests.analysis.verify.explicit import Explicit
 from tests.random_sct import sct_models

@@ -7,14 +7,14 @@ import pytest
 
 from robosc.analysis.supervise import supervise
 from robosc.analysis.verify import Outcome, validate_cif
-from robosc.cif import read
-from robosc.configuration import Configuration
+from robosc.language.cif import read
+from robosc.language.configuration import Configuration
 from robosc.m2t import cif
 from robosc.m2t.models import Models
-from robosc.metamodel import sct
-from tests.cif.random_specifications import Specification
-from tests.cif.test_language import COUNTS
-from tests.cif.test_random_specifications import supervised
+from robosc.model import sct
+from tests.language.cif.random_specifications import Specification
+from tests.language.cif.test_language import COUNTS
+from tests.language.cif.test_random_specifications import supervised
 
 _TEXT = """plant P:
   controllable up, down, go;

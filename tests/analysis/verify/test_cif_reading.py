@@ -8,9 +8,9 @@ import re
 import pytest
 
 from robosc.analysis.verify.cif_reading import CifError, Specification, read
-from robosc.files.resources import locate
+from robosc.base.files.resources import locate
 from robosc.m2t.cif.names import KEYWORDS
-from robosc.metamodel import expression as ex
+from robosc.model import expression as ex
 
 
 def whole(

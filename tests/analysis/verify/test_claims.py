@@ -7,12 +7,12 @@ import pytest
 from robosc.analysis.supervise import supervise
 from robosc.analysis.verify import Verdict, verify_system
 from robosc.analysis.verify.verdict import Outcome
-from robosc.checks import check
-from robosc.language import read
+from robosc.language.checks import check
 from robosc.language.formatting import format_text
+from robosc.language.reading import read
 from robosc.language.text import Text
 from robosc.m2m import robosc_to_sct
-from robosc.metamodel import sct
+from robosc.model import sct
 
 ROBOT = """robot R {{
     component Battery {{

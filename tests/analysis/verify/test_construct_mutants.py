@@ -12,12 +12,12 @@ import pytest
 import robosc
 from robosc.analysis.verify import validate_c, validate_cif, validate_loop
 from robosc.analysis.verify.verdict import Outcome
-from robosc.configuration import Configuration
+from robosc.language.configuration import Configuration
 from robosc.m2t import cif, supervisor
 from robosc.m2t.models import Models
 
 if TYPE_CHECKING:
-    from robosc.metamodel import sct
+    from robosc.model import sct
 
 pytestmark = pytest.mark.slow
 

@@ -10,11 +10,11 @@ from hypothesis import HealthCheck, given, settings
 import robosc
 from robosc.analysis.verify import LoopEffort, c_program, validate, validate_loop
 from robosc.analysis.verify.verdict import Outcome, Verdict
-from robosc.configuration import Configuration
+from robosc.language.configuration import Configuration
 from robosc.m2m import sct_to_engine
 from robosc.m2t import supervisor
 from robosc.m2t.models import Models
-from robosc.metamodel import sct
+from robosc.model import sct
 from tests.engine.robots import robots
 from tests.examples.conftest import models_of
 from tests.m2t.supervisor import corners

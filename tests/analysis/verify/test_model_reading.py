@@ -10,16 +10,17 @@ import robosc
 from robosc.analysis.verify import validate_model
 from robosc.analysis.verify.model_reading import Effort
 from robosc.analysis.verify.verdict import Outcome, details
-from robosc.checks import check
-from robosc.diagnostics import has_errors
-from robosc.language import Documents, read
+from robosc.base.diagnostics import has_errors
+from robosc.language.checks import check
+from robosc.language.reading import read
+from robosc.language.text import Documents
 from robosc.m2m import robosc_to_sct
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc as rsc
-from robosc.metamodel import sct
-from robosc.semantics.edges import edges_of
-from robosc.semantics.roles import event_name
-from robosc.semantics.walks import copied, parts
+from robosc.model import expression as ex
+from robosc.model import robosc as rsc
+from robosc.model import sct
+from robosc.model.semantics.edges import edges_of
+from robosc.model.semantics.roles import event_name
+from robosc.model.semantics.walks import copied, parts
 from tests.fuzz.mutants import LIBRARIES, sources
 from tests.random_robots import random_robot
 from tests.random_second_edition import second_edition_robot

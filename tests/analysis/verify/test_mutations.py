@@ -8,11 +8,11 @@ from click.testing import CliRunner
 
 import robosc
 from robosc.analysis.verify import Outcome, verify_system
-from robosc.cli import main
 from robosc.m2t.models import Models
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct, xmi
-from robosc.semantics.roles import event_name
+from robosc.model import expression as ex
+from robosc.model import sct, xmi
+from robosc.model.semantics.roles import event_name
+from robosc.tools.cli import main
 from tests.examples.conftest import MODELS
 
 

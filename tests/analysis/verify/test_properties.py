@@ -7,7 +7,7 @@ import pytest
 
 from robosc.analysis.verify import Outcome, Verdict, verify_system
 from robosc.analysis.verify.loop import ControlLoop
-from robosc.metamodel import sct
+from robosc.model import sct
 from robosc.synthesis import acceleration, synthesize
 from robosc.synthesis.relation import Step
 from tests.sct_models import disables, edge, model, needs, plant

@@ -22,13 +22,13 @@ from robosc.analysis.verify import (
 )
 from robosc.analysis.verify.controller_reading import Effort
 from robosc.analysis.verify.verdict import Outcome, details
-from robosc.checks import check
-from robosc.configuration import Configuration
-from robosc.diagnostics import ModelError, has_errors
-from robosc.language import read
+from robosc.base.diagnostics import ModelError, has_errors
+from robosc.language.checks import check
+from robosc.language.configuration import Configuration
+from robosc.language.reading import read
 from robosc.m2t import supervisor
 from robosc.m2t.models import Models
-from robosc.metamodel import robosc as robosc_model
+from robosc.model import robosc as robosc_model
 from tests.analysis.verify.seeding import seed
 from tests.fuzz.mutants import LIBRARIES
 from tests.m2t.supervisor import corners
@@ -91,10 +91,7 @@ robot Pairs {
 }
 """
 
-_LOWER, _PLANTS, _ROLES = "m2m.sct_to_engine.lower_timers", "m2m.robosc_to_sct", "semantics.roles"
-_AUTOMATA, _NODE, _ENGINE = "m2m.requirement_automata", "m2m.robosc_to_rosgraph", "m2m.sct_to_engine"
-_EVENTS = "m2m.sct_to_engine.collect_events"
-_LOWER, _PLANTS, _ROLES = "m2m.sct_to_engine.lower_timers", "m2m.robosc_to_sct", "semantics.roles"
+_LOWER, _PLANTS, _ROLES = "m2m.sct_to_engine.lower_timers", "m2m.robosc_to_sct", "model.semantics.roles"
 _AUTOMATA, _NODE, _ENGINE = "m2m.requirement_automata", "m2m.robosc_to_rosgraph", "m2m.sct_to_engine"
 _EVENTS = "m2m.sct_to_engine.collect_events"
 #: Where a fault is put, what stands there and what takes its place, the robot that shows it, how that is reported.

@@ -12,10 +12,10 @@ from hypothesis import HealthCheck, given, settings
 
 from robosc.analysis.verify import Effort, validate, validate_c, validate_cif
 from robosc.analysis.verify.verdict import Outcome, Verdict
-from robosc.configuration import Configuration
+from robosc.language.configuration import Configuration
 from robosc.m2t import cif, supervisor
 from robosc.m2t.models import Models
-from robosc.metamodel import sct
+from robosc.model import sct
 from robosc.synthesis import synthesize
 from tests.examples.conftest import MODELS, SCENARIOS, models_of
 from tests.m2t.supervisor import corners

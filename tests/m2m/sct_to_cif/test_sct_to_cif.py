@@ -6,10 +6,10 @@ from hypothesis import given, settings
 
 from robosc.m2m.remembering import remembered
 from robosc.m2m.sct_to_cif import transform
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct, xmi
-from robosc.metamodel.reflection import tree
-from robosc.semantics.walks import parts
+from robosc.model import expression as ex
+from robosc.model import sct, xmi
+from robosc.model.reflection import tree
+from robosc.model.semantics.walks import parts
 from robosc.synthesis import synthesize
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, needs, plant

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.edges import edges_from, edges_of
-from robosc.semantics.evaluation import evaluate, saturate
-from robosc.semantics.start import first_state
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.edges import edges_from, edges_of
+from robosc.model.semantics.evaluation import evaluate, saturate
+from robosc.model.semantics.start import first_state
 
 #: The location of each plant, and the value of each variable: an integer, a boolean or a literal.
 State = dict[sct.Plant | sct.DiscreteVariable, object]

@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 from robosc.m2m.sct_to_engine import lowering
 from robosc.m2m.sct_to_engine.terms import Terms
 from robosc.m2t.c.expressions import number, type_name
-from robosc.metamodel import engine, sct
-from robosc.metamodel import expression as ex
-from robosc.metamodel.reflection import tree
-from robosc.semantics.domains import Interval, Width, storage, working_width
+from robosc.model import engine, sct
+from robosc.model import expression as ex
+from robosc.model.reflection import tree
+from robosc.model.semantics.domains import Interval, Width, storage, working_width
 from tests.m2m.sct_to_engine import oracle
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, plant

@@ -11,16 +11,16 @@ from hypothesis import strategies as st
 
 import robosc
 from robosc.analysis.supervise import supervise
-from robosc.diagnostics import ModelError
+from robosc.base.diagnostics import ModelError
 from robosc.engine import Engine
 from robosc.m2m.remembering import remembered
 from robosc.m2m.sct_to_engine import transform
-from robosc.metamodel import engine, sct, xmi
-from robosc.metamodel import expression as ex
-from robosc.metamodel.reflection import tree
+from robosc.model import engine, sct, xmi
+from robosc.model import expression as ex
+from robosc.model.reflection import tree
 from robosc.synthesis import synthesize
-from tests.cif.comparing import reading_of
-from tests.cif.random_specifications import Specification
+from tests.language.cif.comparing import reading_of
+from tests.language.cif.random_specifications import Specification
 from tests.m2m.sct_to_engine import oracle
 from tests.random_sct import sct_models
 from tests.sct_models import disables, edge, model, needs, plant

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robosc.m2t.c.names import KEYWORDS, CNames
-from robosc.metamodel import sct
+from robosc.model import sct
 from tests.m2t.supervisor import corners
 from tests.sct_models import model, plant
 from tests.searching import examples

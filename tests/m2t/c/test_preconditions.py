@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from robosc.checks import check
-from robosc.diagnostics.rules import page
-from robosc.language import read
+from robosc.base.diagnostics.rules import page
+from robosc.language.checks import check
+from robosc.language.reading import read
 from robosc.m2m import robosc_to_sct
 from robosc.m2t.c.preconditions import preconditions
 from robosc.synthesis import synthesize

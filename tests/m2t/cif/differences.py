@@ -4,13 +4,13 @@ from collections.abc import Callable, Iterator
 from itertools import product, zip_longest
 from typing import Any
 
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.metamodel.reflection import contents, tree
-from robosc.semantics.edges import edges_from, edges_of
-from robosc.semantics.evaluation import Program, saturate
-from robosc.semantics.printing import conjunction
-from robosc.semantics.walks import copied
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.reflection import contents, tree
+from robosc.model.semantics.edges import edges_from, edges_of
+from robosc.model.semantics.evaluation import Program, saturate
+from robosc.model.semantics.printing import conjunction
+from robosc.model.semantics.walks import copied
 
 #: Valuations that two expressions are compared under.
 _MOST = 400

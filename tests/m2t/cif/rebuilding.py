@@ -4,9 +4,9 @@ import re
 from typing import Any
 
 from robosc.analysis.verify.cif_reading import read
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.metamodel.reflection import tree
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.reflection import tree
 
 _KINDS = {"message": "message", "service": "service", "action": "action", "component": "behaviour", "data": "data"}
 _EVENTS = [literal.name for literal in sct.EventKind.eLiterals]  # type: ignore[attr-defined]

@@ -7,20 +7,20 @@ import pytest
 from hypothesis import given, settings
 
 from robosc.analysis.verify.cif_reading import read as read_cif
-from robosc.checks import check
-from robosc.configuration import Configuration
-from robosc.diagnostics import Severity, Span
-from robosc.diagnostics.rules import page
-from robosc.language import read
+from robosc.base.diagnostics import Severity, Span
+from robosc.base.diagnostics.rules import page
+from robosc.language.checks import check
+from robosc.language.configuration import Configuration
+from robosc.language.reading import read
 from robosc.m2m import robosc_to_sct
 from robosc.m2m.sct_to_cif import transform
 from robosc.m2t import cif
 from robosc.m2t.models import Models
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.metamodel.places import Place
-from robosc.metamodel.reflection import tree
-from robosc.semantics.walks import copied
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.places import Place
+from robosc.model.reflection import tree
+from robosc.model.semantics.walks import copied
 from robosc.synthesis import synthesize
 from tests.fuzz.valid import named_like
 from tests.m2t.cif.differences import differences
@@ -172,7 +172,7 @@ def test_every_model_keeps_its_meaning(given: sct.SupervisoryControlModel) -> No
 
 
 ROOT = HERE.parents[2]
-MODELS = [ROOT / "tests" / "metamodel" / "warehouse.rscd", *sorted((ROOT / "examples").glob("*/*.rscd"))]
+MODELS = [ROOT / "tests" / "model" / "warehouse.rscd", *sorted((ROOT / "examples").glob("*/*.rscd"))]
 
 
 @pytest.mark.parametrize("path", MODELS, ids=[path.stem for path in MODELS])

@@ -12,12 +12,12 @@ from typing import Any
 import pytest
 
 import robosc
-from robosc.diagnostics import Severity
+from robosc.base.diagnostics import Severity
 from robosc.engine import Engine
 from robosc.m2t.ros.expressions import CppPrinter
 from robosc.m2t.ros.names import CppNames
-from robosc.runtime.core.node_data import NodeData
-from robosc.semantics.operators import UnreadableError
+from robosc.model.semantics.operators import UnreadableError
+from robosc.run.runtime.core.node_data import NodeData
 
 pytestmark = pytest.mark.build
 

@@ -15,15 +15,15 @@ from typing import TYPE_CHECKING
 import pytest
 
 import robosc
-from robosc.diagnostics.visible import HIDDEN
-from robosc.runtime.core.json_text import json_text
-from robosc.semantics.communication import QUEUE_DEPTH
-from robosc.semantics.definition import TRANSITIONS_KEPT
+from robosc.base.diagnostics.visible import HIDDEN
+from robosc.model.semantics.communication import QUEUE_DEPTH
+from robosc.model.semantics.definition import TRANSITIONS_KEPT
+from robosc.run.runtime.core.json_text import json_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from robosc.configuration import Configuration
+    from robosc.language.configuration import Configuration
 
 pytestmark = pytest.mark.build
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import robosc
 from robosc.m2t.ros.names import CppNames
 from robosc.m2t.ros.node import Node
-from robosc.metamodel import expression as ex
-from robosc.metamodel import rosgraph
+from robosc.model import expression as ex
+from robosc.model import rosgraph
 
 
 def test_what_a_trigger_changes_is_done_after_its_data_is_made() -> None:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 import robosc
-from robosc import configuration as config
-from robosc.diagnostics import Severity
+from robosc.base.diagnostics import Severity
+from robosc.language import configuration as config
 from robosc.m2t.ros.preconditions import preconditions
 
 if TYPE_CHECKING:

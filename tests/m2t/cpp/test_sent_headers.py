@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import robosc
-from robosc.semantics.messages import parts_with_headers
+from robosc.model.semantics.messages import parts_with_headers
 
 HERE = Path(__file__).parent
 NAVIGATION = HERE.parents[2] / "examples" / "simple_navigation" / "simple_navigation.rscd"

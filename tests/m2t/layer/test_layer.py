@@ -11,10 +11,10 @@ from catkin_pkg.package import parse_package_string
 from ruamel.yaml import YAML
 
 import robosc
-from robosc import configuration as config
-from robosc.configuration import Configuration
+from robosc.language import configuration as config
+from robosc.language.configuration import Configuration
 from robosc.m2t.targets import TARGETS
-from robosc.metamodel import sct
+from robosc.model import sct
 from tests.ros.launching import launched
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def test_every_file(
 @pytest.mark.parametrize("logs", [False, True])
 def test_parameters_of_the_model_have_a_file(logs: bool) -> None:
     """Declared in parameter YAML and launch file; a layer whose model has none needs no file."""
-    models = models_of(HERE.parents[1] / "runtime" / "cruise.rscd")
+    models = models_of(HERE.parents[1] / "run" / "runtime" / "cruise.rscd")
     behind = config.ExistingController(launch=config.Launch(package_name="drive", file="drive.launch.py"))
     settings = Configuration(write_events_to_log=logs, supervisor=config.Supervisor(controller=behind))
     files = robosc.generate(TARGET, models, settings)

@@ -12,7 +12,7 @@ import pytest
 from catkin_pkg.package import parse_package_string
 
 import robosc
-from robosc.configuration import Configuration
+from robosc.language.configuration import Configuration
 
 if TYPE_CHECKING:
     from collections.abc import Callable

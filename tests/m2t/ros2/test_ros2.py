@@ -14,7 +14,7 @@ from catkin_pkg.package import parse_package_string
 from ruamel.yaml import YAML
 
 import robosc
-from robosc.configuration import Configuration, Package
+from robosc.language.configuration import Configuration, Package
 from tests.m2t.conftest import differences
 
 if TYPE_CHECKING:

@@ -1,7 +1,7 @@
 """Models at the corners of what the engine in C must handle."""
 
-from robosc.metamodel import sct
-from robosc.metamodel.places import Place
+from robosc.model import sct
+from robosc.model.places import Place
 from tests.sct_models import edge, model, plant
 
 

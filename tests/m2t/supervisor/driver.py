@@ -5,12 +5,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from unittest.mock import patch
 
-from robosc.configuration import ControlLoop
+from robosc.language.configuration import ControlLoop
 from robosc.m2m import sct_to_engine
 from robosc.m2t.c import engine
 from robosc.m2t.c.names import CNames
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
+from robosc.model import expression as ex
+from robosc.model import sct
 
 FLAGS = ("-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 #: What a user of the engine is promised to draw no warning.

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from robosc.engine import Settings
 from robosc.m2t.c.preconditions import preconditions
-from robosc.metamodel import sct
-from robosc.metamodel.places import Place
+from robosc.model import sct
+from robosc.model.places import Place
 from tests.m2t.supervisor.driver import build, run
 from tests.m2t.supervisor.walk import Walk
 from tests.sct_models import edge, model, plant

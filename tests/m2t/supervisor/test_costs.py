@@ -12,7 +12,7 @@ import robosc
 from benchmarks.engine_costs import Costs, measured, stack
 from benchmarks.families import FAMILIES
 from robosc.m2m.sct_to_engine import POLLED
-from robosc.metamodel import sct
+from robosc.model import sct
 
 pytestmark = pytest.mark.build
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
-from robosc import configuration as config
 from robosc.engine import Settings
+from robosc.language import configuration as config
 from robosc.m2m.sct_to_engine import POLLED
-from robosc.metamodel import sct
+from robosc.model import sct
 from robosc.synthesis import synthesize
 from tests.engine.robots import robots
 from tests.m2t.supervisor.driver import build, run

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from robosc.metamodel import sct
+from robosc.model import sct
 from tests.m2t.supervisor import corners
 from tests.m2t.supervisor.driver import write
 from tests.m2t.supervisor.test_supervisor import dock, supervised
@@ -23,7 +23,7 @@ CHOSEN = ("supervised_line_follower", "simple_navigation", "warehouse_robot")
 
 
 def guard() -> sct.SupervisoryControlModel:
-    return supervised(ROOT / "tests" / "runtime" / "guard.rscd")
+    return supervised(ROOT / "tests" / "run" / "runtime" / "guard.rscd")
 
 
 #: What no example needs: wide ranges, enumerations, names that nothing bounds, times.

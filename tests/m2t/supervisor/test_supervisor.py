@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 
 import robosc
-from robosc.configuration import Configuration
-from robosc.configuration import ControlLoop as Chosen
 from robosc.engine import Settings
+from robosc.language.configuration import Configuration
+from robosc.language.configuration import ControlLoop as Chosen
 from robosc.m2m.sct_to_engine import POLLED
 from robosc.m2t import supervisor
 from robosc.m2t.models import Models
-from robosc.metamodel import sct
-from robosc.metamodel.places import Place
+from robosc.model import sct
+from robosc.model.places import Place
 from tests.m2t.supervisor import corners
 from tests.m2t.supervisor.driver import STRICT, build, run, write
 from tests.m2t.supervisor.walk import Walk

@@ -8,16 +8,16 @@ import pytest
 
 import robosc
 from benchmarks.engine_costs import measured
-from robosc.configuration import ControlLoop
+from robosc.language.configuration import ControlLoop
 from robosc.m2m.sct_to_engine import transform
 from robosc.m2t.c import engine
-from robosc.metamodel import sct
+from robosc.model import sct
 from tests.m2t.supervisor.driver import build, run
 
 pytestmark = pytest.mark.build
 
-CRUISE = Path(__file__).parents[2] / "runtime" / "cruise.rscd"
-GUARD = Path(__file__).parents[2] / "runtime" / "guard.rscd"
+CRUISE = Path(__file__).parents[2] / "run" / "runtime" / "cruise.rscd"
+GUARD = Path(__file__).parents[2] / "run" / "runtime" / "guard.rscd"
 
 
 def made(path: Path) -> sct.SupervisoryControlModel:

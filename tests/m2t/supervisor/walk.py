@@ -3,9 +3,9 @@
 from random import Random
 
 from robosc.engine import ControlLoop, Hooks, Settings
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.domains import domain
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.domains import domain
 
 
 class Walk:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robosc.semantics.naming import below_layer
+from robosc.model.semantics.naming import below_layer
 from tests.ros.faults.partners import LEASE, Peer
 from tests.ros.reactions import one_process
 from tests.ros.running import Runner

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from robosc.semantics.definition import TRANSITIONS_KEPT
+from robosc.model.semantics.definition import TRANSITIONS_KEPT
 from tests.ros.faults.conftest import scouting
 from tests.ros.faults.partners import MOVE
 

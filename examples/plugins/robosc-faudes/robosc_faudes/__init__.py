@@ -9,9 +9,9 @@ from __future__ import annotations
 from functools import reduce
 from typing import TYPE_CHECKING, Any
 
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.roles import event_name
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.roles import event_name
 from robosc_faudes.automata import Automaton, faudes_supervisor, plants
 
 if TYPE_CHECKING:

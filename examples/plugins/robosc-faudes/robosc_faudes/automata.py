@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.metamodel.reflection import tree
-from robosc.semantics.edges import edges_from, edges_of
-from robosc.semantics.evaluation import evaluate
-from robosc.semantics.roles import event_name
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.reflection import tree
+from robosc.model.semantics.edges import edges_from, edges_of
+from robosc.model.semantics.evaluation import evaluate
+from robosc.model.semantics.roles import event_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence

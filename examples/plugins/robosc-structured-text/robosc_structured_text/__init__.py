@@ -11,18 +11,18 @@ import re
 from typing import TYPE_CHECKING
 
 import robosc
-from robosc.diagnostics import Diagnostic, Severity
-from robosc.metamodel import engine, sct
-from robosc.metamodel import expression as ex
-from robosc.metamodel.places import place
-from robosc.metamodel.reflection import tree
-from robosc.semantics.operators import PRECEDENCE, SYMBOLS
-from robosc.semantics.printing import Printed, Printer
+from robosc.base.diagnostics import Diagnostic, Severity
+from robosc.model import engine, sct
+from robosc.model import expression as ex
+from robosc.model.places import place
+from robosc.model.reflection import tree
+from robosc.model.semantics.operators import PRECEDENCE, SYMBOLS
+from robosc.model.semantics.printing import Printed, Printer
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from robosc.configuration import Configuration
+    from robosc.language.configuration import Configuration
     from robosc.m2t.models import Models
 
 #: All integers are of this width: no standard function converts what saturates.

@@ -8,7 +8,7 @@ from robosc.analysis.verify.model_reading.controller import CANCEL, SILENT, TIME
 from robosc.analysis.verify.model_reading.lockstep import DifferenceError
 from robosc.analysis.wording import words
 from robosc.engine.expressions import Compiler
-from robosc.metamodel import engine
+from robosc.model import engine
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -17,9 +17,9 @@ from robosc.analysis.verify.model_reading.machine import Slot
 from robosc.analysis.wording import words
 from robosc.engine.expressions import Compiler, all_inside
 from robosc.engine.state import Domain
-from robosc.metamodel import engine, sct
-from robosc.semantics.durations import timer_text
-from robosc.semantics.roles import event_name
+from robosc.model import engine, sct
+from robosc.model.semantics.durations import timer_text
+from robosc.model.semantics.roles import event_name
 from robosc.synthesis import encoded
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from robosc.analysis.verify.model_reading.machine import EventName
 if TYPE_CHECKING:
     from robosc.analysis.verify.model_reading.controller import ControllerText
     from robosc.analysis.verify.model_reading.machine import Machine, Plant
-    from robosc.metamodel import rosgraph
+    from robosc.model import rosgraph
 
 
 def compare_topics(controller: ControllerText, plants: Machine, graph: rosgraph.RosGraph) -> None:

@@ -18,7 +18,7 @@ from robosc.analysis.verify.model_reading.text import UnlikeError, read_text
 from robosc.analysis.verify.verdict import Outcome, Verdict
 
 if TYPE_CHECKING:
-    from robosc.metamodel import robosc, sct
+    from robosc.model import robosc, sct
 
 #: Name of the property in verdicts.
 PROPERTY = "model-translation"

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
         Slot,
         Value,
     )
-    from robosc.metamodel import expression as ex
+    from robosc.model import expression as ex
 
 
 #: Cost of evaluating an event, in units of a cache hit.

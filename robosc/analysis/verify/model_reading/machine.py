@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
-from robosc.semantics.evaluation import Program
+from robosc.model.semantics.evaluation import Program
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from robosc.metamodel import expression as ex
+    from robosc.model import expression as ex
 
     #: Values of a slot or an input: names of locations or literals, booleans, or integers.
     Domain: TypeAlias = tuple[bool | str, ...] | range

@@ -8,11 +8,11 @@ from functools import reduce
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 from robosc.analysis.verify.model_reading.machine import BOOLEANS, At, Literal, Meaning, Plant, Slot
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc
-from robosc.semantics.evaluation import evaluate, literal
-from robosc.semantics.operators import operator_of
-from robosc.semantics.walks import fold, operands, walk, with_operands
+from robosc.model import expression as ex
+from robosc.model import robosc
+from robosc.model.semantics.evaluation import evaluate, literal
+from robosc.model.semantics.operators import operator_of
+from robosc.model.semantics.walks import fold, operands, walk, with_operands
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator, Mapping, Sequence

@@ -25,8 +25,8 @@ from robosc.analysis.verify.model_reading.machine import (
     compiled,
     fitting,
 )
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
+from robosc.model import expression as ex
+from robosc.model import sct
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

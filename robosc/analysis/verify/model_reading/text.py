@@ -36,9 +36,9 @@ from robosc.analysis.verify.model_reading.names import (
     NotReadError,
     words_of,
 )
-from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc
-from robosc.semantics.walks import operands, walk, with_operands
+from robosc.model import expression as ex
+from robosc.model import robosc
+from robosc.model.semantics.walks import operands, walk, with_operands
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Mapping, Sequence

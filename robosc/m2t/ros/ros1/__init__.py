@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from robosc.metamodel import rosgraph
+from robosc.model import rosgraph
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from robosc.configuration import Configuration
+    from robosc.language.configuration import Configuration
     from robosc.m2t.ros.node import Node
     from robosc.m2t.ros.packages import Used
 

@@ -5,19 +5,19 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from robosc.configuration import QualityOfService
+from robosc.language.configuration import QualityOfService
 from robosc.m2t.ros.packages import controller_package, launch_path
-from robosc.semantics.communication import QUEUE_DEPTH, is_sensor_data
-from robosc.semantics.naming import below_layer
+from robosc.model.semantics.communication import QUEUE_DEPTH, is_sensor_data
+from robosc.model.semantics.naming import below_layer
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-    from robosc.configuration import Configuration
+    from robosc.language.configuration import Configuration
     from robosc.m2t.ros.layer import LayerNode
     from robosc.m2t.ros.node import Client, Node, Publisher, Subscription
     from robosc.m2t.ros.packages import Used
-    from robosc.metamodel import rosgraph
+    from robosc.model import rosgraph
 
 _FOLDERS = {"message": "msg", "service": "srv", "action": "action"}
 #: Services and topics of an action. A layer remaps these, not the action's own name.

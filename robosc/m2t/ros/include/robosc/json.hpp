@@ -69,7 +69,7 @@ inline std::uint32_t code_point(const std::string& text, std::size_t start, std:
 }
 
 /// Whether a character breaks lines, reorders them, is obeyed by terminals, or can't be seen: `HIDDEN` of
-/// robosc/diagnostics/visible.py.
+/// robosc/base/diagnostics/visible.py.
 inline bool hidden(std::uint32_t code) {
   constexpr std::uint32_t ranges[][2] = {
       {0x0, 0x1F},      {0x7F, 0x9F},     {0xAD, 0xAD},     {0x34F, 0x34F},   {0x61C, 0x61C},   {0x115F, 0x1160},

@@ -9,7 +9,7 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// `QUEUE_DEPTH` of robosc/semantics/communication.py.
+/// `QUEUE_DEPTH` of robosc/model/semantics/communication.py.
 inline constexpr std::uint32_t kQueueDepth = 10;
 
 }  // namespace ROBOSC_VERSION

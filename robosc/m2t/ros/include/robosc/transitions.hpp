@@ -13,7 +13,7 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// `TRANSITIONS_KEPT` of robosc/semantics/definition.py.
+/// `TRANSITIONS_KEPT` of robosc/model/semantics/definition.py.
 inline constexpr std::size_t kTransitionsKept = 5000;
 
 /// The events since the last report on the state. Where simulated time stands still, or the period is long, many come

@@ -1,0 +1,1 @@
+"""Foundations without a model: files, findings, definitions of ROS types, recordings, extensions, interruption."""

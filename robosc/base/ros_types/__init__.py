@@ -1,0 +1,195 @@
+"""Definitions of ROS messages, services and actions, for ROS 1 and ROS 2.
+
+A definition is searched in the folders of the call, in those of ROBOSC_INTERFACE_PATH, in the ROS installation of the
+computer, and among the standard types. Both ROS versions are searched, because they differ in some types.
+"""
+
+from __future__ import annotations
+
+import os
+from difflib import get_close_matches
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robosc.base.files.resources import locate
+from robosc.base.ros_types.folders import MOST_FOLDERS, Share, Workspace
+from robosc.base.ros_types.wire import FOLDERS, DefinitionError, Fields, Nested, Section, Sequence, WireType
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from os import PathLike
+
+    from robosc.base.ros_types.rosbags_types import ShippedTypes
+
+__all__ = ["DefinitionError", "Fields", "RosDistribution", "RosTypes", "Section", "WireType"]
+
+REPAIR = "repair it: until then nothing is checked against it"
+MAKE_KNOWN = (
+    "give the folder of its package with --interface-path, or list it in ROBOSC_INTERFACE_PATH; until then nothing is"
+    " checked against it"
+)
+#: Hint for the data of a service or action in a place that can only name messages.
+OWN_OBJECT = "for the data of a service or action, declare an object with the fields that you use and an enum over it"
+#: Default field for a basic value, if its section has several fields.
+_DATA = "data"
+_SHIPPED = locate("base/ros_types/definitions")
+
+
+class RosDistribution:
+    """All types of one ROS version."""
+
+    def __init__(self, ros: str, folders: Iterable[Share]) -> None:
+        """Search the folders of `ros` (`ROS 1` or `ROS 2`) in their order; the first one with a type counts."""
+        self.name = ros
+        self._folders = list(folders)
+        self._known: dict[tuple[str, str, Section], Fields | None] = {}
+        self._named: dict[tuple[str, str], list[str]] = {}
+
+    @cached_property
+    def _sources(self) -> list[Share | ShippedTypes]:
+        from robosc.base.ros_types.rosbags_types import ShippedTypes  # takes long to load
+
+        return [*self._folders, ShippedTypes(self.name)]
+
+    def fields(self, package: str, name: str, section: Section) -> Fields | None:
+        """Return the fields of a section of a type, or None if the type is unknown.
+
+        Raises DefinitionError if the text of the definition cannot be parsed.
+        """
+        if not (package.isidentifier() and name.isidentifier()):
+            return None  # Names become parts of paths.
+        key = package, name, section
+        if key not in self._known:
+            found = (source.fields(package, name, section) for source in self._sources)
+            self._known[key] = next((fields for fields in found if fields is not None), None)
+        return self._known[key]
+
+    def reached(
+        self, package: str, name: str, section: Section, path: Iterable[str]
+    ) -> tuple[WireType, Section] | None:
+        """Return the type at the end of a path of fields and positions, with its section, or None if unknown."""
+        found: WireType | None = Nested(package, name)
+        for step in path:
+            if step.isdigit():
+                found = found.at(int(step)) if isinstance(found, Sequence) else None
+            elif isinstance(found, Nested):
+                try:
+                    fields = self.fields(found.package, found.name, section)
+                except DefinitionError:
+                    return None
+                found, section = None if fields is None else fields.get(step), Section.MESSAGE
+            else:
+                return None
+        return None if found is None else (found, section)
+
+    def defines(self, package: str, name: str, section: Section) -> bool:
+        """Return whether a section of a type exists, even if its definition is invalid."""
+        try:
+            return self.fields(package, name, section) is not None
+        except DefinitionError:
+            return True
+
+    def names(self, package: str, kind: str) -> list[str]:
+        """Return the known types of a kind (`message`, `service`, `action`) in a package, sorted by name."""
+        key = package, kind
+        if key not in self._named:
+            self._named[key] = sorted({name for source in self._sources for name in source.names(package, kind)})
+        return self._named[key]
+
+    def packages(self) -> set[str]:
+        """Return the names of all packages with a known type."""
+        return {package for source in self._sources for package in source.packages()}
+
+
+class RosTypes:
+    """All types of both ROS versions."""
+
+    def __init__(self, paths: Iterable[str | PathLike[str]] = ()) -> None:
+        """Search folders of packages below `paths` before all others."""
+        given = [Path(path) for path in paths] + _environment("ROBOSC_INTERFACE_PATH")
+        installed = {
+            "ROS 2": [Share(prefix / "share") for prefix in _environment("AMENT_PREFIX_PATH")],
+            "ROS 1": [
+                *(Workspace(folder, "ROS 1") for folder in _environment("ROS_PACKAGE_PATH")),
+                Share(Path("/usr/share")),  # the location on Debian
+            ],
+        }
+        #: ROS 2, then ROS 1.
+        self._given = {ros: [Workspace(folder, ros) for folder in given] for ros in installed}
+        self.distributions = [
+            RosDistribution(ros, [*self._given[ros], *shares, Share(_SHIPPED)]) for ros, shares in installed.items()
+        ]
+
+    def distribution(self, ros: int) -> RosDistribution:
+        """Return the types of ROS 1 or ROS 2."""
+        return next(known for known in self.distributions if known.name == f"ROS {ros}")
+
+    def field_of_basic(self, package: str, name: str, section: Section) -> str:
+        """Return the field that carries a basic value.
+
+        That is the only field of the section in one of the ROS versions, else `data`.
+        """
+        for distribution in self.distributions:
+            try:
+                fields = distribution.fields(package, name, section)
+            except DefinitionError:
+                continue
+            if fields is not None and len(fields) == 1:
+                return next(iter(fields))
+        return _DATA
+
+    def _make_known(self) -> str:
+        """Return the hint to make a type known.
+
+        If a folder is too large to be searched, the hint is to name a smaller one.
+        """
+        large = next((found.folder for found in self._given["ROS 2"] if found.is_too_large), None)
+        if large is None:
+            return MAKE_KNOWN
+        return (
+            f"only the first {MOST_FOLDERS:,} folders below `{large}` were searched: "
+            "give a folder nearer to the package with --interface-path"
+        )
+
+    def other_kinds(self, package: str, name: str, kind: str) -> list[str]:
+        """Return the other kinds (`service`, `action`) that have a type of this name."""
+        return [
+            other
+            for other in FOLDERS
+            if other != kind and any(name in distribution.names(package, other) for distribution in self.distributions)
+        ]
+
+    def _names(self, package: str, kind: str) -> list[str]:
+        return sorted({found for known in self.distributions for found in known.names(package, kind)})
+
+    def why_unknown(self, package: str, name: str, section: Section) -> tuple[str, str, tuple[str, str] | None]:
+        """Return the reason that no distribution has a section of a type, a hint, and the type that was probably meant.
+
+        The meant type is its package and its name, or None if there is no close match.
+        """
+        kind = section.kind
+        for distribution in self.distributions:
+            try:
+                distribution.fields(package, name, section)
+            except DefinitionError as fault:
+                return f"the definition of {package}/{name} can't be read: {fault}", REPAIR, None
+        for other in Section:
+            if other.kind != kind and any(known.defines(package, name, other) for known in self.distributions):
+                message = f"{package}/{name} is of kind {other.kind}, expected a type of kind {kind}"
+                return message, f"name a type of kind {kind}", None
+        if not any(known.names(package, other) for known in self.distributions for other in FOLDERS):
+            packages = {found for known in self.distributions for found in known.packages()}
+            having = sorted(other for other in packages if name in self._names(other, kind))
+            close = get_close_matches(package, having, n=1, cutoff=0.8)
+            make_known = self._make_known()
+            hint = f"did you mean `{close[0]}`? Else {make_known}" if close else make_known
+            return f"the package `{package}` is unknown", hint, (close[0], name) if close else None
+        close = get_close_matches(name, self._names(package, kind), n=1)
+        hint = f"did you mean `{close[0]}`?" if close else self._make_known()
+        meant = (package, close[0]) if close else None
+        return f"no {kind} type `{name}` of the package `{package}` is known", hint, meant
+
+
+def _environment(variable: str) -> list[Path]:
+    return [Path(folder) for folder in os.environ.get(variable, "").split(os.pathsep) if folder]

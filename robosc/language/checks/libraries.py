@@ -1,0 +1,144 @@
+"""Imports of a robot or library."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from robosc.language.checks.facts import fact, keeping_facts
+from robosc.language.checks.rule import Finding, on_line
+from robosc.model.semantics.expansion import constant_value
+from robosc.model.semantics.instances import Instances, imported, libraries
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+
+    from robosc.language.checks.mending import Hint
+    from robosc.model import expression as ex
+    from robosc.model import robosc as rsc
+    from robosc.model.semantics.evaluation import Value
+    from robosc.model.semantics.instances import Instance, Resolved
+
+    #: Predicate on a robot or library by itself.
+    Holds = Callable[[rsc.Base], bool]
+
+
+@dataclass
+class _Memory:
+    """Cache of one check: most rules look at the same bases."""
+
+    instances: dict[rsc.Base, Instances] = field(default_factory=dict)
+    resolved: Resolved = field(default_factory=dict)
+    reachable: dict[tuple[rsc.Base, Holds], Cell | None] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Cell:
+    """Linked list of libraries. Several lists may share their end."""
+
+    library: rsc.Library
+    after: Cell | None
+
+
+_MEMORY: ContextVar[_Memory] = ContextVar("_MEMORY")
+
+
+@contextmanager
+def remembering() -> Iterator[None]:
+    """Cache results within the `with` block, in which no model may change."""
+    token = _MEMORY.set(_Memory())
+    try:
+        with keeping_facts():
+            yield
+    finally:
+        _MEMORY.reset(token)
+
+
+def _memory() -> _Memory:
+    return _MEMORY.get(None) or _Memory()
+
+
+def instances(base: rsc.Base) -> Instances:
+    """Return the instances of a robot or library."""
+    memory = _memory()
+    if base not in memory.instances:
+        memory.instances[base] = Instances(base, memory.resolved)
+    return memory.instances[base]
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """Text of a robot or library, or text of a template with the arguments of one instance."""
+
+    definitions: Sequence[rsc.Definition]
+    made: Instance | None = None
+
+    def values(self, *expressions: ex.Expression | None) -> list[Value | None]:
+        """Return the value of each constant expression; None if it has none.
+
+        For an instance, only expressions that depend on arguments have values. The others get theirs from the
+        template's own text.
+        """
+        alone = [constant_value(expression) for expression in expressions]
+        if self.made is None or None not in alone:
+            return alone if self.made is None else [None] * len(alone)
+        return [constant_value(expression, self.made) for expression in expressions]
+
+    def finding(self, element: ex.Located, message: str, hint: Hint) -> Finding:
+        """Return a finding at an element. If arguments of an instance cause it, the place is the instance."""
+        if self.made is None:
+            return Finding(element, message, hint)
+        message = f"with these arguments, {message}{on_line(element)}"
+        return Finding(self.made.component, message, "give other arguments", related=element)
+
+
+def meanings(base: rsc.Base) -> Iterator[Meaning]:
+    """Yield the text of a robot or library, then that of each of its components with arguments."""
+    yield Meaning(base.definitions)
+    for instance in instances(base):
+        if instance.arguments:
+            yield Meaning([instance.definition], instance)
+
+
+def imports(base: rsc.Base) -> list[tuple[rsc.Component, rsc.Library]]:
+    """Return each imported component with its library, in the order of the text, without unresolved libraries."""
+    return fact(imported, base)
+
+
+def anything(_: rsc.Base) -> bool:
+    """Accept every library."""
+    return True
+
+
+def reachable(base: rsc.Base, holds: Holds = anything) -> list[rsc.Library]:
+    """Return every library reachable by imports from the base that satisfies `holds`, without the base itself.
+
+    Each library occurs once, the near ones first. In a chain of imports, the libraries of a base are the next library
+    and the libraries of that one. All libraries are visited again only if a base imports several.
+    """
+    known = _memory().reachable
+    chain: list[tuple[rsc.Base, rsc.Library]] = []
+    found: Cell | None = None
+    current, passed = base, {base}
+    while (current, holds) not in known:
+        direct = list(dict.fromkeys(library for _, library in imports(current)))
+        if len(direct) == 1 and direct[0] not in passed:
+            chain.append((current, direct[0]))
+            current = direct[0]
+            passed.add(current)
+            continue
+        for library in reversed(libraries(current, imports)):
+            found = Cell(library, found) if fact(holds, library) else found
+        known[current, holds] = found
+    found = known[current, holds]
+    for importing, library in reversed(chain):
+        found = known[importing, holds] = Cell(library, found) if fact(holds, library) else found
+    return [library for library in dict.fromkeys(_each(found)) if library is not base]
+
+
+def _each(cell: Cell | None) -> Iterable[rsc.Library]:
+    while cell is not None:
+        yield cell.library
+        cell = cell.after

@@ -1,0 +1,364 @@
+"""Rules `variable-type` and `integer-range` (thesis 4.5.14 and 4.5.3): the supervisor's values are finite."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.base.ros_types.wire import INTEGER_RANGES
+from robosc.language.checks.definitions import (
+    assigned_variable,
+    communication_of,
+    data_types,
+    of_kind,
+    sends_message,
+    statements,
+    transitions,
+    variables,
+)
+from robosc.language.checks.libraries import Meaning, meanings
+from robosc.language.checks.mending import Choice, Removal, Replacement, Together, part_of
+from robosc.language.checks.rule import Finding, rule
+from robosc.language.checks.supervised import Fault, function_faults, readings, supervised_faults, table_faults
+from robosc.model import robosc as rsc
+from robosc.model.semantics.communication import sent_type
+from robosc.model.semantics.cone_of_influence import ConeOfInfluence, accesses
+from robosc.model.semantics.expansion import CLAMP
+from robosc.model.semantics.inputs import Computed, Data, property_path
+from robosc.model.semantics.instances import MOST
+from robosc.model.semantics.printing import RoboscPrinter
+from robosc.model.semantics.typing import (
+    DOUBLE,
+    INTEGER,
+    NONE,
+    STRING,
+    ArrayType,
+    ObjectType,
+    Type,
+    access_types,
+    declared_type,
+    infer,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.language.checks.mending import Hint
+    from robosc.model import expression as ex
+    from robosc.model.semantics.cone_of_influence import Reading
+    from robosc.model.semantics.instances import Instances
+
+LEAST, LARGEST = INTEGER_RANGES["int64"]
+
+
+@rule("variable-type")
+def variable_type(base: rsc.Base) -> Iterator[Finding]:
+    """Each variable holds one value; those that the supervisor needs have a finite type and finite data."""
+    stored = _stored(base)
+    for variable in variables(base):
+        found = declared_type(variable.type)
+        if found == NONE:
+            yield Finding(
+                variable,
+                f"variable `{variable.name}` holds no value, expected data",
+                Choice(
+                    "leave it out, or declare it boolean to remember that something happened",
+                    (
+                        Removal("leave it out", variable),
+                        Replacement("declare it boolean", "boolean", variable.type),
+                    ),
+                ),
+            )
+        elif isinstance(found, ArrayType | ObjectType):
+            starts = "an array starts empty" if isinstance(found, ArrayType) else "each field starts as a variable does"
+            if variable.initial is not None:
+                message = f"variable `{variable.name}` is {found} and takes no initial value: {starts}"
+                hint = Removal(
+                    f"write `variable {variable.name}: …` without `=`",
+                    part_of(variable.initial).preceded_by("="),
+                    is_choice=False,
+                )
+                yield Finding(variable.initial, message, hint)
+            if _has_objects(found) and variable not in stored:
+                message = f"variable `{variable.name}` is {found}, and no event stores anything in it"
+                yield Finding(
+                    variable,
+                    message,
+                    Removal(f"write `do {variable.name} := value` where it comes in, or leave it out", variable),
+                )
+    yield from supervised_faults(base, _without_domain)
+    yield from supervised_faults(base, function_faults)
+
+
+def _has_objects(found: Type) -> bool:
+    return isinstance(found, ObjectType) or (isinstance(found, ArrayType) and _has_objects(found.element))
+
+
+def _stored(base: rsc.Base) -> set[rsc.Variable]:
+    """Return the variables that store received data, directly or through other variables."""
+    assigned = [
+        (variable, value)
+        for _, transition in transitions(base)
+        # If a transition assigns a variable several times, the last assignment takes effect.
+        for variable, value in {assigned_variable(given): given.value for given in transition.assignments}.items()
+    ]
+    found: set[rsc.Variable] = set()
+    more = True
+    while more:
+        reached = {
+            variable
+            for variable, value in assigned
+            if variable is not None and any(access.value or access.item in found for access in accesses(value))
+        }
+        more = not reached <= found
+        found |= reached
+    return found
+
+
+#: Repair for a variable of the node with too many values.
+_KEPT_REPAIR = "let a variable remember what matters of it, such as `do some := size(value.…) > 0`"
+
+
+def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
+    for owned, reason in result.variables.items():
+        found = declared_type(owned.type)
+        if found in {DOUBLE, STRING} or isinstance(found, ArrayType | ObjectType):
+            name = f"{owned.instance.name}.{owned.variable.name}"
+            yield Fault(
+                owned.variable,
+                reason,
+                f"variable `{name}` is {found}, and the supervisor needs it, expected boolean, an integer with a range"
+                " or an enum: its states are finitely many",
+                _KEPT_REPAIR if isinstance(found, ArrayType | ObjectType) else _enum_repair(str(found)),
+            )
+    for reading in readings(result):
+        access = reading.reason.access
+        if reading.told is not None or not isinstance(access, rsc.Access):
+            continue
+        types = access_types(access, reading.value)
+        is_array = any(isinstance(kind, ArrayType) for kind in types)
+        if is_array or types[-1] in {DOUBLE, STRING}:
+            kind = "array data" if is_array else f"a {types[-1]}"
+            yield Fault(
+                access,
+                reading.reason,
+                f"{_needed(reading)} is computed from {kind}, `{RoboscPrinter()(access)}`, and from what changes beside"
+                " it, expected data that is compared with literals, constants and other data only",
+                _enum_repair(
+                    types[0].definition.name if isinstance(types[0], ObjectType) and is_array else str(types[-1])
+                ),
+            )
+
+
+def _needed(reading: Reading) -> str:
+    variable = reading.reason.variable
+    return "this guard" if variable is None else f"`{variable.variable.name}`, which the supervisor needs,"
+
+
+def _enum_repair(base: str) -> str:
+    enum = f"datatype enum … from {base} to {{ value … -> … default -> … }}"
+    return f"turn it into an enum, `{enum}`, as the type of the data"
+
+
+@rule("integer-range")
+def integer_range(base: rsc.Base) -> Iterator[Finding]:
+    """Integers that the supervisor needs have a range, ranges are not empty, and constants are within them."""
+    yield from supervised_faults(base, _without_range)
+    yield from supervised_faults(base, table_faults)
+    for meaning in meanings(base):
+        yield from _too_large(meaning)
+        yield from _parameters(meaning)
+        for declared in of_kind(rsc.IntegerDataType, data_types(meaning)):
+            low, high = _bounds(declared, meaning)
+            if low is not None and high is not None and low > high:
+                yield meaning.finding(
+                    declared,
+                    f"the range {low}..{high} is empty, expected the lower bound first",
+                    Replacement(f"write `integer({high}..{low})`", f"integer({high}..{low})", declared),
+                )
+        for count in statements(rsc.CountRequirement, meaning):
+            (most,) = meaning.values(count.bound)
+            if type(most) is int and not 1 <= most <= MOST:
+                message = f"`at most` counts to {most}, expected a number from 1 to {MOST:,}"
+                hint = "write a larger one" if most < 1 else "write a smaller one"
+                yield meaning.finding(count.bound, message, f"{hint}, or another requirement")
+        for constant, kind, name in _constants(meaning):
+            yield from _outside(constant, kind, name, meaning)
+
+
+def _parameters(meaning: Meaning) -> Iterator[Finding]:
+    """Report integer parameters without a range and values outside of a parameter's range."""
+    for parameter in statements(rsc.Parameter, meaning):
+        if meaning.made is None and declared_type(parameter.type) == INTEGER and _is_unranged(parameter.type):
+            yield Finding(
+                parameter.type,
+                f"parameter `{parameter.name}` is an integer without range, expected what may be set",
+                Replacement(
+                    "write a range, such as `integer(0..100)`", "integer(0..100)", parameter.type, is_choice=True
+                ),
+            )
+        elif meaning.made is None and parameter.lowest is not None and declared_type(parameter.type) != DOUBLE:
+            message = f"parameter `{parameter.name}` is {declared_type(parameter.type)} and has no range"
+            yield Finding(parameter.lowest, message, _unranged(parameter))
+        low, value, high = meaning.values(parameter.lowest, parameter.value, parameter.highest)
+        lowest, highest = parameter.lowest, parameter.highest
+        if isinstance(low, float) and isinstance(high, float) and lowest is not None and highest is not None:
+            if low > high:
+                message = f"the range {low}..{high} is empty, expected the lower bound first"
+                swapped = (
+                    Replacement("", f"{high}", lowest),
+                    Replacement("", f"{low}", highest),
+                )
+                yield meaning.finding(lowest, message, Together(f"write `double({high}..{low})`", swapped))
+            elif isinstance(value, float) and parameter.value is not None and not low <= value <= high:
+                message = f"{value} is not in the range {low}..{high} of `{parameter.name}`, expected a value that is"
+                nearest = low if value < low else high
+                way = Replacement(f"write `{nearest}`, or widen it", f"{nearest}", parameter.value, is_choice=True)
+                yield meaning.finding(parameter.value, message, way)
+
+
+def _unranged(parameter: rsc.Parameter) -> Choice:
+    """Return the repairs for a range of a parameter that is no double."""
+    double = Replacement("declare it double", "double", parameter.type)
+    bounds = part_of(parameter.lowest).preceded_by("(").to(part_of(parameter.highest).followed_by(")"))
+    return Choice("leave it out, or declare it double", (Removal("leave the range out", bounds), double))
+
+
+def _is_unranged(declared: rsc.DataType) -> bool:
+    return isinstance(declared, rsc.IntegerDataType) and declared.minimum is None and declared.lower is None
+
+
+def _too_large(meaning: Meaning) -> Iterator[Finding]:
+    """Report integers that do not fit into 64 bits."""
+    computed: list[ex.Expression | None] = [constant.value for constant in statements(rsc.Constant, meaning)]
+    for declared in of_kind(rsc.IntegerDataType, data_types(meaning)):
+        computed += [declared.lower, declared.upper]
+    for expression in computed:
+        (value,) = meaning.values(expression)
+        if expression is not None and type(value) is int and not LEAST <= value <= LARGEST:
+            shown = value if abs(value) < CLAMP else ("far larger" if value > 0 else "far smaller")
+            message = f"an integer lies between {LEAST} and {LARGEST}, and this is {shown}"
+            yield meaning.finding(expression, message, "write another expression")
+
+
+# Missing ranges
+
+
+def _without_range(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
+    for owned, reason in result.variables.items():
+        if _is_unbounded(owned.type) and not _has_wrong_bounds(owned.type):
+            name = f"{owned.instance.name}.{owned.variable.name}"
+            yield Fault(
+                owned.variable,
+                reason,
+                f"variable `{name}` has no range, and the supervisor needs it, expected one: its states are finitely"
+                " many",
+                Replacement(
+                    f"write a range, such as `variable {owned.variable.name}: integer(0..100)`",
+                    "integer(0..100)",
+                    owned.variable.type,
+                    is_choice=True,
+                ),
+            )
+    for reading in readings(result):
+        told = reading.told
+        if not isinstance(told, Computed) or told.type != INTEGER or told.bounds is not None:
+            continue
+        element: ex.Located = reading.part
+        hint: Hint = "compare it with a literal, or assign it as it is to a variable, whose range it takes"
+        path = property_path(reading.part) if isinstance(reading.part, rsc.Access) else None
+        declared = None if path is None else Data(told.port, told.event, path).type
+        if _has_wrong_bounds(declared):
+            continue
+        if _is_unbounded(declared):
+            assert declared is not None
+            field = declared.eContainer()
+            element = field if isinstance(field, rsc.ObjectProperty) else declared
+            hint = (
+                Replacement(
+                    "write a range, such as `integer(0..100)`: what lies outside becomes the nearest bound",
+                    "integer(0..100)",
+                    declared,
+                    is_choice=True,
+                )
+                if not isinstance(field.eContainer().eContainer(), rsc.InterfaceTypeReference)
+                else f"ROS defines it: declare an object in its place, with a `{field.name}: integer(0..100)`"
+            )
+        yield Fault(
+            element,
+            reading.reason,
+            f"`{told.text}` is an integer without range, and {_needed(reading)} is computed from it"
+            " and others, expected a range: the supervisor's inputs have finitely many values",
+            hint,
+        )
+
+
+def _is_unbounded(declared: rsc.DataType | None) -> bool:
+    return isinstance(declared, rsc.IntegerDataType) and (declared.minimum is None or declared.maximum is None)
+
+
+def _has_wrong_bounds(declared: rsc.DataType | None) -> bool:
+    """Return whether a range of an instance has unknown bounds; their own expressions have the finding."""
+    return declared is not None and _is_unbounded(declared) and declared.eContainer() is None
+
+
+def _bounds(declared: rsc.IntegerDataType, meaning: Meaning) -> tuple[int | None, int | None]:
+    """Return the bounds of a range; None if they are unknown or the template's own text has them."""
+    if declared.lower is None:
+        return (None, None) if meaning.made else (declared.minimum, declared.maximum)
+    low, high = meaning.values(declared.lower, declared.upper)
+    return (low, high) if type(low) is int and type(high) is int else (None, None)
+
+
+# Constants outside of their range
+
+
+def _constants(base: Meaning) -> Iterator[tuple[ex.Expression | None, rsc.DataType | None, str]]:
+    """Yield every assigned expression with the type and the name of its target."""
+    for variable in variables(base):
+        yield variable.initial, variable.type, variable.name
+    for declared in statements(rsc.Constant, base):
+        yield declared.value, declared.type, declared.name
+    for parameter in statements(rsc.Parameter, base):
+        yield parameter.value, parameter.type, parameter.name
+    for _, transition in transitions(base):
+        for assignment in transition.assignments if not sends_message(transition) else ():
+            assigned = assigned_variable(assignment)
+            if assigned is not None:
+                yield assignment.value, assigned.type, assigned.name
+    for statement in statements(rsc.ProvideStatement, base):
+        communication = communication_of(statement.communicationType)
+        if communication is not None:
+            yield from _provided(statement.data, sent_type(communication), communication.name)
+
+
+def _provided(
+    data: ex.Expression | None, declared: rsc.DataType | None, name: str
+) -> Iterator[tuple[ex.Expression | None, rsc.DataType | None, str]]:
+    if not isinstance(data, rsc.ObjectValue):
+        yield data, declared, name
+        return
+    for given in data.properties:
+        if given.property is not None:
+            yield from _provided(given.value, given.property.type, given.property.name)
+
+
+def _outside(
+    constant: ex.Expression | None, declared: rsc.DataType | None, name: str, meaning: Meaning
+) -> Iterator[Finding]:
+    if constant is None or not isinstance(declared, rsc.IntegerDataType) or infer(constant) != INTEGER:
+        return
+    if declared.lower is not None:
+        value, low, high = meaning.values(constant, declared.lower, declared.upper)
+    else:
+        (value,), low, high = meaning.values(constant), declared.minimum, declared.maximum
+    if type(value) is int and type(low) is int and type(high) is int and not low <= value <= high and low <= high:
+        yield meaning.finding(
+            constant,
+            f"{value} is not in the range {low}..{high} of `{name}`, expected a value that is",
+            Replacement(
+                f"write `{low if value < low else high}`, or widen the range of `{name}`",
+                f"{low if value < low else high}",
+                constant,
+                is_choice=True,
+            ),
+        )

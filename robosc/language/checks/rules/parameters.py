@@ -1,0 +1,34 @@
+"""Rule `parameter-scope`: the supervisor is proven for every value of a parameter, so it must read none."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.language.checks.rule import Finding, rule
+from robosc.language.checks.supervised import Fault, supervised_accesses, supervised_faults
+from robosc.model import robosc as rsc
+from robosc.model.semantics.cone_of_influence import Reason
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.model.semantics.cone_of_influence import ConeOfInfluence
+    from robosc.model.semantics.instances import Instances
+
+
+@rule("parameter-scope")
+def parameter_scope(base: rsc.Base) -> Iterator[Finding]:
+    """No expression that the supervisor evaluates reads a parameter."""
+    yield from supervised_faults(base, _read)
+
+
+def _read(instances: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
+    for access, where in supervised_accesses(instances, result):
+        if isinstance(access.item, rsc.Parameter):
+            yield Fault(
+                access,
+                Reason(access, where.within, where.variable),
+                f"parameter `{access.item.name}` is set on the robot, and what the supervisor allows is proven for"
+                " each of its values, expected no parameter in what it evaluates",
+                "compare it with `value` where data comes in, or declare a `constant`",
+            )

@@ -1,0 +1,105 @@
+"""Rule `requirement-event`: events that requirements may restrict, and readers of requirement automata."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.language.checks.automata import named_events
+from robosc.language.checks.definitions import (
+    communication_of,
+    communications,
+    restricted_events,
+    statements,
+    transitions,
+)
+from robosc.language.checks.libraries import instances
+from robosc.language.checks.mending import Choice, Removal, part_of
+from robosc.language.checks.rule import Finding, rule
+from robosc.model import robosc as rsc
+from robosc.model.semantics.cone_of_influence import accesses
+from robosc.model.semantics.naming import written
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.language.checks.mending import Way
+    from robosc.model import expression as ex
+
+
+@rule("requirement-event")
+def requirement_event(base: rsc.Base) -> Iterator[Finding]:
+    """No order or count restricts an outgoing message, and only requirements read requirement automata."""
+    for events in restricted_events(base):
+        for named in events.events if events else ():
+            communication = communication_of(named.communicationType)
+            if isinstance(communication, rsc.Message) and communication.direction == rsc.MessageDirection.outgoing:
+                yield Finding(
+                    named,
+                    f"`{communication.name}` comes from its component whenever that sends it, expected a request or an"
+                    " answer",
+                    "restrict what the controller does about it",
+                )
+    if any(True for _ in statements(rsc.AutomatonRequirement, base)):
+        yield from _readers(base)
+    yield from _sent_on_change(base)
+
+
+def _sent_on_change(base: rsc.Base) -> Iterator[Finding]:
+    """Report requirements and transitions on messages that are sent on change: these have no defined moment."""
+    for message in communications(base):
+        if isinstance(message, rsc.Message) and message.onChange and message.direction == rsc.MessageDirection.outgoing:
+            what = f"`{message.name}` comes from its component whenever that sends it, expected an incoming message"
+            yield Finding(
+                message, f"{what} before `send: change`", _with_every_tick("leave `, send: change` out", message)
+            )
+    named: list[tuple[ex.Located, rsc.CommunicationReference]] = []
+    named += [(event, event.communicationType) for event in named_events(base)]
+    for _, transition in transitions(base):
+        if isinstance(transition, rsc.ResultTransition):
+            named.append((transition, transition.communicationType))
+    for where, reference in named:
+        sent = communication_of(reference)
+        if isinstance(sent, rsc.Message) and sent.onChange and sent.direction == rsc.MessageDirection.incoming:
+            ways: list[Way] = [_with_every_tick("leave `, send: change` out", sent, is_choice=True)]
+            if isinstance(where, rsc.Transition):
+                ways.append(Removal("leave the transition out", where))
+            yield Finding(
+                where,
+                f"`{sent.name}` is sent when its data changes, expected no transition, order, count or automaton that"
+                " names it",
+                Choice("leave `, send: change` out, or this", tuple(ways)),
+            )
+
+
+def _with_every_tick(hint: str, message: rsc.Message, *, is_choice: bool = False) -> Removal:
+    return Removal(hint, part_of(message).find(",", "send", ":", "change"), is_choice)
+
+
+def _readers(base: rsc.Base) -> Iterator[Finding]:
+    """Report expressions outside of requirements that read a requirement automaton, also through definitions."""
+    found = instances(base)
+    for instance in found:
+        for transition, _ in instance.transitions:
+            if isinstance(transition, rsc.TauTransition) and transition.guard is not None:
+                yield from _reading(transition.guard, found.expanded(transition.guard, instance), "a guard")
+    for statement in found.statements(rsc.ProvideStatement):
+        condition = statement.element.condition
+        if condition is not None:
+            expanded = found.expanded(condition, statement.within)
+            yield from _reading(condition, expanded, "the condition of a provide statement")
+    for _, transition in transitions(base):
+        for assignment in transition.assignments:
+            yield from _reading(assignment.value, assignment.value, "an assignment")
+
+
+def _reading(expression: ex.Expression | None, expanded: ex.Expression | None, what: str) -> Iterator[Finding]:
+    items = (access.item for access in accesses(expanded))
+    read = next((item for item in items if isinstance(item, rsc.RequirementState)), None)
+    if read is not None and expression is not None:
+        name = f"{written(read.eContainer().name)}.{written(read.name)}"
+        yield Finding(
+            expression,
+            f"{what} reads `{name}`, a state of a requirement, expected states and variables of components: the robot"
+            " does not know what is required of it",
+            "say it in a requirement, or remember it in a state of a component",
+        )

@@ -1,0 +1,83 @@
+"""Rules `data-provisioning` (thesis 4.5.1) and `requirement-target` on communications that the controller sends."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.language.checks.definitions import communication_of, restricted_events, statements
+from robosc.language.checks.mending import Choice, Removal, Replacement, part_of
+from robosc.language.checks.rule import Finding, rule
+from robosc.model import robosc as rsc
+from robosc.model.semantics.communication import sent
+from robosc.model.semantics.naming import written
+from robosc.model.semantics.typing import NONE, provided_data_type
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+#: Part of a hint for users who confuse the directions of messages.
+_DIRECTIONS = (
+    "or, if the controller sends it, declare it as `incoming message {}`: incoming is what a component receives"
+)
+_NAMELESS = "name what it restricts, or leave the requirement out"
+
+
+def _as_incoming(communication: rsc.CommunicationType) -> Replacement:
+    name = written(communication.name)
+    return Replacement(f"declare `incoming message {name}`", "incoming", part_of(communication).find("outgoing"))
+
+
+@rule("data-provisioning")
+def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
+    """Each `provide` names a communication that the controller sends with data."""
+    for statement in statements(rsc.ProvideStatement, base):
+        communication = communication_of(statement.communicationType)
+        if communication is not None and sent(communication) is None:
+            yield Finding(
+                statement.communicationType,
+                f"data is provided to `{communication.name}`, which the controller receives, expected a communication"
+                " that it sends: an incoming message, a service or an action",
+                Choice(
+                    "leave the provide statement out: the data of an outgoing message comes from its component;"
+                    f" {_DIRECTIONS.format(communication.name)}",
+                    (Removal("leave the provide statement out", statement), _as_incoming(communication)),
+                ),
+            )
+        elif communication is not None and provided_data_type(communication) == NONE:
+            what = "it" if isinstance(communication, rsc.Message) else "its request"
+            yield Finding(
+                statement.data or statement,
+                f"data is provided to `{communication.name}`, expected none: {what} is declared with the type `none`",
+                Removal("leave the provide statement out: there is no data to send along", statement, is_choice=False),
+            )
+
+
+@rule("requirement-target")
+def requirement_target(base: rsc.Base) -> Iterator[Finding]:
+    """Each requirement restricts at least one communication, and only those that the controller sends."""
+    for events in restricted_events(base):
+        if events is not None and not events.events:
+            message = "the requirement restricts nothing, expected at least one event in the braces"
+            yield Finding(events, message, Removal(_NAMELESS, events.eContainer()))
+    for requirement in statements(rsc.CommunicationRequirement, base):
+        if requirement.target is None:
+            continue
+        if not requirement.target.communicationTypes:
+            yield Finding(
+                requirement.target,
+                "the requirement restricts nothing, expected at least one message, service or action in the braces",
+                Removal(_NAMELESS, requirement),
+                relies_on=requirement,
+            )
+        for reference in requirement.target.communicationTypes:
+            communication = communication_of(reference)
+            if communication is not None and sent(communication) is None:
+                yield Finding(
+                    reference,
+                    f"`{communication.name}` comes from its component whenever that sends it, expected a communication"
+                    " that the controller starts: an incoming message, a service or an action",
+                    Choice(
+                        f"restrict what the controller does about it; {_DIRECTIONS.format(communication.name)}",
+                        (_as_incoming(communication),),
+                    ),
+                )

@@ -1,0 +1,274 @@
+"""Data of a robot or library that the supervisor needs but does not support, and where to report it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+from robosc.language.checks.definitions import unit_of
+from robosc.language.checks.facts import fact
+from robosc.language.checks.libraries import instances, reachable
+from robosc.language.checks.rule import Finding
+from robosc.model import expression as ex
+from robosc.model import robosc as rsc
+from robosc.model.semantics.cone_of_influence import (
+    LARGEST_TABLE,
+    ConeOfInfluence,
+    Reason,
+    accesses,
+    conditions,
+    cone_of_influence,
+)
+from robosc.model.semantics.inputs import Computed, Data
+from robosc.model.semantics.operators import COMPARISONS, FUNCTIONS, Rule
+from robosc.model.semantics.typing import (
+    BOOLEAN,
+    DOUBLE,
+    INTEGER,
+    STRING,
+    UNKNOWN,
+    EnumType,
+    Types,
+    declared_type,
+    type_of,
+    value_type,
+)
+from robosc.model.semantics.walks import fold, operands
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from robosc.language.checks.mending import Hint
+    from robosc.model.semantics.cone_of_influence import Assigned, Reading
+    from robosc.model.semantics.inputs import Told
+    from robosc.model.semantics.instances import Instance, Instances, InstanceVariable
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Unsupported element in the cone of influence, and the first reason why the supervisor needs it."""
+
+    element: ex.Located
+    reason: Reason
+    message: str
+    hint: Hint
+
+
+#: Maximum size of an expression after `abs`, `min` and `max` are expanded into cases for C and CIF.
+_LARGEST_CHOICE = 1 << 12
+#: Yields the faults of one kind in a cone of influence.
+Search: TypeAlias = "Callable[[Instances, ConeOfInfluence], Iterator[Fault]]"
+
+
+def supervised_faults(base: rsc.Base, search: Search) -> Iterator[Finding]:
+    """Yield a finding for each fault of a base that is not a fault of one of its libraries.
+
+    The finding is at the element if it is in the base's text. Otherwise, it is at the reference in this text that makes
+    the supervisor need the element.
+    """
+    reported = set()
+    result = fact(_cone, base)
+    of_libraries: set[ex.Located] | None = None
+    for fault in search(instances(base), result):
+        if of_libraries is None:
+            of_libraries = {fault.element for library in reachable(base) for fault in _faults(library, search)}
+        if fault.element in of_libraries:
+            continue
+        unit = _unit(fault, base)
+        place = fault.element if unit is base else _reference(base, fault.reason, result)
+        if (place, fault.element) not in reported:
+            reported.add((place, fault.element))
+            said = fault.hint if isinstance(fault.hint, str) else fault.hint.hint
+            hint = fault.hint if unit is base else f"in library `{unit.name}`, {said}"
+            yield Finding(place, fault.message, hint)
+
+
+def _unit(fault: Fault, base: rsc.Base) -> rsc.Base:
+    """Return the robot or library whose text contains the element.
+
+    An expanded element has the place of its original.
+    """
+    unit = unit_of(fault.element)
+    if isinstance(unit, rsc.Base):
+        return unit
+    return base if fault.reason.within is None else fault.reason.within.unit
+
+
+def can_be_needed(variable: rsc.Variable) -> bool:
+    """Return whether the supervisor can hold values of the variable's type, or the type is unknown."""
+    found = declared_type(variable.type)
+    return found in {BOOLEAN, INTEGER, UNKNOWN} or isinstance(found, EnumType)
+
+
+def readings(result: ConeOfInfluence) -> Iterator[Reading]:
+    """Return every reading of an event's data that the supervisor computes with.
+
+    Readings of unsupported variables and assignments of a wrong type are left out: these have findings of their own.
+    """
+    unfit = {
+        assigned.value
+        for assigned in result.computations
+        if assigned.variable is not None and not (can_be_needed(assigned.variable.variable) and _fits(assigned))
+    }
+    return (reading for reading in result.readings if reading.whole not in unfit)
+
+
+def _fits(assigned: Assigned) -> bool:
+    assert assigned.variable is not None
+    wanted = declared_type(assigned.variable.type)
+    value = assigned.assignment.value
+    found = UNKNOWN if value is None else type_of(value)
+    return UNKNOWN in {wanted, found} or found == wanted
+
+
+def _faults(base: rsc.Base, search: Search) -> Iterator[Fault]:
+    return search(instances(base), fact(_cone, base))
+
+
+def _cone(base: rsc.Base) -> ConeOfInfluence:
+    return cone_of_influence(instances(base))
+
+
+def _reference(base: rsc.Base, reason: Reason, result: ConeOfInfluence) -> rsc.Access | rsc.ErrorReason:
+    while reason.within is not None and reason.within.unit is not base and reason.variable is not None:
+        reason = result.variables[reason.variable]
+    return reason.access
+
+
+class _Limit(NamedTuple):
+    """Maximum number of value combinations of a computation, with the repair for a larger one."""
+
+    what: str
+    most: int
+    repair: str
+
+
+_COMPARISON = _Limit(
+    "this comparison of doubles or strings", LARGEST_TABLE, "compare integers, or give the integers smaller ranges"
+)
+#: Synthesis takes seconds up to this limit. The decision diagram of a product has a node for many combinations.
+_PRODUCT = _Limit(
+    "this product", 1 << 22, "give the integers smaller ranges, or let an enum stand for what matters about them"
+)
+
+
+class _Where(NamedTuple):
+    """Context of an expression: its instance, the variable that it is assigned to, and its inputs."""
+
+    within: Instance | None
+    variable: InstanceVariable | None
+    inputs: Mapping[ex.Expression, Told | None]
+
+
+def table_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
+    """Report comparisons of doubles or strings, and products, with too many value combinations."""
+    for expression, where in _computed(instances, result):
+        yield from _in_expression(instances, expression, where)
+
+
+def _computed(instances: Instances, result: ConeOfInfluence) -> Iterator[tuple[ex.Expression, _Where]]:
+    """Yield the expressions that the supervisor computes, each with its context."""
+    inputs: dict[ex.Expression | None, dict[ex.Expression, Told | None]] = {}
+    for reading in result.readings:
+        inputs.setdefault(reading.whole, {})[reading.part] = reading.told
+    for condition in conditions(instances):
+        yield condition.expression, _Where(condition.within, None, inputs.get(condition.expression, {}))
+    for assigned in result.computations:
+        if assigned.variable is not None and can_be_needed(assigned.variable.variable) and assigned.value is not None:
+            yield assigned.value, _Where(assigned.instance, assigned.variable, inputs.get(assigned.value, {}))
+
+
+def function_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
+    """Report functions of doubles or strings, and functions with too many cases, in the supervisor.
+
+    An access to a double, a string or an array has a finding of its own.
+    """
+    for expression, where in _computed(instances, result):
+        types, cases = Types(value_type(expression)), dict[ex.Expression | None, int]()
+        fold(_cases, expression, memo=cases)
+        for part in _supervised_parts(expression, where):
+            read = next(accesses(part), None) if isinstance(part, ex.FunctionCall) else None
+            if read is None or not isinstance(part, ex.FunctionCall) or FUNCTIONS[part.function].rule is Rule.INTEGER:
+                continue
+            reason = Reason(read, where.within, where.variable)
+            kinds = {types(access) for access in accesses(part)}
+            if not kinds <= {BOOLEAN, INTEGER} and not any(isinstance(kind, EnumType) for kind in kinds):
+                continue
+            given = {types(part), *map(types, part.arguments)}
+            foreign = "doubles" if DOUBLE in given else "strings" if STRING in given else ""
+            if foreign:
+                message = f"`{part.function}` of {foreign} is nothing that the supervisor computes, expected integers"
+                yield Fault(part, reason, message, "compute it of `value` in an enum's rule, and compare the enum")
+            elif cases[part] > _LARGEST_CHOICE >= max(cases[argument] for argument in part.arguments):
+                message = f"this has more than {_LARGEST_CHOICE} cases when `abs`, `min` and `max` are written out"
+                yield Fault(part, reason, message, "let a variable remember a part of it")
+
+
+def supervised_accesses(instances: Instances, result: ConeOfInfluence) -> Iterator[tuple[rsc.Access, _Where]]:
+    """Yield each access in the expressions that the supervisor computes itself, with its context."""
+    for expression, where in _computed(instances, result):
+        for part in _supervised_parts(expression, where):
+            if isinstance(part, rsc.Access):
+                yield part, where
+
+
+def _supervised_parts(expression: ex.Expression, where: _Where) -> Iterator[ex.Expression]:
+    """Yield the parts of an expression that the supervisor computes, without those that the node computes for it."""
+    pending = [expression]
+    while pending:
+        part = pending.pop()
+        if not isinstance(where.inputs.get(part), Computed):
+            yield part
+            pending += reversed(operands(part))
+
+
+def _cases(expression: ex.Expression | None, inside: list[int]) -> int:
+    """Return the size of an expression after its functions are expanded into cases."""
+    size = 1 + sum(inside)
+    return (
+        3 * size if isinstance(expression, ex.FunctionCall) and expression.function in {"abs", "min", "max"} else size
+    )
+
+
+def _in_expression(instances: Instances, expression: ex.Expression | None, where: _Where) -> Iterator[Fault]:
+    types = Types(value_type(expression) if expression else None)
+    reads: dict[ex.Expression | None, bool] = {}
+    fold(lambda part, inside: isinstance(part, rsc.Access) or any(inside), expression, memo=reads)
+    pending = [expression]
+    while pending:
+        part = pending.pop()
+        if part is not None and isinstance(where.inputs.get(part), Computed):
+            continue
+        if isinstance(part, COMPARISONS) and {DOUBLE, STRING} & {types(part.left), types(part.right)}:
+            yield from _too_many(instances, part, _COMPARISON, where)
+        elif isinstance(part, ex.Multiplication) and reads[part.left] and reads[part.right]:
+            yield from _too_many(instances, part, _PRODUCT, where)
+        else:
+            pending += reversed(operands(part))
+
+
+def _too_many(instances: Instances, expression: ex.BinaryExpression, limit: _Limit, where: _Where) -> Iterator[Fault]:
+    ranges: dict[object, int] = {}
+    reads = list(accesses(expression))
+    for access in reads:
+        variable, data = instances.variable(access, where.within), where.inputs.get(access)
+        if variable is not None:
+            ranges[variable] = _size(variable.type)
+        elif isinstance(data, Data):
+            ranges[data] = _size(data.type)
+    count = math.prod(ranges.values())
+    if count > limit.most:
+        yield Fault(
+            expression,
+            Reason(reads[0], where.within, where.variable),
+            f"{limit.what} depends on {count} combinations of integer values, expected at most {limit.most}",
+            limit.repair,
+        )
+
+
+def _size(declared: rsc.DataType | None) -> int:
+    """Return the number of values; 1 for a type without a range, which has a finding of its own."""
+    if not isinstance(declared, rsc.IntegerDataType) or declared.minimum is None or declared.maximum is None:
+        return 1
+    return max(declared.maximum - declared.minimum + 1, 1)

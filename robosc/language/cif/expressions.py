@@ -1,0 +1,221 @@
+"""From the flat expressions of the grammar to typed expressions of the sct metamodel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from robosc.language.cif.faults import CifFaultError, construct
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.cif_types import BOOLEAN, FOREIGN, OPERATORS, Type, bounded, combined, joined, shown
+from robosc.model.semantics.walks import copied, parts
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+#: Words before an operand that bind like unary operators.
+_UNARY = ("not", "negate", "plus")
+#: Words before an operand that are operators if another operand precedes them.
+_OPENINGS = {"-": "negate", "+": "plus", "case": "first case", "else": "first else"}
+_LEVELS = {word: level for word, (level, _) in OPERATORS.items()} | FOREIGN
+
+
+class Typed(NamedTuple):
+    """An expression with its type and the object of the grammar from which it was created.
+
+    The type of an automaton is its plant; an automaton has a value only in a `switch`.
+    """
+
+    read: Any
+    expression: Any
+    type: Type | Any
+
+
+@dataclass
+class _Open:
+    """An incomplete operator, `if` or `switch`, with its alternatives so far."""
+
+    word: str
+    read: Any
+    switched: Typed | None = None
+    conditions: list[Typed] = field(default_factory=list)
+    values: list[Typed] = field(default_factory=list)
+
+
+class ExpressionReader:
+    """Reads one expression from its tokens, operators without recursion (Dijkstra's shunting yard)."""
+
+    def __init__(
+        self, read: Any, value_of: Callable[[Any, sct.Plant | None], Typed], grow: Callable[[Any, int], None]
+    ) -> None:
+        """Read the expression.
+
+        `value_of` returns the value of an operand. Its second argument is the automaton of the `switch` if the operand
+        is a key.
+
+        `grow` is called with a place and the number of nodes added there beyond those of the text.
+        """
+        self._grow = grow
+        self._done: list[Typed] = []
+        self._open: list[_Open] = []
+        self._read = read
+        for word, token in _tokens(read):
+            if word is None:
+                self._done.append(value_of(token, self._switched()))
+            else:
+                self._take(word, token)
+        self._reduce(0)
+        if self._open:
+            raise CifFaultError(read, "syntax", f"`{self._open[-1].read.token}` is not closed", "end it with `end`")
+        [self.result] = self._done
+
+    def _switched(self) -> sct.Plant | None:
+        """Return the automaton of the innermost `switch` whose key is read next, or None."""
+        top = self._open[-1] if self._open else None
+        plant = top.switched.type if top is not None and top.word == "case" and top.switched else None
+        return plant if isinstance(plant, sct.Plant) else None
+
+    def _take(self, word: str, token: Any) -> None:
+        """Process a token that is not an operand."""
+        if word == "sample" or (word[0] + word[-1] == "<>" and word not in _LEVELS):
+            what = "distributions" if word == "sample" else "casts"
+            raise construct(token, what, "write a value of the type that is asked for")
+        if word in ("if", "switch", *_UNARY):
+            self._open.append(_Open(word, token))
+            return
+        level = _LEVELS.get(word, 0)
+        self._reduce(level)
+        top = self._open[-1] if self._open else _Open("", token)
+        if level:
+            if word in FOREIGN:
+                raise CifFaultError(token, "cif-construct", f"synthesis does not take the operator `{word}`")
+            if level == 1 and _LEVELS.get(top.word) == 1:
+                raise CifFaultError(token, "syntax", f"`{word}` and `{top.word}` are no chain", "write parentheses")
+            self._open.append(_Open(word, token))
+            return
+        self._alternative(top, word, token)
+
+    def _alternative(self, top: _Open, word: str, token: Any) -> None:
+        """Process a word of the innermost open `if` or `switch`."""
+        match top.word, word:
+            case (("if" | "elif"), ":"):
+                self._boolean(self._done[-1], "a condition is bool, this is {}")
+                top.conditions.append(self._done.pop())
+            case "switch", ":":
+                top.switched = self._done.pop()
+            case "case", ":":
+                assert top.switched is not None
+                top.conditions.append(self._is(top.switched, self._done.pop()))
+            case ":", ("elif" | "else" | "case") if word == "else" or (word == "case") == (top.switched is not None):
+                top.values.append(self._done.pop())
+            case "switch:", ("first case" | "first else"):
+                top.word = word.removeprefix("first ")
+                return
+            case "else", "end":
+                self._open.pop()
+                self._done.append(self._choice(top, self._done.pop()))
+                return
+            case ":", "end" if top.switched is not None:
+                self._open.pop()
+                # In CIF, the last case applies if no other one does.
+                top.conditions.pop()
+                self._done.append(self._choice(top, self._done.pop()))
+                return
+            case _:
+                raise CifFaultError(token, "syntax", f"`{token.token}` can't stand here")
+        top.word = "switch:" if top.word == "switch" else word
+
+    def _reduce(self, level: int) -> None:
+        """Complete the operators that bind at least as tightly as `level`, up to the innermost open construct."""
+        while self._open:
+            top = self._open[-1]
+            if top.word in _UNARY:
+                self._open.pop()
+                self._done.append(self._unary(top, self._done.pop()))
+            elif top.word in _LEVELS and _LEVELS[top.word] >= max(level, 1 + (level == 1)):
+                self._open.pop()
+                right, left = self._done.pop(), self._done.pop()
+                self._done.append(self._binary(top, left, right))
+            else:
+                return
+
+    def _binary(self, top: _Open, left: Typed, right: Typed) -> Typed:
+        for operand in (left, right):
+            if isinstance(operand.type, sct.Plant):
+                raise CifFaultError(operand.read, "type", "an automaton is no value", "name one of its locations")
+        kind = _checked(top.read, combined, top.word, left.type, right.type)
+        if top.word == "mod":
+            arguments = [left.expression, right.expression]
+            return Typed(top.read, ex.FunctionCall(function="mod", arguments=arguments), kind)
+        made = OPERATORS[top.word][1](left=left.expression, right=right.expression)
+        return Typed(top.read, made, kind)
+
+    def _unary(self, top: _Open, operand: Typed) -> Typed:
+        if top.word == "not":
+            self._boolean(operand, "`not` does not apply to {}")
+            return Typed(top.read, ex.Negation(operand=operand.expression), BOOLEAN)
+        if not isinstance(operand.type, range):
+            raise CifFaultError(top.read, "type", f"a sign does not apply to {shown(operand.type)}")
+        if top.word == "plus":
+            return operand
+        values = range(1 - operand.type.stop, 1 - operand.type.start)
+        return Typed(top.read, ex.UnaryMinus(operand=operand.expression), _checked(top.read, bounded, "-", values))
+
+    def _is(self, switched: Typed, key: Typed) -> Typed:
+        """Return the condition that the value of a `switch` equals a key."""
+        if isinstance(switched.type, sct.Plant):
+            return key  # The key is a location, which is true while the automaton is in it.
+        _checked(key.read, combined, "=", switched.type, key.type)
+        self._grow(key.read, sum(1 for _ in parts(switched.expression)))
+        return Typed(key.read, ex.Equation(left=copied(switched.expression), right=key.expression), BOOLEAN)
+
+    @staticmethod
+    def _boolean(operand: Typed, problem: str) -> None:
+        if operand.type != BOOLEAN:
+            what = "an automaton" if isinstance(operand.type, sct.Plant) else shown(operand.type)
+            raise CifFaultError(operand.read, "type", problem.format(what))
+
+    @staticmethod
+    def _choice(top: _Open, otherwise: Typed) -> Typed:
+        made, kind = otherwise.expression, otherwise.type
+        for condition, value in reversed(list(zip(top.conditions, top.values, strict=True))):
+            kind = _checked(top.read, joined, value.type, kind)
+            made = ex.Conditional(condition=condition.expression, then=value.expression, otherwise=made)
+        return Typed(top.read, made, kind)
+
+
+def _tokens(read: Any) -> Iterator[tuple[str | None, Any]]:
+    """Yield the tokens of an expression with their words; operands have None. Signs are marked as unary."""
+    further = [(None, read.first), *((other.operator, other.operand) for other in read.others)]
+    for operator, operand in further:
+        if operator is not None:
+            yield operator.token, operator
+        for opening in operand.openings:
+            yield _OPENINGS.get(opening.token, opening.token), opening
+        yield None, operand.value
+        yield from ((closing.token, closing) for closing in operand.closings)
+
+
+def named(read: Any) -> Iterator[Any]:
+    """Yield the names in an expression, except those that are keys of a `switch` by themselves."""
+    pending = [read]
+    while pending:
+        here = pending.pop()
+        for operand in (here.first, *(other.operand for other in here.others)):
+            value = operand.value
+            match type(value).__name__:
+                case "Parenthesis":
+                    pending.append(value.inner)
+                case "Call":
+                    pending += value.arguments
+                case "Reference" if "case" not in {opening.token for opening in operand.openings[-1:]}:
+                    yield value.name
+
+
+def _checked(read: Any, rule: Callable[..., Any], *given: Any) -> Any:
+    """Return the type by a rule; a TypeError becomes a fault of this place."""
+    try:
+        return rule(*given)
+    except TypeError as fault:
+        raise CifFaultError(read, "type", str(fault)) from None

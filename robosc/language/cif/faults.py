@@ -1,0 +1,62 @@
+"""Faults of a specification, with their places."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from robosc.base.diagnostics import Severity
+
+if TYPE_CHECKING:
+    from robosc.base.diagnostics import Diagnostic, Repair
+    from robosc.language.text import Text
+    from robosc.model.places import Place
+
+
+class CifFaultError(Exception):
+    """A fault in a text: the object of the grammar, the rule, the message, and the repair or hint."""
+
+    def __init__(self, read: Any, rule: str, message: str, repair: Repair | str | None = None) -> None:
+        super().__init__(message)
+        self.read = read
+        self.rule = rule
+        self.message = message
+        self.repair = repair
+
+    def finding(self) -> Diagnostic:
+        """Return the fault as a finding in its text."""
+        return text_of(self.read).error(self.rule, *span(self.read), self.message, self.repair)
+
+    def warning(self) -> Diagnostic:
+        """Return the fault as a finding that leaves the model usable."""
+        return replace(self.finding(), severity=Severity.WARNING)
+
+
+#: Hints for constructs that a transformation of CIF's `cif2cif` eliminates.
+CHANNELS = "CIF's `cif2cif -t linearize-product` makes events without data of them"
+CONDITIONAL_UPDATES = "CIF's `cif2cif -t elim-if-updates` takes them out"
+SUPERVISORS = "CIF's `cif2cif -t relabel-supervisors-as-plants` makes plants of them"
+TAU = "CIF's `cif2cif -t elim-tau-event` gives it one: declare that as `uncontrollable`"
+
+
+def text_of(read: Any) -> Text:
+    """Return the text of an object of the grammar; the specification around it stores the text."""
+    while hasattr(read, "parent"):
+        read = read.parent
+    text: Text = read.whole_text
+    return text
+
+
+def span(read: Any) -> tuple[int, int]:
+    """Return the offsets of an object of the grammar in its text."""
+    return read._tx_position, read._tx_position_end  # noqa: SLF001 - textX has no public attribute for them
+
+
+def located(read: Any) -> Place:
+    """Return the place of an object of the grammar."""
+    return text_of(read).source(*span(read))
+
+
+def construct(read: Any, what: str, hint: str) -> CifFaultError:
+    """Return the fault of a construct that synthesis does not support, with the hint that removes it."""
+    return CifFaultError(read, "cif-construct", f"synthesis does not take {what}", hint)

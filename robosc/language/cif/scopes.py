@@ -1,0 +1,349 @@
+"""Names of a specification: groups, automata, instances of definitions, and their declarations.
+
+`Specification` declares all names and creates every instance of a definition. An instance is a scope like a group or an
+automaton, but its names are looked up around the definition. A declaration is a `Declared`. The element behind a
+parameter is looked up around the instance.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from robosc.base.diagnostics import Repair
+from robosc.language.cif.faults import CHANNELS, CifFaultError, construct, located
+from robosc.language.cif.parsing import identifier
+from robosc.language.explaining import closest
+from robosc.model import sct
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from robosc.base.diagnostics import Diagnostic
+    from robosc.model import expression as ex
+
+#: Maximum number of groups, automata and instances of a specification.
+_MOST = 20_000
+_LISTS = {
+    "Inputs": "names",
+    "Constants": "constants",
+    "Algebraics": "variables",
+    "Variables": "variables",
+    "Types": "types",
+}
+
+
+@dataclass(eq=False)
+class Declared:
+    """A named element; `kind` is the grammar rule of its declaration.
+
+    `read` is its own object of the grammar, and `outer` that of the statement with its type. `made` is the element of
+    the sct metamodel that was created for it.
+    """
+
+    kind: str
+    name: str
+    read: Any
+    outer: Any
+    scope: Scope
+    made: Any = None
+    #: Type of a variable.
+    type: Any = None
+    #: Fault for which a variable was not created.
+    fault: Any = None
+
+
+@dataclass(eq=False)
+class Argument:
+    """An argument of an instance: its expression, and the element that the expression names (`named`)."""
+
+    read: Any
+    scope: Scope
+    parameter: Any
+    named: Name | CifFaultError | None = None
+
+
+@dataclass(eq=False)
+class Scope:
+    """A group, an automaton, or an instance of a definition; `kind` is the kind of an automaton, None for a group.
+
+    `path` is its absolute name, and `around` the scope whose text contains it. `bodies` are the objects of the grammar
+    with its contents: several files can contribute to one group.
+    """
+
+    path: str
+    around: Scope | None
+    read: Any
+    kind: str | None = None
+    bodies: list[Any] = field(default_factory=list)
+    names: dict[str, Name] = field(default_factory=dict)
+    children: list[Scope] = field(default_factory=list)
+    events: list[Declared] = field(default_factory=list)
+    plant: sct.Plant | None = None
+    definition: Any = None
+    #: The enclosing scope by its absolute name.
+    parent: Scope | None = None
+
+    def absolute(self, name: str) -> str:
+        """Return the absolute name of an element in the scope."""
+        return f"{self.path}.{name}" if self.path else name
+
+    def declarations(self, *rules: str) -> Iterator[Any]:
+        """Yield the declarations of the scope by these rules of the grammar."""
+        for body in self.bodies:
+            for declaration in body.declarations:
+                if type(declaration).__name__ in rules:
+                    yield declaration
+
+
+Name: TypeAlias = "Declared | Argument | Scope | sct.Location | ex.EnumerationLiteral"
+
+
+def plain(identifier: str) -> str:
+    """Return an identifier without the dollar signs that distinguish it from keywords."""
+    return identifier.replace("$", "")
+
+
+def _meant(name: str, position: int, known: Iterable[str]) -> Repair | None:
+    """Return the repair that replaces one part of a name by the closest known name, or None if none is close."""
+    absolute = name[0] if name[0] in ".^" else ""
+    parts = name.lstrip(".^").split(".")
+    close = closest(parts[position], known, cutoff=0.7)
+    if close is None:
+        return None
+    whole = absolute + ".".join([*parts[:position], close, *parts[position + 1 :]])
+    return Repair(f"did you mean `{identifier(whole)}`?", identifier(whole))
+
+
+class Specification:
+    """All names of a specification. `findings` are the faults of their declarations."""
+
+    def __init__(self) -> None:
+        self.root = Scope("", None, None)
+        #: The specification of the file that imports all others.
+        self.first: Any = None
+        self.findings: dict[Diagnostic, None] = {}
+        self._instances: list[tuple[Any, Scope, Scope]] = []
+        self._scopes = 0
+
+    def add(self, specification: Any) -> None:
+        """Declare the names of a file."""
+        scope = self.root
+        self.first = self.first or specification
+        try:
+            for declaration in specification.declarations:
+                if type(declaration).__name__ == "Namespace":
+                    for part in plain(declaration.name.text).lstrip(".^").split("."):
+                        scope = self._inner(part, scope, declaration)
+        except CifFaultError as fault:
+            self.findings[fault.finding()] = None
+            return  # Without its namespace, the file has no scope for its declarations.
+        scope.bodies.append(specification)
+        self._declare(scope, specification)
+
+    def make_instances(self) -> None:
+        """Declare the contents of the instances of definitions."""
+        for read, around, scope in self._instances:  # `_instantiate` extends the list during the loop.
+            with self.reporting():
+                self._instantiate(read, around, scope)
+        # The outermost instance comes first, so that each argument is looked up only once.
+        for _, _, scope in self._instances:
+            for argument in scope.around.names.values() if scope.around else ():
+                if isinstance(argument, Argument) and not _is_algebraic(argument):
+                    try:
+                        argument.named = self.resolved(argument)
+                    except CifFaultError as fault:
+                        argument.named = fault
+
+    @contextmanager
+    def reporting(self) -> Iterator[None]:
+        """Turn a fault within the block into a finding, one for all instances of a definition."""
+        try:
+            yield
+        except CifFaultError as fault:
+            self.findings[fault.finding()] = None
+
+    def find(self, read: Any, scope: Scope) -> Name:
+        """Return the element that a name of the grammar refers to in a scope. Raises CifFaultError."""
+        return self.lookup(plain(read.text), read, scope)
+
+    def lookup(self, name: str, read: Any, scope: Scope) -> Name:
+        """Return the element that a name as text refers to in a scope. Raises CifFaultError."""
+        first, *others = name.lstrip(".^").split(".")
+        known: Scope | None = self._beginning(name, scope)
+        found: Name | None = None
+        seen: set[str] = set()
+        while known is not None and found is None:
+            found = known.names.get(first)
+            seen.update(known.names)
+            known = None if name[0] in ".^" else known.around
+        if found is None:
+            repair = _meant(name, 0, seen)
+            if repair is None and name[0] == "." and first in self.root.names:
+                repair = Repair(
+                    f"in a definition `.` begins there; from the file's root it is `^{name[1:]}`", f"^{name[1:]}"
+                )
+            raise CifFaultError(read, "unresolved-reference", f"there is no `{first}` here", repair)
+        whole = first
+        for position, part in enumerate(others, 1):
+            inside = self.resolved(found)
+            if not isinstance(inside, Scope):
+                raise CifFaultError(
+                    read, "unresolved-reference", f"`{whole}` is no group and no automaton: nothing is in it"
+                )
+            if part not in inside.names:
+                message, repair = f"there is no `{part}` in `{inside.path}`", _meant(name, position, inside.names)
+                raise CifFaultError(read, "unresolved-reference", message, repair)
+            found, whole = inside.names[part], f"{whole}.{part}"
+        return self.resolved(found)
+
+    def _beginning(self, name: str, scope: Scope) -> Scope:
+        """Return the scope in which the search for a name begins.
+
+        That is the root for `^`, the definition around the scope (or the root) for `.`, and otherwise the scope itself.
+        """
+        if name[0] == "^":
+            return self.root
+        while name[0] == "." and scope.definition is None and scope.around is not None:
+            scope = scope.around
+        return scope
+
+    def resolved(self, found: Name) -> Name:
+        """Return the element behind a parameter that is not algebraic, through all instances."""
+        while isinstance(found, Argument) and not _is_algebraic(found):
+            if isinstance(found.named, CifFaultError):
+                raise found.named
+            if found.named is not None:
+                return found.named
+            value = found.read.first.value
+            is_name = not found.read.others and not found.read.first.openings and not found.read.first.closings
+            if not is_name or type(value).__name__ != "Reference" or value.suffix:
+                raise CifFaultError(found.read, "type", "the parameter wants a name")
+            found = self.find(value.name, found.scope)
+        return found
+
+    # Declarations
+
+    def _declare(self, scope: Scope, body: Any) -> None:
+        for declaration in body.declarations:
+            with self.reporting():
+                self._declare_one(scope, declaration)
+
+    def _declare_one(self, scope: Scope, read: Any) -> None:
+        rule = type(read).__name__
+        match rule:
+            case "Group":
+                group = self._inner(plain(read.name), scope, read)
+                group.bodies.append(read)
+                self._declare(group, read)
+            case "Automaton":
+                self._automaton(self._scope(plain(read.name), scope, read), read)
+            case "Instance":
+                made = self._scope(plain(read.name), scope, read, bare=True)
+                self._instances.append((read, scope, made))
+            case "Continuous":
+                raise construct(read, "continuous variables", "leave them to simulation, or model time by events")
+            case "Function":
+                raise construct(read, "functions", "write an algebraic variable for what it computes")
+            case _:
+                self._declare_names(scope, read, rule)
+
+    def _declare_names(self, scope: Scope, read: Any, rule: str) -> None:
+        """Declare the named elements that are neither groups nor automata."""
+        match rule:
+            case "GroupDefinition" | "AutomatonDefinition" | "Enumeration":
+                whole = self._name(rule, read, read, scope)
+                for literal in read.literals if rule == "Enumeration" else ():
+                    self._name("Literal", literal, whole, scope)
+            case "Events":
+                for name in read.names:
+                    scope.events.append(self._name(rule, name, read, scope))
+                if read.type is not None:
+                    raise construct(read, "channels", CHANNELS)
+            case _ if rule in _LISTS:
+                for declaration in getattr(read, _LISTS[rule]):
+                    self._name(rule, declaration, read, scope)
+
+    @staticmethod
+    def _name(rule: str, read: Any, outer: Any, scope: Scope) -> Declared:
+        declared = Declared(rule, plain(read.name), read, outer, scope)
+        _once(scope, declared.name, read)
+        scope.names[declared.name] = declared
+        return declared
+
+    def _inner(self, name: str, scope: Scope, read: Any) -> Scope:
+        """Return the group of a name; contributions of several texts to one group are merged."""
+        known = scope.names.get(name)
+        if not isinstance(known, Scope) or known.kind is not None or known.definition is not None:
+            known = self._scope(name, scope, read, bare=True)
+        return known
+
+    def _scope(self, name: str, scope: Scope, read: Any, *, bare: bool = False) -> Scope:
+        _once(scope, name, read)
+        made = Scope(scope.absolute(name), scope, read, parent=scope)
+        self._scopes += 1
+        if self._scopes > _MOST:
+            raise CifFaultError(read, "cif-construct", f"there are more than {_MOST} groups, automata and instances")
+        scope.names[name] = made
+        scope.children.append(made)
+        if not bare:
+            made.bodies.append(read)
+        return made
+
+    def _automaton(self, scope: Scope, read: Any) -> None:
+        """Declare an automaton or an instance of one, including its locations, which are names too."""
+        scope.kind = read.kind or ""
+        made = sct.PlantKind.requirement if read.kind == "requirement" else sct.PlantKind.behaviour
+        scope.plant = sct.Plant(name=scope.path, kind=made, source=located(scope.read))
+        self._declare(scope, read)
+        for number, location in enumerate(read.locations):
+            name = plain(location.name) if location.name else "L"
+            element = sct.Location(name=name, initial=False, marked=False, source=located(location))
+            scope.plant.locations.append(element)
+            if location.name:
+                with self.reporting():
+                    _once(scope, name, location)
+                scope.names[name] = element
+            elif len(read.locations) > 1:
+                element.name = f"L{number}"
+                with self.reporting():
+                    message = "a location without a name is the only one"
+                    raise CifFaultError(location, "cif-declaration", message, "give it a name")
+
+    def _instantiate(self, read: Any, around: Scope, scope: Scope) -> None:
+        found = self.find(read.definition, around)
+        if not isinstance(found, Declared) or found.kind not in ("GroupDefinition", "AutomatonDefinition"):
+            raise CifFaultError(read.definition, "type", f"`{read.definition.text}` is no definition")
+        definition = found.read
+        inside: Scope | None = around
+        while inside is not None:
+            if inside.definition is definition:
+                raise CifFaultError(read, "cyclic-definition", f"`{plain(definition.name)}` is made of itself")
+            inside = inside.parent
+        parameters = [(parameter, name) for parameter in definition.parameters for name in parameter.names]
+        if len(parameters) != len(read.arguments):
+            wanted = f"{len(parameters)} argument{'' if len(parameters) == 1 else 's'}"
+            raise CifFaultError(
+                read, "argument", f"`{read.definition.text}` takes {wanted}, found {len(read.arguments)}"
+            )
+        scope.bodies.append(definition)
+        scope.definition = definition
+        # Names in the definition are looked up around the definition. Its parameters take precedence.
+        inner = Scope(scope.path, found.scope, read)
+        for (parameter, name), argument in zip(parameters, read.arguments, strict=True):
+            inner.names[plain(name.name)] = Argument(argument, around, parameter)
+        scope.around = inner
+        if found.kind == "AutomatonDefinition":
+            self._automaton(scope, definition)
+        else:
+            self._declare(scope, definition)
+
+
+def _is_algebraic(argument: Argument) -> bool:
+    return type(argument.parameter).__name__ == "AlgebraicParameter"
+
+
+def _once(scope: Scope, name: str, read: Any) -> None:
+    if name in scope.names:
+        raise CifFaultError(read, "cif-declaration", f"there are two of the name `{name}`", "rename one of them")

@@ -1,0 +1,589 @@
+"""From the automata of a specification to an sct model with the semantics of CIF's synthesis.
+
+Implicit rules of CIF's synthesis become explicit. An automaton that monitors an event stays in its location if it has
+no edge for the event. A requirement automaton monitors all of its events, and its restrictions become requirements on
+its locations. A requirement forbids each edge that would assign a value out of range. An input variable becomes a
+variable to which an uncontrollable event assigns any value.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from robosc.base.diagnostics import Repair
+from robosc.language.cif import plant_invariants
+from robosc.language.cif.faults import (
+    CHANNELS,
+    CONDITIONAL_UPDATES,
+    SUPERVISORS,
+    TAU,
+    CifFaultError,
+    construct,
+    located,
+    span,
+    text_of,
+)
+from robosc.language.cif.parsing import identifier
+from robosc.language.cif.scopes import Declared, Scope, Specification, plain
+from robosc.language.cif.values import Values, computed_from_itself, constant_value, literal
+from robosc.language.explaining import closest
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.semantics.cif_types import Type, contains, overlap, shown
+from robosc.model.semantics.domains import domain
+from robosc.model.semantics.edges import edges_by_event
+from robosc.model.semantics.naming import Names
+from robosc.model.semantics.printing import conjunction, disjunction
+from robosc.model.semantics.walks import copied
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+
+@dataclass
+class _Taken:
+    """An edge of the text for one of its events.
+
+    `fits` has the condition under which each variable stays in range.
+    """
+
+    location: sct.Location
+    event: sct.Event
+    guard: ex.Expression | None
+    fits: dict[sct.DiscreteVariable, ex.Expression]
+    updates: list[tuple[sct.DiscreteVariable, ex.Expression, Any]]
+    target: sct.Location
+    read: Any
+
+
+def to_sct(names: Specification, name: str, *, supervised: bool = False) -> sct.SupervisoryControlModel:
+    """Return the sct model of a specification; its faults are added to the findings of `names`.
+
+    If the specification may be `supervised`, supervisor automata become plants.
+    """
+    return _Transformation(names, name, supervised=supervised).model
+
+
+class _Transformation:
+    def __init__(self, names: Specification, name: str, *, supervised: bool) -> None:
+        self._names = names
+        self._supervised = supervised
+        self._values = Values(names)
+        self.model = sct.SupervisoryControlModel(name=name)
+        self._controllable: dict[sct.Event, Declared] = {}
+        self._exclusions: dict[sct.Event, list[tuple[Any, ex.Expression]]] = {}
+        self._plant_invariants: list[tuple[Any, ex.Expression]] = []
+        scopes = list(_inside(names.root))
+        for scope in scopes:
+            self._declare(scope)
+        for scope in scopes:
+            with names.reporting():
+                self._fill(scope)
+        for scope in scopes:
+            with names.reporting():
+                self._predicates(scope)
+        self._keep_invariants([scope.plant for scope in scopes if scope.plant])
+        self._exclude()
+        used = {edge.event for scope in scopes if scope.plant for edge in _edges(scope.plant)}
+        for scope in scopes:
+            self._keep(scope, used)
+        self._enumerations()
+        self._identify()
+        if not any(plant.kind != sct.PlantKind.requirement for plant in self.model.plants) and not names.findings:
+            with names.reporting():
+                hint = "name one automaton `plant` at least"
+                raise CifFaultError(names.first, "cif-construct", "there is no plant", hint)
+
+    # Declarations
+
+    def _declare(self, scope: Scope) -> None:
+        """Create the events, variables and inputs of a scope."""
+        if scope.kind == "supervisor" and not self._supervised:
+            with self._names.reporting():
+                raise construct(scope.read, "supervisor automata", SUPERVISORS)
+        if scope.kind == "":
+            with self._names.reporting():
+                raise construct(scope.read, "automata of no kind", "write `plant` or `requirement` before it")
+        for declared in scope.events:
+            control = declared.outer.control
+            kind = sct.EventKind.plain
+            event = sct.Event(
+                name=declared.name, controllable=control == "controllable", kind=kind, source=located(declared.read)
+            )
+            declared.made = event
+            self._controllable[event] = declared
+        for known in scope.names.values():
+            if isinstance(known, Declared) and known.kind in ("Variables", "Inputs"):
+                # Until the type is known, only expressions in the type itself can read the variable.
+                known.fault = computed_from_itself(known)
+                try:
+                    self._variable(known, scope)
+                except CifFaultError as fault:
+                    known.fault = fault
+                    with self._names.reporting():
+                        raise
+
+    def _plant(self, scope: Scope) -> sct.Plant:
+        """Return the plant of a scope; a group has one if it declares events or inputs."""
+        if scope.plant is None:
+            scope.plant = sct.Plant(name=scope.path, kind=sct.PlantKind.behaviour)
+            scope.plant.locations.append(sct.Location(name="L", initial=True, marked=True))
+        return scope.plant
+
+    def _variable(self, declared: Declared, scope: Scope) -> None:
+        declared.type = self._values.declared_type(declared.outer.type, scope)
+        if declared.type == "int":
+            raise construct(declared.outer.type, "an int without range", "write `int[lowest..highest]`")
+        plant = self._plant(scope)
+        source = located(declared.read)
+        made = sct.DiscreteVariable(name=declared.name, type=_type(declared.type), source=source)
+        plant.variables.append(made)
+        declared.made = made
+        if declared.kind == "Inputs":
+            value = sct.Input(name=declared.name, type=_type(declared.type), source=source)
+            plant.inputs.append(value)
+            event = sct.Event(
+                name=declared.name, controllable=False, kind=sct.EventKind.input, inputs=[value], source=source
+            )
+            plant.events.append(event)
+            for location in plant.locations:
+                edge = sct.Edge(event=event, target=location, source=source)
+                edge.updates.append(sct.Update(variable=made, value=sct.InputReference(input=value), source=source))
+                location.edges.append(edge)
+
+    def _keep(self, scope: Scope, used: set[sct.Event]) -> None:
+        """Add the scope's plant to the model, with those of its events that can happen."""
+        events = [declared.made for declared in scope.events if declared.made in used]
+        if events:
+            plant = self._plant(scope)
+            inputs = list(plant.events)
+            del plant.events[:]
+            plant.events.extend([*events, *inputs])
+        if scope.plant is not None:
+            self.model.plants.append(scope.plant)
+
+    def _identify(self) -> None:
+        """Give plants and enumerations unique names that are identifiers; `origin` is their absolute name."""
+        names = Names()
+        for plant in self.model.plants:
+            plant.origin = plant.name or None
+            plant.name = names.fresh(plant.name.replace(".", "_") or "specification")
+        names = Names()
+        for enumeration in self.model.enumerations:
+            around = f"{enumeration.origin}." if enumeration.origin else ""
+            enumeration.name = names.fresh(f"{around}{enumeration.name}".replace(".", "_"))
+
+    def _enumerations(self) -> None:
+        for scope in _inside(self._names.root):
+            for declared in scope.names.values():
+                if isinstance(declared, Declared) and declared.kind == "Enumeration" and declared.made is not None:
+                    self.model.enumerations.append(declared.made)
+
+    # Automata
+
+    def _fill(self, scope: Scope) -> None:
+        """Create the initial values and edges of an automaton."""
+        for declared in scope.names.values():
+            with self._names.reporting():
+                if isinstance(declared, Declared) and declared.kind in ("Constants", "Algebraics"):
+                    self._values.known(declared)
+                elif isinstance(declared, Declared) and declared.kind == "Variables" and declared.made is not None:
+                    self._initialise(declared, scope)
+        taken: list[_Taken] = []
+        initial = False
+        for location, element in _elements(scope):
+            initial = initial or type(element).__name__ == "LocationInitial"
+            if type(element).__name__ == "Edge":
+                with self._names.reporting():
+                    taken += self._taken(element, location, scope)
+        if _is_automaton(scope):
+            self._edges_of(taken, scope)
+            if not initial:
+                message = f"`{scope.path}` has no initial location"
+                raise CifFaultError(scope.read, "initial-state", message, "write `initial;` in one")
+
+    def _edges_of(self, taken: list[_Taken], scope: Scope) -> None:
+        """Create the edges and the requirements of an automaton."""
+        used = self._alphabet(taken, scope)
+        watched = self._events(scope, "Monitor")
+        if watched == []:
+            watched = used
+        requirement = scope.kind == "requirement"
+        for event in used:
+            edges = [edge for edge in taken if edge.event is event]
+            self._place(edges, event, scope, watching=requirement or event in (watched or ()))
+            if requirement and event not in (watched or ()):
+                self._require(edges, event, scope)
+
+    def _alphabet(self, taken: Iterable[_Taken], scope: Scope) -> list[sct.Event]:
+        """Return the events in which an automaton takes part."""
+        declared = self._events(scope, "Alphabet")
+        for edge in taken:
+            if declared is not None and edge.event not in declared:
+                message = f"`{edge.event.name}` is not in the alphabet of `{scope.path}`"
+                with self._names.reporting():
+                    raise CifFaultError(edge.read, "cif-declaration", message, "add it there")
+        return list(dict.fromkeys(edge.event for edge in taken)) if declared is None else declared
+
+    def _events(self, scope: Scope, rule: str) -> list[sct.Event] | None:
+        found = [self._event(name, scope) for declaration in scope.declarations(rule) for name in declaration.events]
+        return list(dict.fromkeys(found)) if any(True for _ in scope.declarations(rule)) else None
+
+    def _event(self, name: Any, scope: Scope) -> sct.Event:
+        found = self._names.find(name, scope)
+        if not isinstance(found, Declared) or found.kind != "Events":
+            raise CifFaultError(name, "type", f"`{name.text}` is no event")
+        if not found.outer.control:
+            hint = f"declare `{found.name}` as `controllable` or as `uncontrollable`"
+            raise construct(name, "events that are neither controllable nor uncontrollable", hint)
+        event: sct.Event = found.made
+        return event
+
+    def _taken(self, read: Any, location: sct.Location, scope: Scope) -> Iterator[_Taken]:
+        if not read.events or any(edge_event.tau for edge_event in read.events):
+            raise construct(read, "edges without an event", TAU)
+        if read.urgent:
+            raise construct(read, "urgent edges", "leave out `now`")
+        for edge_event in read.events:
+            if edge_event.communication:
+                raise construct(edge_event, "channels", CHANNELS)
+        events = [self._event(edge_event.event, scope) for edge_event in read.events]
+        target = location
+        if read.target is not None:
+            name = plain(read.target.name)
+            found = scope.names.get(name)
+            if not isinstance(found, sct.Location):
+                known = [sibling.name for sibling in location.eContainer().locations]
+                raise CifFaultError(read.target, "unresolved-reference", *_missing(name, known))
+            target = found
+        guard = self._values.condition(read.guards, scope)
+        updates, fits = self._updates(read, scope)
+        for event in dict.fromkeys(events):
+            yield _Taken(location, event, guard, fits, updates, target, read)
+
+    def _updates(
+        self, read: Any, scope: Scope
+    ) -> tuple[list[tuple[sct.DiscreteVariable, ex.Expression, Any]], dict[sct.DiscreteVariable, ex.Expression]]:
+        """Return the updates of an edge, and the conditions under which variables stay in range."""
+        updates: list[tuple[sct.DiscreteVariable, ex.Expression, Any]] = []
+        fits: dict[sct.DiscreteVariable, ex.Expression] = {}
+        for update in read.updates:
+            variable, value, kind = self._update(update, scope)
+            if any(variable is other for other, _, _ in updates):
+                raise CifFaultError(update, "repeated-assignment", f"`{variable.name}` is assigned twice")
+            updates.append((variable, value, update))
+            within = conjunction(_fitting(variable, value, kind))
+            if within is not None:
+                fits[variable] = within
+        return updates, fits
+
+    def _update(self, read: Any, scope: Scope) -> tuple[sct.DiscreteVariable, ex.Expression, Type]:
+        if read.conditional:
+            raise construct(read, "conditional updates", CONDITIONAL_UPDATES)
+        if read.several or read.projection:
+            raise construct(read, "updates of tuples and lists", "write a variable for each element")
+        found = self._names.find(read.variable, scope)
+        if not isinstance(found, Declared) or found.kind != "Variables":
+            raise CifFaultError(read, "type", f"`{read.variable.text}` is no discrete variable")
+        if found.made is None:
+            raise found.fault
+        if found.made.eContainer() is not scope.plant:
+            message = f"`{read.variable.text}` is assigned by `{found.scope.path}` only, which declares it"
+            raise CifFaultError(read, "assignment-scope", message)
+        value = self._values.whole(read.value, scope)
+        if not overlap(found.type, value.type):
+            message = f"`{found.name}` is {shown(found.type)}, what is assigned {shown(value.type)}"
+            raise CifFaultError(read, "type", message)
+        return found.made, value.expression, value.type
+
+    def _place(self, edges: list[_Taken], event: sct.Event, scope: Scope, *, watching: bool) -> None:
+        """Create the edges of an event in a plant; if it monitors the event, it stays if no edge can be taken."""
+        plant = scope.plant
+        assert plant is not None
+        for edge in edges:
+            guard = None if edge.guard is None else copied(edge.guard)
+            made = sct.Edge(event=event, guard=guard, target=edge.target, source=located(edge.read))
+            for variable, value, read in edge.updates:
+                made.updates.append(sct.Update(variable=variable, value=copied(value), source=located(read)))
+            edge.location.edges.append(made)
+            if edge.fits:
+                self._stay_in_range(edge, plant, alone=len(edges) == 1 and not watching)
+        if watching:
+            for location in plant.locations:
+                guards = [edge.guard for edge in edges if edge.location is location]
+                if all(guard is not None for guard in guards):
+                    others = [ex.Negation(operand=copied(guard)) for guard in guards if guard is not None]
+                    stay = sct.Edge(event=event, guard=conjunction(others), target=location, source=located(scope.read))
+                    location.edges.append(stay)
+        elif not edges:
+            never = ex.BooleanLiteral(value=False)
+            location = plant.locations[0]
+            location.edges.append(sct.Edge(event=event, guard=never, target=location, source=located(scope.read)))
+
+    def _stay_in_range(self, edge: _Taken, plant: sct.Plant, *, alone: bool) -> None:
+        """Add the requirement that forbids an event if an edge would assign a value out of range.
+
+        `alone` means that the plant has no other edge for the event, so that the event always takes this edge.
+        """
+        fits = conjunction(map(copied, edge.fits.values()))
+        assert fits is not None
+        premises = [*_at(edge.location, plant), *(copied(part) for part in (edge.guard,) if part is not None)]
+        premise = None if alone else conjunction(premises)
+        self.model.requirements.append(
+            sct.Requirement(
+                event=edge.event,
+                kind=sct.RequirementKind.needs,
+                condition=fits if premise is None else ex.Implication(left=premise, right=fits),
+                ranges=list(edge.fits),
+                text=f"range of {', '.join(variable.name for variable in edge.fits)}: {_words(edge.read)}",
+                source=located(edge.read),
+            )
+        )
+
+    def _require(self, edges: list[_Taken], event: sct.Event, scope: Scope) -> None:
+        """Add the requirement that an event happens only if a requirement automaton has an edge for it."""
+        plant = scope.plant
+        assert plant is not None
+        allowed = []
+        for edge in edges:
+            guard = [copied(part) for part in (edge.guard,) if part is not None]
+            here = conjunction([*_at(edge.location, plant), *guard])
+            if here is None:
+                return
+            allowed.append(here)
+        self.model.requirements.append(
+            sct.Requirement(
+                event=event,
+                kind=sct.RequirementKind.needs,
+                condition=disjunction(allowed) or ex.BooleanLiteral(value=False),
+                automaton=plant,
+                name=scope.path,
+                text=f"requirement {scope.path}",
+                source=located(scope.read),
+            )
+        )
+
+    def _initialise(self, declared: Declared, scope: Scope) -> None:
+        """Set the initial value of a variable, or add an initial predicate if it can have several."""
+        variable, read = declared.made, declared.read
+        if read.any:
+            return
+        if not read.values:
+            variable.initial = literal(_default(declared.type))
+            return
+        several = []
+        for value in read.values:
+            made = self._values.whole(value, scope)
+            if not contains(declared.type, made.type):
+                constant = constant_value(made.expression)
+                if not isinstance(declared.type, range) or constant is None or constant not in declared.type:
+                    message = f"`{declared.name}` is {shown(declared.type)}, its initial value {shown(made.type)}"
+                    raise CifFaultError(value, "integer-range" if isinstance(made.type, range) else "type", message)
+            several.append(made.expression)
+        constants = [constant_value(value) for value in several]
+        if len(several) == 1 and constants[0] is not None:
+            variable.initial = literal(constants[0])
+            return
+        either = disjunction(
+            ex.Equation(left=sct.VariableReference(variable=variable), right=value) for value in several
+        )
+        assert either is not None
+        self.model.initialPredicates.append(either)
+
+    # Predicates
+
+    def _predicates(self, scope: Scope) -> None:
+        """Translate initial and marked states and the invariants."""
+        for read in scope.declarations("Initial", "Marked", "Invariants"):
+            with self._names.reporting():
+                if type(read).__name__ == "Invariants":
+                    self._invariants(read, scope, None)
+                    continue
+                made = self._values.condition(read.conditions, scope)
+                assert made is not None
+                initial = type(read).__name__ == "Initial"
+                (self.model.initialPredicates if initial else self.model.markerPredicates).append(made)
+        for location, element in _elements(scope):
+            with self._names.reporting():
+                self._element(element, location, scope)
+
+    def _element(self, read: Any, location: sct.Location, scope: Scope) -> None:
+        match type(read).__name__:
+            case "Invariants":
+                self._invariants(read, scope, location)
+            case "Urgent":
+                raise construct(read, "urgent locations", "leave out `urgent`")
+            case "LocationInitial" | "LocationMarked" as kind:
+                initial = kind == "LocationInitial"
+                if initial:
+                    location.initial = True
+                else:
+                    location.marked = True
+                condition = self._values.condition(read.conditions, scope)
+                if condition is not None:
+                    here = sct.LocationReference(location=location)
+                    made = ex.Implication(left=here, right=condition)
+                    (self.model.initialPredicates if initial else self.model.markerPredicates).append(made)
+
+    def _invariants(self, read: Any, scope: Scope, location: sct.Location | None) -> None:
+        if read.kind not in ("plant", "requirement"):
+            if read.kind:
+                raise construct(read, "supervisor invariants", SUPERVISORS)
+            what = "invariants of no kind"
+            raise construct(read, what, "write `requirement` before it, or `plant` where the system itself sees to it")
+        for invariant in read.invariants:
+            with self._names.reporting():
+                self._invariant(invariant, read.kind == "plant", scope, location)
+
+    def _invariant(self, read: Any, plant: bool, scope: Scope, location: sct.Location | None) -> None:
+        told = read.restriction
+        condition = self._values.condition([told.condition], scope)
+        assert condition is not None
+        here = sct.LocationReference(location=location) if location is not None else None
+        stated: dict[str, Any] = {
+            "name": scope.absolute(plain(read.name)) if read.name else None,
+            "text": _words(read.parent if len(read.parent.invariants) == 1 else read),
+            "source": located(read),
+        }
+        rule = type(told).__name__
+        if rule == "Condition":
+            condition = condition if here is None else ex.Implication(left=here, right=condition)
+            if plant:
+                self._plant_invariants.append((read, condition))
+                return
+            self.model.invariants.append(sct.StateInvariant(condition=condition, **stated))
+            return
+        needs = rule == "Needs"
+        if here is not None:
+            combine = ex.Implication if needs else ex.Conjunction
+            condition = combine(left=here, right=condition)
+        for name in told.events:
+            event = self._event(name, scope)
+            if plant:
+                own = copied(condition)
+                self._exclusions.setdefault(event, []).append((read, own if needs else ex.Negation(operand=own)))
+                continue
+            kind = sct.RequirementKind.needs if needs else sct.RequirementKind.disables
+            self.model.requirements.append(
+                sct.Requirement(event=event, kind=kind, condition=copied(condition), **stated)
+            )
+
+    def _keep_invariants(self, plants: list[sct.Plant]) -> None:
+        """Make the system start in and never leave its plant invariants."""
+        edges = edges_by_event(plants)
+        for read, condition in self._plant_invariants:
+            for event, excluding in plant_invariants.keep(condition, edges):
+                with self._names.reporting():
+                    overlap = [edge for own in edges[event].values() for edge in own]
+                    if excluding is None or (not event.controllable and _several(overlap)):
+                        raise construct(read, f"this plant invariant with `{event.name}`", "state it by guards")
+                    self._exclusions.setdefault(event, []).append((read, excluding))
+            self.model.initialPredicates.append(condition)
+
+    def _exclude(self) -> None:
+        """Exclude events by plant invariants in a plant with one location; drop requirements on unused events."""
+        used = {edge.event for scope in _inside(self._names.root) if scope.plant for edge in _edges(scope.plant)}
+        for requirement in [requirement for requirement in self.model.requirements if requirement.event not in used]:
+            self.model.requirements.remove(requirement)
+        if not self._exclusions:
+            return
+        names = {scope.path for scope in _inside(self._names.root)}
+        name = next(
+            name for number in range(len(names) + 1) if (name := f"plant_invariants{number or ''}") not in names
+        )
+        plant = sct.Plant(name=name, kind=sct.PlantKind.behaviour)
+        location = sct.Location(name="L", initial=True, marked=True)
+        plant.locations.append(location)
+        for event, exclusions in self._exclusions.items():
+            if event in used:
+                guard = conjunction(condition for _, condition in exclusions)
+                source = located(exclusions[0][0])
+                location.edges.append(sct.Edge(event=event, guard=guard, target=location, source=source))
+        if location.edges:
+            self.model.plants.append(plant)
+
+
+def _inside(scope: Scope) -> Iterator[Scope]:
+    """Yield a scope and all scopes in it, in the order of the text."""
+    pending = [scope]
+    while pending:
+        here = pending.pop()
+        yield here
+        pending += reversed(here.children)
+
+
+def _is_automaton(scope: Scope) -> bool:
+    return scope.kind is not None and bool(scope.bodies)
+
+
+def _elements(scope: Scope) -> Iterator[tuple[sct.Location, Any]]:
+    """Yield the elements in the locations of an automaton, each with its location."""
+    if _is_automaton(scope) and scope.plant is not None:
+        for location, read in zip(scope.plant.locations, scope.bodies[0].locations, strict=True):
+            for element in read.elements:
+                yield location, element
+
+
+def _edges(plant: sct.Plant) -> Iterable[sct.Edge]:
+    return (edge for location in plant.locations for edge in location.edges)
+
+
+def _several(edges: Iterable[sct.Edge]) -> bool:
+    """Return whether several of the edges leave the same location."""
+    left = [edge.eContainer() for edge in edges]
+    return len(left) > len(set(left))
+
+
+def _at(location: sct.Location, plant: sct.Plant) -> list[ex.Expression]:
+    """Return the condition that the plant is in a location; empty if it has no other location."""
+    return [sct.LocationReference(location=location)] if len(plant.locations) > 1 else []
+
+
+def _fitting(variable: sct.DiscreteVariable, value: ex.Expression, kind: Type) -> Iterator[ex.Expression]:
+    """Yield the conditions for a value to be in the range of its variable, unless its type guarantees them.
+
+    A subtrahend is moved to the other side, because CIF's synthesis supports `-` in assignments only.
+    """
+    if not isinstance(kind, range):
+        return
+    own = domain(variable.type)
+    bounds: list[tuple[type[ex.BinaryExpression], int]] = []
+    if kind.start < own.low:
+        bounds.append((ex.GreaterOrEqual, own.low))
+    if kind.stop - 1 > own.high:
+        bounds.append((ex.LessOrEqual, own.high))
+    for comparison, bound in bounds:
+        left, right = copied(value), literal(bound)
+        if isinstance(left, ex.Subtraction):
+            if isinstance(left.right, ex.IntegerLiteral):
+                right = literal(left.right.value + bound)
+            else:
+                right = left.right if bound == 0 else ex.Addition(left=left.right, right=right)
+            left = left.left
+        yield comparison(left=left, right=right)
+
+
+def _type(kind: Type) -> ex.Type:
+    if isinstance(kind, range):
+        return ex.IntegerType(minimum=kind.start, maximum=kind.stop - 1)
+    return ex.EnumerationType(enumeration=kind) if isinstance(kind, ex.Enumeration) else ex.BooleanType()
+
+
+def _default(kind: Type) -> Any:
+    """Return CIF's default for a declaration without an initial value."""
+    if isinstance(kind, range):
+        return min(max(0, kind.start), kind.stop - 1)
+    return kind.literals[0] if isinstance(kind, ex.Enumeration) else False
+
+
+def _words(read: Any) -> str:
+    """Return the text of an element in one line."""
+    start, end = span(read)
+    return " ".join(text_of(read).content[start:end].split()).rstrip(";").strip()
+
+
+def _missing(name: str, known: list[str]) -> tuple[str, Any]:
+    close = closest(name, known, cutoff=0.6)
+    repair = Repair(f"did you mean `{identifier(close)}`?", identifier(close)) if close else None
+    return f"there is no location `{name}` here", repair

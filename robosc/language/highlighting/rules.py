@@ -1,0 +1,145 @@
+"""Regular expressions for the parts of a text: comments, strings, numbers, keywords in context, names."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from robosc.model.semantics.naming import ROBOSC_FUNCTIONS, ROBOSC_QUANTIFIERS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+
+class Kind(StrEnum):
+    """Kind of a piece of text, as its scope in TextMate grammars."""
+
+    COMMENT = "comment.line.double-slash"
+    STRING = "string.quoted"
+    FLOAT = "constant.numeric.float"
+    INTEGER = "constant.numeric.integer"
+    DECLARATION = "keyword.declaration"
+    MODIFIER = "storage.modifier"
+    CONTROL = "keyword.control"
+    TYPE = "support.type"
+    CONSTANT = "constant.language"
+    DATA = "variable.language"
+    WORD_OPERATOR = "keyword.operator.logical"
+    FUNCTION = "support.function"
+    UNIT = "keyword.other.unit"
+    DECLARED = "entity.name.type"
+    NAME = "variable.other"
+    OPERATOR = "keyword.operator"
+    PUNCTUATION = "punctuation"
+    BLANK = "text"
+
+
+#: Kinds of words of the grammar.
+WORDS = (
+    *(Kind.DECLARATION, Kind.MODIFIER, Kind.CONTROL, Kind.TYPE, Kind.CONSTANT, Kind.DATA, Kind.WORD_OPERATOR),
+    *(Kind.FUNCTION, Kind.UNIT),
+)
+#: Words that cannot be names in an expression.
+RESERVED: Mapping[Kind, tuple[str, ...]] = {
+    Kind.DECLARATION: (
+        *(
+            "action",
+            "behaviour",
+            "component",
+            "datatype",
+            "enum",
+            "import",
+            "interface",
+            "library",
+            "message",
+            "object",
+        ),
+        *("provide", "requirement", "robot", "service", "state", "transition", "use", "variable"),
+    ),
+    Kind.MODIFIER: ("incoming", "initial", "marked", "outgoing"),
+    Kind.CONTROL: (
+        *("cancel", "default", "disables", "do", "error", "feedback", "from", "goto", "identifier", "if", "links"),
+        *("needs", "on", "request", "response", "to", "type", "with"),
+    ),
+    Kind.TYPE: ("array", "boolean", "double", "integer", "none", "string"),
+    Kind.CONSTANT: ("false", "true"),
+    Kind.DATA: ("value",),
+    Kind.WORD_OPERATOR: ("and", "or"),
+}
+#: Words that are names unless they begin a construct.
+IN_CONTEXT: Mapping[Kind, tuple[str, ...]] = {
+    Kind.DECLARATION: ("automaton", "condition", "constant", "function", "is", "parameter", "property"),
+    Kind.CONTROL: (*("after", "always", "each", "else", "in", "never", "reachable", "since", "then", "without"),),
+}
+SEND = ("send", "change")
+AT_MOST = ("at", "most")
+UNITS = ("ms", "s", "min")
+
+_NAME = r"\^?[A-Za-z_][A-Za-z0-9_]*"
+#: Reserved words that are keywords, not names of fields, before a colon.
+_KEYS = ("identifier", "type", "request", "response", "feedback")
+#: Words that follow a name, and never the start of a construct.
+_BEHIND_NAMES = ("and", "disables", "do", "goto", "in", "needs", "or", "to")
+#: Start and end of a comment that may span several lines.
+BLOCK_COMMENT = (r"/\*", r"\*/")
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A regular expression, and the kind of its match, or of each of its groups, which cover the match."""
+
+    pattern: str
+    kinds: tuple[Kind, ...]
+
+
+def rules() -> Iterator[Rule]:
+    """Yield all rules; if several match at a place, the first one counts. Block comments take precedence."""
+    blank, number = r"(\s+)", r"[0-9]+(?:\.[0-9]+)?"
+    unit, name = _any(UNITS), f"({_NAME})"
+    yield Rule(r"//[^\n]*", (Kind.COMMENT,))
+    yield Rule(r'"(?:[^"\\\n]|\\.)*"?', (Kind.STRING,))
+    yield Rule(r"'(?:[^'\\\n]|\\.)*'?", (Kind.STRING,))
+    # Times
+    yield Rule(rf"(?<![0-9])({number}){blank}{unit}\b", (Kind.FLOAT, Kind.BLANK, Kind.UNIT))
+    yield Rule(rf"(\)){blank}{unit}\b", (Kind.PUNCTUATION, Kind.BLANK, Kind.UNIT))
+    after = (Kind.CONTROL, Kind.BLANK, Kind.NAME, Kind.BLANK, Kind.UNIT)
+    yield Rule(rf"(?<![\w^])(after){blank}({_NAME}(?:\.{_NAME})?){blank}{unit}\b", after)
+    # A number before the dots of a range is not a double.
+    yield Rule(r"(?<![0-9])[0-9]+\.[0-9]+\b", (Kind.FLOAT,))
+    yield Rule(r"[0-9]+\b", (Kind.INTEGER,))
+    # In positions for names only, keywords are names, too.
+    yield Rule(r"\.\.", (Kind.OPERATOR,))
+    yield Rule(rf"(\.)(\s*){name}", (Kind.PUNCTUATION, Kind.BLANK, Kind.NAME))
+    yield Rule(rf"\^{_NAME[3:]}", (Kind.NAME,))
+    declaring = ("robot", "library", "component", "state", "message", "service", "action", "variable", "interface")
+    declared = (Kind.DECLARATION, Kind.BLANK, Kind.DECLARED)
+    yield Rule(rf"{_any((*declaring, 'enum', 'object'))}{blank}{name}", declared)
+    yield Rule(rf"{_any(('constant', 'parameter', 'condition', 'function'))}{blank}{name}(?=\s*[:=(])", declared)
+    yield Rule(rf"{_any(('requirement', 'property'))}{blank}{name}(?=\s*[:\"'])", declared)
+    yield Rule(rf"(?<![\w^])(goto){blank}{name}", (Kind.CONTROL, Kind.BLANK, Kind.NAME))
+    yield Rule(rf"(->)(\s*){name}", (Kind.OPERATOR, Kind.BLANK, Kind.NAME))
+    yield Rule(rf"(?<![\w^])(in){blank}(value)\b", (Kind.CONTROL, Kind.BLANK, Kind.DATA))
+    yield Rule(r"(send)(\s*:\s*)(change)\b", (Kind.CONTROL, Kind.PUNCTUATION, Kind.CONTROL))
+    yield Rule(rf"(?<![\w^])(at){blank}(most)\b", (Kind.CONTROL, Kind.BLANK, Kind.CONTROL))
+    yield Rule(r"(?<![\w^])(canceled)(?=\s+(?:from|to)\b)", (Kind.CONTROL,))
+    reserved = [word for words in RESERVED.values() for word in words]
+    yield Rule(rf"{_any([word for word in reserved if word not in _KEYS])}(?=\s*:(?!=))", (Kind.NAME,))
+    # Words that depend on the text behind them
+    yield Rule(rf"{_any(ROBOSC_QUANTIFIERS)}\b(?=\s+{_NAME}(?:\s*:|\s+in\b))", (Kind.WORD_OPERATOR,))
+    yield Rule(rf"{_any(ROBOSC_FUNCTIONS)}\b(?=\s*\()", (Kind.FUNCTION,))
+    no_operand = rf"(?!{_any(_BEHIND_NAMES)}\b)"
+    for kind, words in IN_CONTEXT.items():
+        yield Rule(rf"{_any(words)}\b(?=\s*$|\s+{no_operand}[\w^({{!\-\"'\[]|\()", (kind,))
+    for kind, words in RESERVED.items():
+        yield Rule(rf"{_any(words)}\b", (kind,))
+    yield Rule(_NAME, (Kind.NAME,))
+    yield Rule(r":=|->|=>|!=|<=|>=|[-+*/=<>!]", (Kind.OPERATOR,))
+    yield Rule(r"[{}()\[\],:.]", (Kind.PUNCTUATION,))
+    yield Rule(r"\s+", (Kind.BLANK,))
+
+
+def _any(words: list[str] | tuple[str, ...]) -> str:
+    """Return a group that matches one of the words, at the start of a word."""
+    return rf"(?<![\w^])({'|'.join(map(re.escape, words))})"

@@ -1,5 +1,0 @@
-"""Classes of `metamodel/expression.ecore`. `expression.pyi`, generated from it, declares them for type checkers."""
-
-from robosc.metamodel._ecore import classes as _classes
-
-globals().update(_classes("expression"))

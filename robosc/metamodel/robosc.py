@@ -1,5 +1,0 @@
-"""Classes of `metamodel/robosc.ecore`. `robosc.pyi`, generated from it, declares them for type checkers."""
-
-from robosc.metamodel._ecore import classes as _classes
-
-globals().update(_classes("robosc"))

@@ -1,0 +1,5 @@
+"""Classes of `metamodel/expression.ecore`. `expression.pyi`, generated from it, declares them for type checkers."""
+
+from robosc.model._ecore import classes as _classes
+
+globals().update(_classes("expression"))

@@ -1,0 +1,196 @@
+"""Generated from metamodel/sct.ecore by `python scripts/metamodel_stubs.py`."""
+
+from collections.abc import Iterable, MutableSequence
+from typing import Any, ClassVar
+
+from robosc.model import expression
+from robosc.model.places import Place
+
+class SupervisoryControlModel(expression.NamedElement):
+    """Everything about one robot."""
+    enumerations: MutableSequence[expression.Enumeration]
+    plants: MutableSequence[Plant]
+    requirements: MutableSequence[Requirement]
+    invariants: MutableSequence[StateInvariant]
+    properties: MutableSequence[Property]
+    supervisor: Supervisor | None
+    durations: MutableSequence[Duration]
+    initialPredicates: MutableSequence[expression.Expression]
+    markerPredicates: MutableSequence[expression.Expression]
+    def __init__(self, *, enumerations: Iterable[expression.Enumeration] = ..., plants: Iterable[Plant] = ..., requirements: Iterable[Requirement] = ..., invariants: Iterable[StateInvariant] = ..., properties: Iterable[Property] = ..., supervisor: Supervisor | None = ..., durations: Iterable[Duration] = ..., initialPredicates: Iterable[expression.Expression] = ..., markerPredicates: Iterable[expression.Expression] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+
+class Plant(expression.NamedElement):
+    """An automaton with variables. Of the edges of a location with one event, the guards exclude each other; those of an uncontrollable event of a model from CIF may overlap, and then any of them may be taken."""
+    kind: PlantKind
+    origin: str | None
+    topic: str | None
+    events: MutableSequence[Event]
+    inputs: MutableSequence[Input]
+    variables: MutableSequence[DiscreteVariable]
+    locations: MutableSequence[Location]
+    edges: MutableSequence[Edge]
+    def __init__(self, *, kind: PlantKind | None = ..., origin: str | None = ..., topic: str | None = ..., events: Iterable[Event] = ..., inputs: Iterable[Input] = ..., variables: Iterable[DiscreteVariable] = ..., locations: Iterable[Location] = ..., edges: Iterable[Edge] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+
+class PlantKind:
+    """message, service, action: communication (thesis listings 5.1 to 5.3); behaviour: a component's automaton; data: the provide statements of one communication (listing 5.4); requirement: an automaton that follows events and never blocks one. What a requirement automaton forbids stands in requirements on its locations, and no state of the plants is counted twice for its locations."""
+    name: str
+    message: ClassVar[PlantKind]
+    service: ClassVar[PlantKind]
+    action: ClassVar[PlantKind]
+    behaviour: ClassVar[PlantKind]
+    data: ClassVar[PlantKind]
+    requirement: ClassVar[PlantKind]
+
+class Event(expression.NamedElement):
+    """Something that happens, in all plants that have it in their alphabet at once."""
+    controllable: bool
+    kind: EventKind
+    inputs: MutableSequence[Input]
+    timer: Timer | None
+    def __init__(self, *, controllable: bool | None = ..., kind: EventKind | None = ..., inputs: Iterable[Input] = ..., timer: Timer | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+
+class EventKind:
+    """trigger, cancel: sent by the controller; response, error, feedback, canceled: come from the robot; reset, tau: silent; data: which provided data goes out; timeout: a time is up; plain: an event of a model from CIF, which stands for no communication; input: the environment gives an input variable of CIF another value."""
+    name: str
+    trigger: ClassVar[EventKind]
+    response: ClassVar[EventKind]
+    error: ClassVar[EventKind]
+    feedback: ClassVar[EventKind]
+    cancel: ClassVar[EventKind]
+    reset: ClassVar[EventKind]
+    tau: ClassVar[EventKind]
+    data: ClassVar[EventKind]
+    timeout: ClassVar[EventKind]
+    plain: ClassVar[EventKind]
+    input: ClassVar[EventKind]
+    canceled: ClassVar[EventKind]
+
+class Timer(expression.Located):
+    """A time that runs while a component is in a location, or always, and what starts it anew. When it is up, its event happens once. To synthesis the event is possible at any time."""
+    milliseconds: int | None
+    duration: Duration | None
+    location: Location | None
+    entries: MutableSequence[Edge]
+    without: MutableSequence[Event]
+    def __init__(self, *, milliseconds: int | None = ..., duration: Duration | None = ..., location: Location | None = ..., entries: Iterable[Edge] = ..., without: Iterable[Event] = ..., source: Place | None = ...) -> None: ...
+
+class Duration(expression.Located):
+    """How long timers run, as a parameter of the robot says. It has no part in synthesis. A timer that runs keeps what it had when it started."""
+    parameter: str
+    milliseconds: int
+    shortest: int
+    longest: int
+    unit: int
+    def __init__(self, *, parameter: str | None = ..., milliseconds: int | None = ..., shortest: int | None = ..., longest: int | None = ..., unit: int | None = ..., source: Place | None = ...) -> None: ...
+
+class Input(expression.NamedElement):
+    """Data that comes with an event. Only guards and updates of edges of an event that names the input read it."""
+    type: expression.Type
+    text: str | None
+    def __init__(self, *, type: expression.Type | None = ..., text: str | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+
+class DiscreteVariable(expression.NamedElement):
+    """A variable of a plant."""
+    type: expression.Type
+    initial: expression.Expression | None
+    def __init__(self, *, type: expression.Type | None = ..., initial: expression.Expression | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+
+class Location(expression.NamedElement):
+    """A location of a plant."""
+    initial: bool
+    marked: bool
+    edges: MutableSequence[Edge]
+    def __init__(self, *, initial: bool | None = ..., marked: bool | None = ..., edges: Iterable[Edge] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+
+class Edge(expression.Located):
+    """A possible step of one plant."""
+    event: Event
+    guard: expression.Expression | None
+    updates: MutableSequence[Update]
+    target: Location
+    def __init__(self, *, event: Event | None = ..., guard: expression.Expression | None = ..., updates: Iterable[Update] = ..., target: Location | None = ..., source: Place | None = ...) -> None: ...
+
+class Update(expression.Located):
+    """Gives a variable a value. A value outside the range of an integer variable becomes the nearest bound."""
+    variable: DiscreteVariable
+    value: expression.Expression
+    def __init__(self, *, variable: DiscreteVariable | None = ..., value: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
+
+class StatedRequirement(expression.Located):
+    """A requirement or a property as the robot model states it."""
+    name: str | None
+    text: str | None
+    def __init__(self, *, name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class Requirement(StatedRequirement):
+    """Restricts a controllable event; with an automaton, or in a model from CIF, also an uncontrollable one, which synthesis then keeps from where it is forbidden."""
+    event: Event
+    kind: RequirementKind
+    condition: expression.Expression
+    automaton: Plant | None
+    ranges: MutableSequence[DiscreteVariable]
+    def __init__(self, *, event: Event | None = ..., kind: RequirementKind | None = ..., condition: expression.Expression | None = ..., automaton: Plant | None = ..., ranges: Iterable[DiscreteVariable] = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class RequirementKind:
+    """needs: the event happens only where the condition holds; disables: only where it does not."""
+    name: str
+    needs: ClassVar[RequirementKind]
+    disables: ClassVar[RequirementKind]
+
+class StateInvariant(StatedRequirement):
+    """A condition on every reachable state under the supervisor."""
+    condition: expression.Expression
+    def __init__(self, *, condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class Property(StatedRequirement):
+    """What verification is to prove of the supervised system; synthesis does not see to it."""
+    condition: expression.Expression
+    def __init__(self, *, condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class InvariantProperty(Property):
+    """The condition holds in every reachable state."""
+    def __init__(self, *, condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class ReachabilityProperty(Property):
+    """A state with the condition can be reached."""
+    premise: expression.Expression | None
+    def __init__(self, *, premise: expression.Expression | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class Supervisor(expression.Located):
+    """The maximally permissive, controllable, non-blocking supervisor."""
+    uncontrolledStates: int | None
+    controlledStates: int
+    bddNodes: int
+    settlingBound: int | None
+    guards: MutableSequence[EventGuard]
+    initial: expression.Expression | None
+    def __init__(self, *, uncontrolledStates: int | None = ..., controlledStates: int | None = ..., bddNodes: int | None = ..., settlingBound: int | None = ..., guards: Iterable[EventGuard] = ..., initial: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
+
+class EventGuard(expression.Located):
+    """When the supervisor allows an event: where both parts hold. What the plants forbid is not repeated."""
+    event: Event
+    requirement: expression.Expression | None
+    requirements: MutableSequence[Requirement]
+    synthesis: expression.Expression | None
+    explanation: str | None
+    everEnabled: bool
+    def __init__(self, *, event: Event | None = ..., requirement: expression.Expression | None = ..., requirements: Iterable[Requirement] = ..., synthesis: expression.Expression | None = ..., explanation: str | None = ..., everEnabled: bool | None = ..., source: Place | None = ...) -> None: ...
+
+class LocationReference(expression.Expression):
+    """True while its plant is in the location."""
+    location: Location
+    def __init__(self, *, location: Location | None = ..., source: Place | None = ...) -> None: ...
+
+class VariableReference(expression.Expression):
+    """The value of a variable."""
+    variable: DiscreteVariable
+    def __init__(self, *, variable: DiscreteVariable | None = ..., source: Place | None = ...) -> None: ...
+
+class InputReference(expression.Expression):
+    """The value of an input."""
+    input: Input
+    def __init__(self, *, input: Input | None = ..., source: Place | None = ...) -> None: ...
+
+class Quotient(expression.BinaryExpression):
+    """How often a positive constant, the right operand, goes into the left one, which is never negative. Models from CIF alone have it."""
+    def __init__(self, *, left: expression.Expression | None = ..., right: expression.Expression | None = ..., source: Place | None = ...) -> None: ...

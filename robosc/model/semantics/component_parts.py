@@ -1,0 +1,80 @@
+"""Parts of each component of a robot for a node's reports: variables, commands, topics and clients."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeVar
+
+from robosc.model import rosgraph, sct
+from robosc.model.semantics.definition import reported
+from robosc.model.semantics.roles import plant_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+_Element = TypeVar("_Element")
+
+#: Text in place of the state of a component without states.
+STATELESS = "has no states"
+
+
+@dataclass(frozen=True)
+class Parts:
+    """A component with its variables, its commands, and the interfaces that report on it.
+
+    A component without behaviour has no plant and no variables.
+    """
+
+    name: str
+    plant: sct.Plant | None
+    kept: Sequence[rosgraph.NodeVariable]
+    #: Messages, requests of services, goals of actions.
+    commands: Sequence[rosgraph.Sending]
+    topics: Sequence[rosgraph.Subscription]
+    clients: Sequence[rosgraph.ServiceClient | rosgraph.ActionClient]
+
+
+def components(graph: rosgraph.RosGraph) -> list[Parts]:
+    """Return the components of a robot: first those with behaviour, in the order of the model, then all others."""
+    plants: dict[str, sct.Plant | None] = {
+        plant.origin or plant.name: plant for plant in graph.model.plants if plant.kind == sct.PlantKind.behaviour
+    }
+    clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = [*graph.serviceClients, *graph.actionClients]
+    sendings = [sending for publisher in graph.publishers for sending in publisher.sendings]
+    sendings += [client.request for client in clients]
+    listening = [(_owner(reception.event), topic) for topic in graph.subscriptions for reception in topic.receptions]
+    topics = _grouped(dict.fromkeys(listening))
+    commands = _grouped((_owner(sending.event), sending) for sending in sendings)
+    called = _grouped((_owner(client.request.event), client) for client in clients)
+    for name in [*topics, *commands]:
+        plants.setdefault(name, None)
+    kept = reported(graph)
+    return [
+        Parts(
+            name,
+            plant,
+            [] if plant is None else kept.get(plant.origin, []),
+            commands.get(name, []),
+            topics.get(name, []),
+            called.get(name, []),
+        )
+        for name, plant in plants.items()
+    ]
+
+
+def request(sending: rosgraph.Sending) -> str:
+    """Return the model's name for the event of a command: `request to move`."""
+    return f"request to {sending.name}"
+
+
+def _grouped(owned: Iterable[tuple[str, _Element]]) -> dict[str, list[_Element]]:
+    """Group elements by their owner. Each group keeps the order of the elements."""
+    found: dict[str, list[_Element]] = {}
+    for owner, element in owned:
+        found.setdefault(owner, []).append(element)
+    return found
+
+
+def _owner(event: sct.Event) -> str:
+    """Return the component of a communication."""
+    return (plant_of(event).origin or "").rpartition(".")[0]

@@ -1,0 +1,239 @@
+"""Data elimination: variables and incoming data that the supervisor needs (thesis 5.2.4, made transitive)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeGuard
+
+from robosc.model import expression as ex
+from robosc.model import robosc
+from robosc.model.semantics.communication import data_type, event_of, meant
+from robosc.model.semantics.inputs import Computed, inputs_in, may_be_missing, readable
+from robosc.model.semantics.typing import declared_type
+from robosc.model.semantics.walks import parts
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.model.semantics.communication import PortEvent
+    from robosc.model.semantics.inputs import Told
+    from robosc.model.semantics.instances import Instance, Instances, InstanceVariable
+    from robosc.model.semantics.typing import Type
+
+#: Maximum number of valuations in a table of a comparison of doubles. The table ranges over the integers that the
+#: comparison depends on. A larger table would exceed any model that contains it.
+LARGEST_TABLE = 1 << 16
+
+
+@dataclass(frozen=True)
+class Assigned:
+    """An assignment in its context: the instance, the transition, and the variable (None if it is unresolved).
+
+    `value` is the expanded expression that it assigns.
+    """
+
+    instance: Instance
+    transition: robosc.Transition
+    assignment: robosc.Assignment
+    variable: InstanceVariable | None
+    value: ex.Expression | None
+
+
+@dataclass(frozen=True)
+class Reason:
+    """The place that makes a variable or an input necessary: the access, its instance (None: the robot), its use.
+
+    `variable` is the variable that is computed from the access. It is None if the supervisor evaluates the expression.
+    """
+
+    access: robosc.Access | robosc.ErrorReason
+    within: Instance | None
+    variable: InstanceVariable | None
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A part of an expression that reads the data of an event, with its input; None if it cannot be an input.
+
+    `is_readable`: the entry stands for no part. Its input is whether the whole expression can be computed.
+    """
+
+    whole: ex.Expression
+    part: ex.Expression
+    told: Told | None
+    reason: Reason
+    value: Type
+    is_readable: bool = False
+
+
+@dataclass(frozen=True)
+class ConeOfInfluence:
+    """Variables and data that the supervisor needs, each with its first reason, in the order of discovery.
+
+    `readings` are the reads of data, `computations` the assignments that the supervisor performs.
+    """
+
+    variables: dict[InstanceVariable, Reason]
+    readings: list[Reading]
+    computations: list[Assigned]
+
+    @property
+    def data(self) -> dict[Told, Reading]:
+        """Inputs of the supervisor, each with its first reading."""
+        found: dict[Told, Reading] = {}
+        for reading in self.readings:
+            if reading.told is not None:
+                found.setdefault(reading.told, reading)
+        return found
+
+
+def cone_of_influence(instances: Instances) -> ConeOfInfluence:
+    """Return the variables and data that guards, requirements and conditions of provided data depend on."""
+    assignments: dict[InstanceVariable, list[Assigned]] = {}
+    for assigned in all_assignments(instances):
+        if assigned.variable is not None:
+            assignments.setdefault(assigned.variable, []).append(assigned)
+    result = ConeOfInfluence({}, [], [])
+    queue: list[InstanceVariable] = []
+
+    def read(expression: ex.Expression | None, within: Instance | None, computed: InstanceVariable | None) -> None:
+        for access in accesses(expression):
+            variable = instances.variable(access, within)
+            if variable is not None and variable not in result.variables:
+                result.variables[variable] = Reason(access, within, computed)
+                queue.append(variable)
+
+    for condition in conditions(instances):
+        read(condition.expression, condition.within, None)
+        result.readings.extend(read_data(instances, condition.expression, condition.within, condition.transition))
+    while queue:
+        for assigned in assignments.get(queue.pop(0), ()):
+            result.computations.append(assigned)
+            read(assigned.value, assigned.instance, assigned.variable)
+            result.readings.extend(
+                read_data(instances, assigned.value, assigned.instance, assigned.transition, assigned.variable)
+            )
+    return result
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """An expanded expression that the supervisor itself evaluates, with its place.
+
+    `within` is the instance whose text contains it, or None for the robot. `transition` is the transition that it
+    guards.
+    """
+
+    expression: ex.Expression
+    within: Instance | None
+    transition: robosc.Transition | robosc.RequirementTransition | None = None
+
+
+def guard_of(transition: robosc.Transition) -> ex.Expression | None:
+    """Return the guard of a transition. None if it has no guard."""
+    return transition.guard if isinstance(transition, robosc.GuardedTransition) else None
+
+
+def conditions(instances: Instances) -> Iterator[Evaluated]:
+    """Iterate over all guards and conditions."""
+    for instance in instances:
+        for transition, _ in instance.transitions:
+            guard = guard_of(transition)
+            if guard is not None:
+                yield Evaluated(instances.expanded(guard, instance), instance, transition)
+    for condition, within, following in _stated(instances):
+        if condition is not None:
+            yield Evaluated(instances.expanded(condition, within), within, following)
+
+
+def _stated(
+    instances: Instances,
+) -> Iterator[tuple[ex.Expression | None, Instance | None, robosc.RequirementTransition | None]]:
+    """Iterate over the conditions of requirements, properties and statements that provide data."""
+    for automaton in instances.statements(robosc.AutomatonRequirement):
+        transitions = (transition for state in automaton.element.states for transition in state.transitions)
+        yield from ((transition.guard, automaton.within, transition) for transition in transitions)
+    for condition, within in _remembered(instances):
+        yield condition, within, None
+
+
+def _remembered(instances: Instances) -> Iterator[tuple[ex.Expression | None, Instance | None]]:
+    """Iterate over the conditions of properties, requirements, provided data and invariants.
+
+    They read only the robot's stored state, not the data of an event.
+    """
+    for claimed in instances.statements(robosc.Property):
+        yield claimed.element.condition, claimed.within
+        if isinstance(claimed.element, robosc.ReachabilityProperty):
+            yield claimed.element.premise, claimed.within
+    for required in instances.statements(robosc.CommunicationRequirement):
+        yield required.element.condition, required.within
+    for provided in (statement for port in instances.ports() for statement in instances.provided(port)):
+        yield provided.element.condition, provided.within
+    for invariant in instances.statements(robosc.StateInvariant):
+        yield invariant.element.condition, invariant.within
+
+
+def all_assignments(instances: Instances) -> Iterator[Assigned]:
+    """Iterate over the assignments of all instances, in the order of the text."""
+    for instance in instances:
+        for transition, _ in instance.transitions:
+            for assignment in transition.assignments:
+                variable = instances.variable(assignment.item, instance) if assignment.item else None
+                given = assignment.value
+                value = None if given is None else instances.expanded(given, instance)
+                yield Assigned(instance, transition, assignment, variable, value)
+
+
+def accesses(expression: ex.Expression | None) -> Iterator[robosc.Access]:
+    """Iterate over the accesses in an expression, from left to right."""
+    return (part for part in parts(expression) if isinstance(part, robosc.Access))
+
+
+def read_data(
+    instances: Instances,
+    expression: ex.Expression | None,
+    within: Instance | None,
+    transition: robosc.Transition | robosc.RequirementTransition | None,
+    variable: InstanceVariable | None = None,
+) -> Iterator[Reading]:
+    """Iterate over the reads of event data in an expanded expression of a transition.
+
+    `variable` is the variable that the expression is assigned to.
+    """
+    reference, event = _event(transition)
+    port = None if reference is None else instances.port(reference, within)
+    if expression is None or port is None or event is None or event.is_sent:
+        return
+    bounds = None if variable is None else _bounds(variable.type)
+    value = declared_type(data_type(port.communication, event))
+    for part, carried in inputs_in(expression, port, event, bounds, is_condition=variable is None):
+        access = next(filter(_reads_event, parts(part)))
+        reason = Reason(access, within, variable)
+        yield Reading(expression, part, carried, reason, value)
+        if variable is not None and isinstance(carried, Computed) and may_be_missing(carried):
+            yield Reading(expression, part, readable(carried), reason, value, is_readable=True)
+
+
+def _event(
+    transition: robosc.Transition | robosc.RequirementTransition | None,
+) -> tuple[robosc.CommunicationReference | None, PortEvent | None]:
+    """Return the communication and the event of a transition. None if it has none."""
+    match transition:
+        case robosc.ResultTransition():
+            return transition.communicationType, event_of(transition.communicationType, transition.resultType)
+        case robosc.RequirementTransition() if transition.event is not None:
+            return transition.event.communicationType, meant(transition.event)
+    return None, None
+
+
+def _reads_event(part: ex.Expression) -> TypeGuard[robosc.Access | robosc.ErrorReason]:
+    """Return whether a part is `value` or `error`."""
+    return isinstance(part, robosc.ErrorReason) or (isinstance(part, robosc.Access) and part.value)
+
+
+def _bounds(declared: robosc.DataType) -> tuple[int, int] | None:
+    """Return the bounds of an integer with a range. None for other types."""
+    if not isinstance(declared, robosc.IntegerDataType) or declared.minimum is None or declared.maximum is None:
+        return None
+    return declared.minimum, declared.maximum

@@ -1,0 +1,225 @@
+"""Evaluation of expressions, with the same results as every generated program."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from robosc.model import expression as ex
+from robosc.model import rosgraph
+from robosc.model.semantics.operators import Rule, UnreadableError, Value, as_double, divide, operator_of
+from robosc.model.semantics.walks import operands
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+__all__ = ["Program", "Value", "as_double", "divide", "evaluate", "literal", "saturate"]
+
+_Result = TypeVar("_Result")
+_LITERALS = (ex.BooleanLiteral, ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLiteral)
+
+
+def evaluate(
+    expression: ex.Expression, read: Callable[[ex.Expression], Value], fit: Callable[[int], int] | None = None
+) -> Value:
+    """Return the value of a well-typed expression; `read` returns the value of each reference in it.
+
+    Doubles follow IEEE 754, division by zero included; every comparison with NaN is false. `and`, `or` and `=>` skip
+    the right operand if the left one decides. `fit` maps each computed integer; by default integers are unbounded.
+    """
+    return Program[Value](expression, lambda reference: partial(read, reference), fit)()
+
+
+class Program(Generic[_Result]):
+    """An expression compiled to instructions of a stack machine: compiled once, run many times, without recursion.
+
+    A call of the program returns the value. The arguments of the call are passed to all readers.
+    """
+
+    def __init__(
+        self,
+        expression: ex.Expression,
+        reader: Callable[[ex.Expression], Callable[..., Any]],
+        fit: Callable[[int], int] | None = None,
+    ) -> None:
+        """Compile an expression.
+
+        `reader` returns the function that reads a reference; `fit` is as for `evaluate`.
+        """
+        self._reader = reader
+        self._fit = fit
+        self._code: list[tuple[int, Any]] = []
+        pending: list[Any] = [expression]
+        while pending:
+            step = pending.pop()
+            if isinstance(step, _Label):
+                step.position = len(self._code)
+            elif isinstance(step, tuple):
+                self._code.append(step)
+            else:
+                pending += reversed(self._steps(step))
+
+    def __call__(self, *source: Any) -> _Result:
+        """Run the instructions."""
+        stack: list[Any] = []
+        code, position = self._code, 0
+        loops = _Loops()
+        while position < len(code):
+            kind, argument = code[position]
+            position += 1
+            if kind == _READ:
+                stack.append(argument(*source))
+            elif kind == _BINARY:
+                right = stack.pop()
+                stack[-1] = argument(stack[-1], right)
+            elif kind == _UNARY:
+                stack[-1] = argument(stack[-1])
+            elif kind == _CONSTANT:
+                stack.append(argument)
+            elif kind == _DECIDE:
+                decided, value, end = argument
+                if bool(stack[-1]) is decided:
+                    stack[-1], position = value, end.position
+                else:
+                    stack.pop()
+            elif kind >= _CALL:
+                position = loops.step(kind, argument, stack, position, source)
+            elif kind == _JUMP or not stack.pop():
+                position = argument.position
+        return stack[0]  # type: ignore[no-any-return]
+
+    def _steps(self, expression: ex.Expression) -> list[Any]:
+        """Return the instructions for an expression, with its operands and labels among them."""
+        if isinstance(expression, _LITERALS):
+            return [(_CONSTANT, expression.value)]
+        end = _Label()
+        if isinstance(expression, ex.Conditional):
+            other = _Label()
+            chosen = [expression.condition, (_UNLESS, other), expression.then, (_JUMP, end)]
+            return [*chosen, other, expression.otherwise, end]
+        if isinstance(expression, rosgraph.ArrayQuantifier):
+            start = _Label()
+            initial, decided = _QUANTIFIERS[str(expression.quantifier)]
+            loop = [start, (_NEXT, (expression, end)), expression.body, (_TALLY, (decided, start, end)), end]
+            return [expression.array, (_EACH, (expression, initial)), *loop]
+        if isinstance(expression, rosgraph.IfReadable):
+            both = (Program[Any](part, self._reader, self._fit) for part in operands(expression))
+            return [(_READ, partial(_if_readable, *both))]
+        row = operator_of(expression)
+        if row is None:
+            return self._read(expression)
+        given = operands(expression)
+        if row.decided is not None:
+            decide = (_DECIDE, (row.decided, row.compute(row.decided, False), end))
+            return [given[0], decide, given[1], (_UNARY, bool), end]
+        compute = row.compute
+        if self._fit is not None and row.rule is Rule.ARITHMETIC:
+            compute = partial(_fitted, self._fit, compute)
+        if isinstance(expression, ex.FunctionCall):
+            return [*given, (_CALL, (len(given), compute))]
+        return [*given, (_UNARY if len(given) == 1 else _BINARY, compute)]
+
+    def _read(self, reference: ex.Expression) -> list[Any]:
+        """Return the instructions for a reference.
+
+        The element of an array that it reads, if any, and its indices are computed first.
+        """
+        access = reference.argument if isinstance(reference, rosgraph.ConversionCall) else reference
+        reader = self._reader(reference)
+        bound = access.quantifier if isinstance(access, rosgraph.WireAccess) else None
+        given: list[Any] = [(_BOUND, bound)] if bound is not None else []
+        given += operands(access) if isinstance(access, rosgraph.WireAccess | rosgraph.ArrayLiteral) else []
+        return [*given, (_REACH, (len(given), reader))] if given else [(_READ, reader)]
+
+
+#: For each quantifier: its value for no elements, and the value of the body that ends the loop. If no value ends it,
+#: the loop counts the elements for which the body is true.
+_QUANTIFIERS: dict[str, tuple[bool | int, bool | None]] = {
+    "all": (True, False),
+    "any": (False, True),
+    "count": (0, None),
+}
+
+
+class _Loops:
+    """Loops over arrays during a run: the remaining elements of each array, and the current element."""
+
+    def __init__(self) -> None:
+        self._arrays: dict[Any, Any] = {}
+        self._elements: dict[Any, Any] = {}
+
+    def step(self, kind: int, argument: Any, stack: list[Any], position: int, source: Sequence[Any]) -> int:
+        """Run one instruction and return the position of the next one."""
+        if kind in {_CALL, _REACH}:
+            count, function = argument
+            behind = source if kind == _REACH else ()
+            stack[len(stack) - count :] = [function(*stack[len(stack) - count :], *behind)]
+        elif kind == _BOUND:
+            stack.append(self._elements[argument])
+        elif kind == _EACH:
+            quantifier, initial = argument
+            self._arrays[quantifier] = iter(stack[-1])
+            stack[-1] = initial
+        elif kind == _NEXT:
+            quantifier, end = argument
+            element = self._elements[quantifier] = next(self._arrays[quantifier], _NOTHING)
+            if element is _NOTHING:
+                return int(end.position)
+        else:
+            decided, start, end = argument
+            holds = bool(stack.pop())
+            stack[-1] = stack[-1] + holds if decided is None else holds
+            return int(end.position if holds is decided else start.position)
+        return position
+
+
+class _Label:
+    """Target of a jump in a program."""
+
+    position = 0
+
+
+#: Kinds of instructions. Each uses its argument and the values on the stack.
+_READ, _CONSTANT, _UNARY, _BINARY, _DECIDE, _UNLESS, _JUMP, _CALL, _REACH, _BOUND, _EACH, _NEXT, _TALLY = range(13)
+#: Marks the end of an array.
+_NOTHING = object()
+
+
+def _if_readable(value: Program[Any], otherwise: Program[Any], *source: Any) -> Any:
+    try:
+        return value(*source)
+    except UnreadableError:
+        return otherwise(*source)
+
+
+def _fitted(fit: Callable[[int], int], compute: Callable[..., Any], *values: Any) -> Any:
+    result = compute(*values)
+    return fit(result) if isinstance(result, int) else result
+
+
+def saturate(value: int, minimum: int | None, maximum: int | None) -> int:
+    """Return the value, or the nearest bound if it is outside the range. A bound of None does not limit it."""
+    if minimum is not None:
+        value = max(value, minimum)
+    return value if maximum is None else min(value, maximum)
+
+
+def literal(value: Value) -> ex.Expression:
+    """Return the expression of a value. A negative number gets a minus sign.
+
+    A double without a literal (infinity, NaN) becomes a division by zero, as in the text.
+    """
+    if isinstance(value, bool):
+        return ex.BooleanLiteral(value=value)
+    if isinstance(value, float) and not math.isfinite(value):
+        dividend = 0.0 if math.isnan(value) else math.copysign(1.0, value)
+        return ex.Division(left=literal(dividend), right=ex.DoubleLiteral(value=0.0))
+    if isinstance(value, (int, float)):
+        kind = ex.IntegerLiteral if isinstance(value, int) else ex.DoubleLiteral
+        magnitude: ex.Expression = kind(value=abs(value))  # type: ignore[arg-type]
+        return ex.UnaryMinus(operand=magnitude) if value < 0 else magnitude
+    if isinstance(value, str):
+        return ex.StringLiteral(value=value)
+    assert isinstance(value, ex.EnumerationLiteral)
+    return ex.EnumerationLiteralReference(literal=value)

@@ -1,0 +1,339 @@
+"""Expansion of expressions: replaces names, function calls and quantifiers by their definitions."""
+
+from __future__ import annotations
+
+from functools import reduce
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+
+from robosc.model import expression as ex
+from robosc.model import robosc
+from robosc.model.reflection import contents, features, is_attribute, tree
+from robosc.model.semantics.evaluation import Value, evaluate, literal, saturate
+from robosc.model.semantics.operators import UnreadableError
+from robosc.model.semantics.walks import copied, walk
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Mapping
+
+    from robosc.model.semantics.instances import Instance, Instances
+
+    #: Expressions for the parameters of a function, a template or an enum.
+    Arguments: TypeAlias = Mapping[robosc.FormalParameter, ex.Expression]
+
+#: Maximum number of elements of an expanded expression. A few names for sums of names would exceed any limit.
+LARGEST = 20_000
+#: Largest integer that a constant expression computes with. Integers of a robot have 64 bits.
+CLAMP = 1 << 128
+_NAMED = (robosc.Constant, robosc.Condition, robosc.FormalParameter)
+_OPERATORS = {"all": ex.Conjunction, "any": ex.Disjunction, "count": ex.Addition}
+
+
+class _Environment(NamedTuple):
+    """Meaning of names at the place of a part of an expression.
+
+    `within` is the instance whose text contains the part. `moved`: the part is expanded in another text, so that its
+    own names need their component. `templates` maps each template that a quantifier iterates over to the current
+    component. `opened` holds the definitions that are being expanded; it stops circular expansion.
+    """
+
+    within: Instance | None
+    arguments: Arguments
+    templates: Mapping[robosc.Component, robosc.Component]
+    opened: frozenset[Any] = frozenset()
+    moved: bool = False
+
+
+class _Size(NamedTuple):
+    """The number of elements of an expression without its parameters, and the number of uses of each parameter.
+
+    All numbers are at most `LARGEST` + 1.
+    """
+
+    own: int
+    parameters: Mapping[robosc.FormalParameter, int]
+
+    def __add__(self, other: _Size) -> _Size:  # type: ignore[override]
+        parameters = dict(self.parameters)
+        for parameter, number in other.parameters.items():
+            parameters[parameter] = _bounded(parameters.get(parameter, 0) + number)
+        return _Size(_bounded(self.own + other.own), parameters)
+
+    def times(self, number: int) -> _Size:
+        """Return the size of `number` copies."""
+        counts = {parameter: _bounded(count * number) for parameter, count in self.parameters.items()}
+        return _Size(_bounded(self.own * number), counts)
+
+    def with_arguments(self, arguments: Mapping[robosc.FormalParameter, _Size]) -> _Size:
+        """Return the size of the expression with arguments in place of parameters."""
+        size = _Size(self.own, {})
+        for parameter, number in self.parameters.items():
+            size += arguments.get(parameter, _Size(1, {})).times(number)
+        return size
+
+    def of(self, arguments: Mapping[robosc.FormalParameter, _Size]) -> int:
+        """Return the number of elements. A parameter without an argument counts as one element."""
+        return self.with_arguments(arguments).own
+
+
+def _bounded(number: int) -> int:
+    return min(number, LARGEST + 1)
+
+
+def _is_long(named: robosc.Constant | robosc.Condition) -> bool:
+    """Return whether a name stands for more than one literal number."""
+    if named.value is None:
+        return False
+    return isinstance(named, robosc.Condition) or isinstance(named.type, robosc.StringDataType)
+
+
+class Expansion:
+    """Expands the expressions of a robot's instances. Returns an expression itself if it needs no expansion.
+
+    Definitions in a circle stay names. All names stay if an expression would have more than `LARGEST` elements;
+    `too_large` holds these expressions.
+    """
+
+    def __init__(self, instances: Instances | None) -> None:
+        self._instances = instances
+        self._known: dict[tuple[ex.Expression, Instance | None, bool], ex.Expression] = {}
+        self._sizes: dict[Any, _Size] = {}
+        #: Literals of constants that are expanded already.
+        self._constants: dict[tuple[robosc.NamedExpression, Instance | None], ex.Expression] = {}
+        self._elements: dict[ex.Located, ex.Located] = {}
+        self.too_large: dict[ex.Expression, None] = {}
+
+    def __call__(self, expression: ex.Expression, within: Instance | None, *, readable: bool = False) -> ex.Expression:
+        """Return the expression in the text of an instance (None: of the robot), as the supervisor computes it.
+
+        `readable`: return the form for people, which keeps the names of constants, conditions and functions. Equal
+        arguments give the same object.
+        """
+        key = (expression, within, readable)
+        if key not in self._known:
+            needed = readable and within is not None
+            affected = needed or any(_is_affected(part) for _, part in tree(expression))
+            start = _Environment(within, within.arguments if within else {}, {}, moved=readable)
+            self._readable = readable
+            affected = affected and not self.is_too_large(expression)
+            self._known[key] = walk(self._step, (expression, start)) if affected else expression
+        return self._known[key]
+
+    def is_too_large(self, expression: ex.Expression) -> bool:
+        """Return whether the expanded expression has more than `LARGEST` elements. If so, add it to `too_large`."""
+        if self._size(expression) <= LARGEST:
+            return False
+        self.too_large[expression] = None
+        return True
+
+    def constant(self, expression: ex.Expression, within: Instance | None) -> ex.Expression:
+        """Return a constant expression as a literal. If it has no value, return it expanded."""
+        return _folded(self(expression, within))
+
+    def argued(self, expression: ex.Expression, arguments: Arguments) -> ex.Expression:
+        """Expand an expression outside of components, such as the condition of an enum's rule, with these arguments."""
+        self._readable = False
+        start = _Environment(None, arguments, {})
+        affected = self._size(expression) <= LARGEST and any(_is_affected(part) for _, part in tree(expression))
+        return walk(self._step, (expression, start)) if affected else expression
+
+    def _size(self, expression: ex.Expression) -> int:
+        """Return the number of elements and characters of the expanded expression, at most `LARGEST` + 1."""
+        return walk(self._measured, expression, self._sizes).of({})
+
+    def _measured(self, element: Any) -> Generator[Any, _Size, _Size]:
+        """Compute the size of an expression, or of the value of a named one."""
+        if isinstance(element, robosc.NamedExpression):
+            self._sizes[element] = _Size(1, {})  # A circle of definitions is not expanded.
+            size = (yield element.value) if element.value is not None else _Size(1, {})
+            self._sizes[element] = size
+            return size
+        size = _Size(1 + len(element.value), {}) if isinstance(element, ex.StringLiteral) else _Size(1, {})
+        inside: list[_Size] = []
+        for _, child in contents(element):
+            inside.append((yield child))
+        match element:
+            case robosc.Access(item=robosc.FormalParameter() as parameter):
+                size = _Size(1, {parameter: 1})
+            case robosc.Access(item=(robosc.Constant() | robosc.Condition()) as named) if _is_long(named):
+                size = yield named
+            case robosc.Call(function=robosc.Function() as function) if function.value is not None:
+                called = yield function
+                return called.with_arguments(dict(zip(function.parameters, inside, strict=False)))
+            case robosc.InstanceQuantifier(template=robosc.Component()) if self._instances:
+                copies = sum(1 for _ in self._instances.of(element.template))
+                inside = [part.times(copies) for part in inside]
+        return sum(inside, start=size)
+
+    def _step(self, node: tuple[Any, _Environment]) -> Generator[Any, Any, Any]:
+        """Copy an element and expand its names; yields the parts to copy first."""
+        element, environment = node
+        match element:
+            case robosc.Access(item=robosc.FormalParameter() as parameter) if parameter in environment.arguments:
+                return copied(environment.arguments[parameter])
+            case robosc.Access(item=(robosc.Constant() | robosc.Condition()) as named):
+                written = yield from self._named(element, named, environment)
+                if written is not None:
+                    return written
+            case robosc.Call(function=robosc.Function()) if not self._readable:
+                written = yield from self._call(element, environment)
+                if written is not None:
+                    return written
+            case robosc.InstanceQuantifier(template=robosc.Component()) if self._instances and not self._readable:
+                return (yield from self._quantified(element, environment))
+        return (yield from self._copy(element, environment))
+
+    def _named(
+        self, access: robosc.Access, item: robosc.Constant | robosc.Condition, environment: _Environment
+    ) -> Generator[Any, Any, ex.Expression | None]:
+        if self._readable or item in environment.opened or item.value is None:
+            return None
+        owner = self._owner(access.component, environment) if _is_member(item) else None
+        if owner is None and _is_member(item) and isinstance(item, robosc.Condition):
+            return None
+        if (item, owner) in self._constants:
+            return copied(self._constants[item, owner])
+        opened = environment.opened | {item}
+        inner = _Environment(owner, owner.arguments if owner else {}, {}, opened, moved=True)
+        value: ex.Expression = yield (item.value, inner)
+        if not isinstance(item, robosc.Constant):
+            return value
+        folded = _folded(value)
+        if folded is not value:
+            self._constants[item, owner] = copied(folded)
+        return folded
+
+    def _call(self, call: robosc.Call, environment: _Environment) -> Generator[Any, Any, ex.Expression | None]:
+        function = call.function
+        given: list[ex.Expression] = []  # A generator cannot yield from within a comprehension.
+        if function in environment.opened or function.value is None or len(call.arguments) != len(function.parameters):
+            return None
+        for argument in call.arguments:
+            given.append((yield (argument, environment)))  # noqa: PERF401
+        arguments = dict(zip(function.parameters, given, strict=True))
+        owner = environment.within if _is_member(function) else None
+        if owner is not None:
+            arguments = {**owner.arguments, **arguments}
+        opened = environment.opened | {function}
+        value: ex.Expression = yield (function.value, _Environment(owner, arguments, {}, opened, environment.moved))
+        return value
+
+    def _quantified(
+        self, quantifier: robosc.InstanceQuantifier, environment: _Environment
+    ) -> Generator[Any, Any, ex.Expression]:
+        assert self._instances is not None
+        counts = quantifier.quantifier == robosc.Quantifier.count
+        found: list[ex.Expression] = []
+        for instance in self._instances.of(quantifier.template):
+            templates = {**environment.templates, quantifier.template: instance.component}
+            body = yield (quantifier.body, environment._replace(templates=templates))
+            if counts:
+                counted, uncounted = ex.IntegerLiteral(value=1), ex.IntegerLiteral(value=0)
+                body = ex.Conditional(condition=body, then=counted, otherwise=uncounted, source=quantifier.source)
+            found.append(body)
+        if not found:
+            is_all = quantifier.quantifier == robosc.Quantifier.all
+            return ex.IntegerLiteral(value=0) if counts else ex.BooleanLiteral(value=is_all)
+        operator: Any = _OPERATORS[str(quantifier.quantifier)]
+        return reduce(lambda left, right: operator(left=left, right=right, source=quantifier.source), found)
+
+    def _copy(self, element: Any, environment: _Environment) -> Generator[Any, Any, Any]:
+        made = type(element)()
+        if isinstance(element, robosc.ArrayElement):
+            self._elements[element] = made  # References to the element come later.
+        children = []
+        for _, child in contents(element):
+            children.append((yield (child, environment)))
+        inside = iter(children)
+        for name, feature in features(element.eClass).items():
+            value = getattr(element, name)
+            if value is None:
+                continue
+            if is_attribute(feature) or not feature.containment:
+                if not feature.many:
+                    setattr(made, name, self._elements.get(value, value) if name == "item" else value)
+            elif feature.many:
+                getattr(made, name).extend(next(inside) for _ in value)
+            else:
+                setattr(made, name, next(inside))
+        if isinstance(element, robosc.Access) and element.component is not None:
+            owner = self._owner(element.component, environment)
+            if owner is not None and (environment.moved or element.component in environment.templates):
+                made.component = owner.component
+        return made
+
+    def _owner(self, component: robosc.Component | None, environment: _Environment) -> Instance | None:
+        if self._instances is None:
+            within = environment.within
+            return within if within is not None and component in {None, within.definition} else None
+        component = environment.templates.get(component, component) if component else None
+        return self._instances.instance(component, environment.within)
+
+
+def constant(expression: ex.Expression) -> ex.Expression:
+    """Return a constant expression outside of components as a literal. If it has no value, return it expanded."""
+    return _folded(Expansion(None)(expression, None))
+
+
+def constant_value(expression: ex.Expression | None, within: Instance | None = None) -> Value | None:
+    """Return the value of a constant expression in the text of an instance (None: in any text).
+
+    None if it has no value because it reads something that is not constant, or a parameter with an unknown argument.
+    The value of an enum is its `EnumValue`.
+    """
+    return None if expression is None else _value(Expansion(None)(expression, within))
+
+
+def is_unreadable(expression: ex.Expression, within: Instance | None = None) -> bool | None:
+    """Return whether a constant expression has no value because it rounds NaN. None if it is not constant."""
+    try:
+        evaluate(Expansion(None)(expression, within), _enum_value, _clamped)
+    except UnreadableError:
+        return True
+    except (_NoValueError, TypeError, ValueError, OverflowError, AttributeError):
+        return None
+    return False
+
+
+def _folded(expression: ex.Expression) -> ex.Expression:
+    value = _value(expression)
+    if value is None:
+        return expression
+    made = robosc.Access(item=value) if isinstance(value, robosc.EnumValue) else literal(value)
+    made.source = expression.source
+    return made
+
+
+def _value(expression: ex.Expression) -> Value | None:
+    try:
+        return evaluate(expression, _enum_value, _clamped)
+    except (_NoValueError, UnreadableError, TypeError, ValueError, OverflowError, AttributeError):
+        return None
+
+
+def _clamped(value: int) -> int:
+    """Limit an integer far outside of 64 bits to `CLAMP`.
+
+    Such an integer is too large in any case, and repeated squares would fill memory.
+    """
+    return saturate(value, -CLAMP, CLAMP)
+
+
+class _NoValueError(Exception):
+    """Error of an expression that reads something that is not constant."""
+
+
+def _enum_value(reference: ex.Expression) -> Value:
+    if isinstance(reference, robosc.Access) and isinstance(reference.item, robosc.EnumValue):
+        return reference.item
+    raise _NoValueError
+
+
+def _is_affected(part: Any) -> bool:
+    return isinstance(part, robosc.Call | robosc.InstanceQuantifier) or (
+        isinstance(part, robosc.Access) and isinstance(part.item, _NAMED)
+    )
+
+
+def _is_member(named: robosc.NamedExpression) -> bool:
+    """Return whether a definition belongs to a component."""
+    return isinstance(named.eContainer(), robosc.LocalComponent)

@@ -1,0 +1,317 @@
+"""Message data that a node reads, and headers that it fills: shared by interpreted and generated nodes.
+
+A node reads only the data that the transitions of the present state need: guards up to the first that holds, and the
+values assigned there. If any of that cannot be read, the event happens for no component. An input of the supervisor
+that cannot be read and that no transition needs has its first value.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+from robosc.base.ros_types import Section
+from robosc.model import expression as ex
+from robosc.model import rosgraph
+from robosc.model.reflection import contents, tree
+from robosc.model.semantics.evaluation import Value, saturate
+from robosc.model.semantics.operators import operator_of
+from robosc.model.semantics.roles import event_name
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+#: Names of fields and positions in arrays, from the message inwards.
+Path: TypeAlias = tuple[str, ...]
+#: Stands for every position of an array.
+EACH = "*"
+
+
+@dataclass(frozen=True)
+class Read:
+    """A part of a message that is read: a value of a type, or the argument of a conversion.
+
+    `reference` is the first expression that reads it. Without type and conversion the part is an object, and none
+    of its fields is read.
+    """
+
+    reference: ex.Expression
+    type: ex.Type | None = None
+    conversion: rosgraph.Conversion | None = None
+
+    @property
+    def is_value(self) -> bool:
+        """Whether the part is a value, not an object."""
+        return self.type is not None or self.conversion is not None
+
+
+#: Parts read of a message. An array whose elements are all read has the parts of an element.
+Shown: TypeAlias = "dict[Path, Read | Shown]"
+
+
+def receptions(graph: rosgraph.RosGraph) -> list[rosgraph.Reception]:
+    """Return all receptions of data, and the errors of services, which have a reason."""
+    errors = [service.error for service in graph.serviceClients]
+    return [*(reception for _, _, several in received(graph) for reception in several), *errors]
+
+
+def received(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Interface, Section, Sequence[rosgraph.Reception]]]:
+    """Yield each kind of incoming ROS message: its interface, the section, and its receptions."""
+    for topic in graph.subscriptions:
+        yield topic.interface, Section.MESSAGE, topic.receptions
+    for service in graph.serviceClients:
+        yield service.interface, Section.RESPONSE, [service.response]
+    for action in graph.actionClients:
+        yield action.interface, Section.FEEDBACK, [action.feedback]
+        for end in (action.response, action.error, action.canceled):
+            yield action.interface, Section.RESULT, [end]
+
+
+def sections(graph: rosgraph.RosGraph) -> dict[str, tuple[str, str, Section]]:
+    """Return package, type and section of each event with data, by the name of the event.
+
+    The error of a service has the data of an answer that cannot be read.
+    """
+    known = {
+        event_name(reception.event): (interface.package, interface.type, section)
+        for interface, section, several in received(graph)
+        for reception in several
+    }
+    answers = {event_name(client.error.event): event_name(client.response.event) for client in graph.serviceClients}
+    return {**{error: known[answer] for error, answer in answers.items()}, **known}
+
+
+def reads_elements(expression: ex.Expression) -> bool:
+    """Return whether an expression reads array elements or partial operators, which can fail.
+
+    The rules of enumerations are not considered, nor are values within `IfReadable`.
+    """
+    return any(
+        isinstance(part, rosgraph.IndexStep | rosgraph.SliceStep) or _is_partial(part)
+        for part in _unconditional(expression)
+    )
+
+
+def _unconditional(expression: ex.Expression) -> Iterator[ex.Located]:
+    """Yield all parts of an expression except those within an `IfReadable`."""
+    pending: list[ex.Located] = [expression]
+    while pending:
+        part = pending.pop()
+        if not isinstance(part, rosgraph.IfReadable):
+            yield part
+            pending += [inside for _, inside in contents(part)]
+
+
+def reads_parameters(conversion: rosgraph.Conversion) -> bool:
+    """Return whether a rule of an enumeration reads a parameter, directly or through another enumeration."""
+    for rule in conversion.rules:
+        for _, part in tree(rule.condition):
+            if isinstance(part, rosgraph.NodeVariableReference):
+                return True
+            if isinstance(part, rosgraph.ConversionCall) and reads_parameters(part.conversion):
+                return True
+    return False
+
+
+def _is_partial(part: ex.Located) -> bool:
+    row = operator_of(part) if isinstance(part, ex.FunctionCall) else None
+    return row is not None and row.is_partial
+
+
+def first_value(kind: ex.Type) -> Value:
+    """Return the value of an input before any data: `false`, the first literal, or the integer nearest to zero."""
+    match kind:
+        case ex.EnumerationType():
+            return kind.first or kind.enumeration.literals[0]
+        case ex.IntegerType():
+            return saturate(0, kind.minimum, kind.maximum)
+    return False
+
+
+def is_structured(kind: ex.Type) -> bool:
+    """Return whether a type is an array or an object. Reports omit variables of these types."""
+    return isinstance(kind, rosgraph.ArrayType | rosgraph.ObjectType)
+
+
+def holds_objects(kind: ex.Type) -> bool:
+    """Return whether a type is an object or an array of objects, which the node forwards unchanged."""
+    if isinstance(kind, rosgraph.ArrayType):
+        return kind.element is None or isinstance(kind.element, rosgraph.ObjectType)
+    return isinstance(kind, rosgraph.ObjectType)
+
+
+def source_of(access: rosgraph.WireAccess) -> rosgraph.NodeVariable | None:
+    """Return the variable that an access reads, also within an element of an array; None for incoming data."""
+    while access.quantifier is not None:
+        access = access.quantifier.array
+    return access.variable
+
+
+def path_of(access: rosgraph.WireAccess) -> Path:
+    """Return the path of an access, with EACH if it may read any element of an array."""
+    path: list[str] = [*path_of(access.quantifier.array), EACH] if access.quantifier else []
+    sliced = False
+    for step in access.steps:
+        match step:
+            case rosgraph.FieldStep():
+                path.append(step.name)
+            case rosgraph.IndexStep():
+                path.append(EACH if sliced or step.position is not None else str(step.index))
+        sliced = isinstance(step, rosgraph.SliceStep)
+    return tuple(path)
+
+
+def whole(value: ex.Expression) -> ex.Expression:
+    """Return a value without its replacement for missing data."""
+    return value.value if isinstance(value, rosgraph.IfReadable) else value
+
+
+def origins(graph: rosgraph.RosGraph) -> dict[rosgraph.NodeVariable, dict[tuple[rosgraph.Reception, Path], None]]:
+    """Return the incoming data, with the path in it, that each stored array or object may be a copy of.
+
+    Copies of copies count, too.
+    """
+    known = {reception.event: reception for reception in receptions(graph)}
+    stored = [
+        (reaction.event, given.variable, value)
+        for reaction in graph.reactions
+        for given in reaction.assignments
+        if is_structured(given.variable.type) and isinstance(value := whole(given.value), rosgraph.WireAccess)
+    ]
+    found: dict[rosgraph.NodeVariable, dict[tuple[rosgraph.Reception, Path], None]] = {}
+    changed = True
+    while changed:
+        changed = False
+        for event, variable, access in stored:
+            starts = found.get(access.variable, {}) if access.variable else {(known[event], ()): None}
+            places = {(reception, (*path, *path_of(access))): None for reception, path in starts}
+            changed = changed or not places.keys() <= found.get(variable, {}).keys()
+            found.setdefault(variable, {}).update(places)
+    return {variable: places for variable, places in found.items() if places}
+
+
+def kept_reads(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Reception, Path, Read]]:
+    """Yield the reads of stored data, as reads of the message that the data came in."""
+    known = origins(graph)
+    for _, part in tree(graph):
+        if isinstance(part, rosgraph.WireAccess | rosgraph.ConversionCall):
+            access = part.argument if isinstance(part, rosgraph.ConversionCall) else part
+            variable = source_of(access)
+            conversion = part.conversion if isinstance(part, rosgraph.ConversionCall) else None
+            kind, inside = access.type, path_of(access)
+            if isinstance(kind, rosgraph.ArrayType) and conversion is None:
+                kind, inside = kind.element, (*inside, EACH)
+            for reception, path in known.get(variable, ()) if variable else ():
+                yield reception, (*path, *inside), Read(part, kind, conversion)
+
+
+def reads_reason(values: Iterable[ex.Expression]) -> bool:
+    """Return whether an expression reads the failure reason of a service or action."""
+    return any(isinstance(part, rosgraph.ErrorReason) for value in values for _, part in tree(value))
+
+
+def reads(values: Iterable[ex.Expression]) -> Iterator[tuple[Path, Read]]:
+    """Yield the paths of a message that expressions read. The argument of a conversion is one read, its conversion.
+
+    A stored object counts as a read of all its known fields: they may be read or sent later.
+    """
+    for value in map(whole, values):
+        owner = value.eContainer()
+        if isinstance(owner, rosgraph.IfReadable):
+            owner = owner.eContainer()
+        kept = owner.variable.type if isinstance(owner, rosgraph.NodeAssignment) else None
+        if isinstance(value, rosgraph.WireAccess) and value.variable is None and kept and holds_objects(kept):
+            for inside, kind in parts_of(kept):
+                path = (*path_of(value), *inside)
+                yield path, Read(value if EACH in path else access_to(path, type(kind)()), kind)
+        argument = None
+        for _, part in tree(value):
+            if isinstance(part, rosgraph.ConversionCall):
+                argument = part.argument
+                if source_of(argument) is None:
+                    yield path_of(argument), Read(part, conversion=part.conversion)
+            elif isinstance(part, rosgraph.WireAccess) and part is not argument and source_of(part) is None:
+                if isinstance(part.type, rosgraph.ArrayType):
+                    yield (*path_of(part), EACH), Read(part, part.type.element)
+                else:
+                    yield path_of(part), Read(part, part.type)
+
+
+def parts_of(kind: ex.Type | None, path: Path = ()) -> Iterator[tuple[Path, ex.Type]]:
+    """Yield the known basic values of a type at the end of a path: the path to each, and its type."""
+    if isinstance(kind, rosgraph.ArrayType):
+        inner = parts_of(kind.element, path[1:])
+        yield from inner if path else (((EACH, *way), part) for way, part in inner)
+    elif isinstance(kind, rosgraph.ObjectType):
+        for field in kind.fields:
+            if path:
+                yield from parts_of(field.type, path[1:]) if field.name == path[0] else ()
+            else:
+                yield from (((field.name, *way), part) for way, part in parts_of(field.type))
+    elif kind is not None:
+        yield (), kind
+
+
+def access_to(path: Path, kind: ex.Type | None = None) -> rosgraph.WireAccess:
+    """Return the expression that reads the value at a path of a message."""
+    steps: list[rosgraph.WireStep] = [
+        rosgraph.IndexStep(index=int(step)) if step.isdigit() else rosgraph.FieldStep(name=step) for step in path
+    ]
+    return rosgraph.WireAccess(steps=steps, type=kind)
+
+
+def shown(values: Iterable[ex.Expression]) -> Shown:
+    """Return the data that expressions read, as the event log shows it.
+
+    A read of an element at any position shows the whole array.
+    """
+    found: dict[Path, Read] = {}
+    for path, read in reads(values):
+        if path not in found or not found[path].is_value:
+            found[path] = read
+    objects = [path for path, read in found.items() if not read.is_value]
+    for path in objects:
+        if any(other[: len(path)] == path for other in found if other != path):
+            del found[path]  # something is read of it
+    return _in_arrays(found)
+
+
+def _in_arrays(found: dict[Path, Read]) -> Shown:
+    arrays = {path[: path.index(EACH)] for path in found if EACH in path}
+    made: Shown = {}
+    elements: dict[Path, dict[Path, Read]] = {}
+    for path, read in found.items():
+        array = next((path[:length] for length in range(len(path)) if path[:length] in arrays), None)
+        if array is None:
+            made[path] = read
+        else:
+            made.setdefault(array, {})
+            rest = tuple(EACH if step.isdigit() else step for step in path[len(array) + 1 :])
+            elements.setdefault(array, {}).setdefault(rest, read)
+    for array, inside in elements.items():
+        made[array] = _in_arrays(inside)
+    return made
+
+
+def paths_set(sending: rosgraph.Sending) -> list[Path]:
+    """Return the fields that the model sets, in the order of the model; `()` is the whole message."""
+    return list(dict.fromkeys(tuple(field.path) for data in sending.alternatives for field in data.fields))
+
+
+def parts_with_headers(sending: rosgraph.Sending) -> list[tuple[str, ...]]:
+    """Return the paths of all parts on the way to fields that the model sets, sorted; `()` is the whole message.
+
+    A goal with `pose.pose.position.x` has `pose`, `pose.pose` and `pose.pose.position`: each part with a field `header`
+    gets the time and the frame. A part is left out if the model sets a field of its `header`.
+    """
+    paths = paths_set(sending)
+    parts = {()} | {path[:length] for path in paths for length in range(1, len(path))}
+    given = {path[: path.index("header")] for path in paths if "header" in path}
+    return sorted(part for part in parts - given if "header" not in part)
+
+
+def message_named(graph: rosgraph.RosGraph, name: str) -> rosgraph.Sending | None:
+    """Return the message that the node sends with this name or `Component.name`; None unless there is exactly one."""
+    sendings = [sending for publisher in graph.publishers for sending in publisher.sendings]
+    found = [sending for sending in sendings if name in (sending.name, sending.event.eContainer().origin)]
+    return found[0] if len(found) == 1 else None

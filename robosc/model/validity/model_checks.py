@@ -1,0 +1,137 @@
+"""Framework for checks of models: a check reports faults of one element.
+
+Each kind of model has a table of checks. It lists the checks for the elements of each class.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
+from typing import Any
+
+from robosc.model import expression as ex
+from robosc.model import robosc
+from robosc.model.reflection import tree
+from robosc.model.semantics.operators import Rule, operator_of
+from robosc.model.semantics.typing import BOOLEAN, DOUBLE, INTEGER, UNKNOWN, EnumType, Type, Types, is_number
+from robosc.model.semantics.walks import operands
+
+#: The faulty element, and the reason.
+Fault = tuple[Any, str]
+
+
+class Model:
+    """A model under check: its root, its elements in preorder, and the types of expressions."""
+
+    def __init__(self, root: Any) -> None:
+        self.root = root
+        self.elements = [element for _, element in tree(root)]
+        self.types = Types()
+
+    @cached_property
+    def own(self) -> set[Any]:
+        """Elements as a set."""
+        return set(self.elements)
+
+    def unlike(self, expression: ex.Expression, wanted: Type) -> Iterator[Fault]:
+        """Report a fault if an expression does not have the wanted type."""
+        found = self.types(expression)
+        if UNKNOWN not in {found, wanted} and found != wanted:
+            yield expression, f"this is of {_named(found)}, but {_named(wanted)} is wanted"
+
+
+Check = Callable[[Any, Model], Iterable[Fault]]
+Checks = Mapping[type, Sequence[Check]]
+
+
+def faults_of(model: Model, checks: Checks) -> Iterator[Fault]:
+    """Report the faults that a table of checks detects in a model."""
+    by_class: dict[type, list[Check]] = {}
+    for element in model.elements:
+        kind = type(element)
+        if kind not in by_class:
+            by_class[kind] = [check for asked, found in checks.items() if issubclass(kind, asked) for check in found]
+        for check in by_class[kind]:
+            yield from check(element, model)
+
+
+def demand(holds: Callable[[Any], bool], message: str) -> Check:
+    """Return the check of a condition on an element. The message refers to the element as `{0.name}`."""
+
+    def check(element: Any, _model: Model) -> Iterator[Fault]:
+        if not holds(element):
+            yield element, message.format(element)
+
+    return check
+
+
+def typed(feature: str, wanted: Callable[[Any], Type] = lambda _: BOOLEAN) -> Check:
+    """Return the check that the expression in a feature, if any, has the type that `wanted` returns for the element."""
+
+    def check(element: Any, model: Model) -> Iterator[Fault]:
+        value = getattr(element, feature)
+        if value is not None:
+            yield from model.unlike(value, wanted(element))
+
+    return check
+
+
+def unique(*features: str) -> Check:
+    """Return the check that the names in each of these features are unique."""
+
+    def check(element: Any, _model: Model) -> Iterator[Fault]:
+        for feature in features:
+            for named in repeated(getattr(element, feature), lambda named: named.name):
+                yield named, f"the name '{named.name}' is given twice"
+
+    return check
+
+
+def repeated(elements: Iterable[Any], key: Callable[[Any], Any]) -> Iterator[Any]:
+    """Iterate over the elements that have the key of an earlier one."""
+    seen = set()
+    for element in elements:
+        if key(element) in seen:
+            yield element
+        seen.add(key(element))
+
+
+def around(element: Any, kind: type) -> Any:
+    """Return the nearest container of a class around an element, or None."""
+    found = element.eContainer()
+    while found is not None and not isinstance(found, kind):
+        found = found.eContainer()
+    return found
+
+
+_WANTED = {Rule.LOGICAL: BOOLEAN, Rule.DOUBLE: DOUBLE, Rule.INTEGER: INTEGER, Rule.ROUNDING: DOUBLE}
+
+
+def fitting_operands(expression: ex.Expression, model: Model) -> Iterator[Fault]:
+    """Check the operators of an sct or rosgraph model, whose operands all have one type."""
+    row, given = operator_of(expression), operands(expression)
+    if isinstance(expression, (robosc.Access, robosc.ObjectValue)):
+        yield expression, f"{type(expression).__name__} belongs in a robosc model only"
+    elif isinstance(expression, ex.Conditional):
+        yield from model.unlike(expression.condition, BOOLEAN)
+        yield from _differ(expression, given[1:], model)
+    elif row is not None and row.rule in _WANTED:
+        wanted = INTEGER if isinstance(expression, ex.DoubleConversion) else _WANTED[row.rule]
+        for operand in given:
+            yield from model.unlike(operand, wanted)
+    elif row is not None and row.rule not in {Rule.SIZE, Rule.ELEMENTS}:
+        faults = [*_differ(expression, given, model)]
+        yield from faults
+        found = model.types(given[0])
+        if row.rule is not Rule.EQUALITY and not faults and not is_number(found) and found != UNKNOWN:
+            yield expression, f"numbers are wanted, not {_named(found)}"
+
+
+def _differ(expression: ex.Expression, given: Iterable[ex.Expression], model: Model) -> Iterator[Fault]:
+    kinds = [kind for kind in map(model.types, given) if kind != UNKNOWN]
+    if len(set(kinds)) > 1:
+        yield expression, f"the operands are of {_named(kinds[0])} and {_named(kinds[1])}, not of one type"
+
+
+def _named(kind: Type) -> str:
+    return f"enumeration {kind.definition.name}" if isinstance(kind, EnumType) else str(kind)

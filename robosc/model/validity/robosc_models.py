@@ -1,0 +1,165 @@
+"""Checks of the names in a robosc model, which linking ensures in a text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robosc.model import robosc
+from robosc.model.semantics.typing import (
+    UNKNOWN,
+    ObjectType,
+    access_types,
+    declared_type,
+    provided_data_type,
+    value_type,
+)
+from robosc.model.validity.model_checks import around, demand
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from robosc.model.validity.model_checks import Checks, Fault, Model
+
+
+def _made(made: robosc.InstantiatedComponent | robosc.ImportedComponent, _model: Model) -> Iterator[Fault]:
+    user = around(made, robosc.Component)
+    if user is not None and user.parameters:
+        yield made, f"the template '{user.name}' has no text of its own"
+        return
+    seen, component = {user}, made.definition
+    while isinstance(component.type, robosc.InstantiatedComponent | robosc.ImportedComponent):
+        if component in seen:
+            yield made, f"'{component.name}' is made of itself"
+            return
+        seen.add(component)
+        component = component.type.definition
+    if isinstance(made, robosc.ImportedComponent):
+        yield from _import(made)
+    elif not made.definition.parameters:
+        yield made, f"'{made.definition.name}' is no template"
+
+
+def _import(imported: robosc.ImportedComponent) -> Iterator[Fault]:
+    if imported.definition.eContainer() is not imported.library:
+        yield imported, f"'{imported.definition.name}' is no component of {imported.library.name}"
+        return
+    own = _definitions(imported.definition)
+    for remapping in imported.remappings:
+        if remapping.communicationType not in own:
+            yield remapping, f"'{remapping.communicationType.name}' is no communication of {imported.definition.name}"
+
+
+def _communication(reference: robosc.CommunicationReference, _model: Model) -> Iterator[Fault]:
+    component = _owner(reference)
+    if component is None:
+        yield reference, f"it does not say whose '{reference.communicationType.name}' is meant"
+    elif reference.communicationType not in _definitions(component):
+        yield reference, f"'{reference.communicationType.name}' is no communication of '{component.name}'"
+
+
+def _running(access: robosc.Access, item: robosc.CommunicationType) -> Iterator[Fault]:
+    component = _owner(access)
+    if component is None:
+        yield access, f"it does not say whose '{item.name}' is meant"
+    elif item not in _definitions(component):
+        yield access, f"'{item.name}' is no communication of '{component.name}'"
+    elif isinstance(item, robosc.Message):
+        yield access, f"'{item.name}' is a message: only a service or an action is running"
+
+
+def _access(access: robosc.Access, _model: Model) -> Iterator[Fault]:
+    item = access.item
+    if isinstance(item, (robosc.State, robosc.Variable)):
+        component = _owner(access)
+        if component is None:
+            yield access, f"it does not say whose '{item.name}' is meant"
+            return
+        behaviours = [part for part in _definitions(component) if isinstance(part, robosc.ComponentBehaviour)]
+        if item.eContainer() not in [behaviour.automaton for behaviour in behaviours]:
+            yield access, f"'{item.name}' is no state or variable of '{component.name}'"
+            return
+    elif isinstance(item, robosc.CommunicationType):
+        yield from _running(access, item)
+        return
+    elif access.component is not None and item not in _definitions(access.component):
+        yield access, "only a state, a variable, a constant or a condition is one of a component"
+        return
+    types = access_types(access, value_type(access))
+    for before, segment in zip(types, access.segments, strict=False):
+        if isinstance(segment, robosc.PropertySegment):
+            yield from _member(segment, before)
+
+
+def _property(element: robosc.ObjectPropertyValue, _model: Model) -> Iterator[Fault]:
+    owner: Any = element.eContainer()
+    owner = owner.eContainer()
+    if isinstance(owner, robosc.ProvideStatement):
+        yield from _member(element, provided_data_type(owner.communicationType.communicationType))
+    elif isinstance(owner, robosc.ObjectPropertyValue):
+        yield from _member(element, declared_type(owner.property.type))
+
+
+def _member(element: Any, of: Any) -> Iterator[Fault]:
+    if of is not UNKNOWN and not (isinstance(of, ObjectType) and element.property in of.definition.properties):
+        yield element, f"'{element.property.name}' is no property of {of}"
+
+
+def _owner(reference: robosc.CommunicationReference | robosc.Access) -> robosc.Component | None:
+    """Return the component that a reference refers to. None if it is not allowed.
+
+    A library's text refers only to its own component.
+    """
+    own: robosc.Component | None = around(reference, robosc.Component)
+    base = around(reference, robosc.Base)
+    component = reference.component or own
+    if component is not None and _stands_for_an_instance(component, reference):
+        return component
+    if component is None or component.eContainer() is not base:
+        return None
+    named = isinstance(base, robosc.Robot) and not component.parameters
+    return component if component is own or named else None
+
+
+def _stands_for_an_instance(component: robosc.Component, reference: Any) -> bool:
+    """Return whether a reference is in the body of an `all`, `any` or `count` over the instances of a component."""
+    quantifier: Any = around(reference, robosc.InstanceQuantifier)
+    while quantifier is not None and quantifier.template is not component:
+        quantifier = around(quantifier, robosc.InstanceQuantifier)
+    return quantifier is not None
+
+
+def _definitions(component: robosc.Component) -> Sequence[Any]:
+    """Return the definitions in a component's text. Precondition: imports are not circular."""
+    kind = component.type
+    while isinstance(kind, robosc.InstantiatedComponent | robosc.ImportedComponent):
+        kind = kind.definition.type
+    return kind.definitions if isinstance(kind, robosc.LocalComponent) else ()
+
+
+_OWN_TARGET = demand(
+    lambda transition: (
+        transition.target is None or transition.target.eContainer() is around(transition, robosc.Automaton)
+    ),
+    "the target '{0.target.name}' is another component's state",
+)
+_DATA_TYPE = demand(
+    lambda reference: (
+        isinstance(reference, robosc.InterfaceTypeReference) or isinstance(reference.type.eContainer(), robosc.Base)
+    ),
+    "'{0.type.name}' is no data type of a robot or library",
+)
+_OWN_OBJECT = demand(
+    lambda reference: reference.type is reference.definition,
+    "it is to name the object that stands for {0.package}/{0.rosType}",
+)
+
+#: The other checks follow imports. They are skipped if an import is broken.
+IMPORT_CHECKS: Checks = {robosc.InstantiatedComponent: [_made], robosc.ImportedComponent: [_made]}
+CHECKS: Checks = {
+    robosc.Transition: [_OWN_TARGET],
+    robosc.CommunicationReference: [_communication],
+    robosc.ComplexDataTypeReference: [_DATA_TYPE],
+    robosc.InterfaceTypeReference: [_OWN_OBJECT],
+    robosc.Access: [_access],
+    robosc.ObjectPropertyValue: [_property],
+}

@@ -1,0 +1,198 @@
+"""Checks of rosgraph models before nodes are generated from them.
+
+One of the checks is consistency: all reads and writes of one message must fit the same data.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING, Any
+
+from robosc.model import expression as ex
+from robosc.model import rosgraph, sct
+from robosc.model.reflection import tree
+from robosc.model.semantics.failures import FAILURES
+from robosc.model.semantics.messages import EACH, path_of, reads_elements, source_of
+from robosc.model.semantics.typing import BOOLEAN, declared_type, infer
+from robosc.model.validity.model_checks import demand, fitting_operands, typed
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from robosc.model.validity.model_checks import Check, Checks, Fault, Model
+
+#: Types of ROS fields in a model.
+_BASIC = (ex.BooleanType, ex.IntegerType, ex.DoubleType, ex.StringType, rosgraph.ArrayType)
+
+
+def _own_event(element: Any, model: Model) -> Iterator[Fault]:
+    event = getattr(element, "event", None)
+    if isinstance(event, sct.Event) and event.eContainer().eContainer() is not model.root.model:
+        yield element, f"the event '{event.name}' is another model's"
+
+
+def _interface(wanted: rosgraph.InterfaceKind) -> Check:
+    message = f"'{{0.interface.type}}' is a {{0.interface.kind}}, but a {wanted} is wanted"
+    return demand(lambda user: user.interface.kind == wanted, message)
+
+
+def _literals(conversion: rosgraph.Conversion, _model: Model) -> Iterator[Fault]:
+    for literal in dict.fromkeys([conversion.default, *(rule.literal for rule in conversion.rules)]):
+        if literal.eContainer() is not conversion.enumeration:
+            yield conversion, f"'{literal.name}' is no literal of {conversion.enumeration.name}"
+
+
+def _inputs(reception: rosgraph.Reception, _model: Model) -> Iterator[Fault]:
+    for assignment in reception.inputs:
+        if assignment.input not in reception.event.inputs:
+            yield assignment, f"'{reception.event.name}' does not carry the input '{assignment.input.name}'"
+
+
+def _reason(read: rosgraph.ErrorReason, _model: Model) -> Iterator[Fault]:
+    """Check that a reason is read only at an error, and that its enumeration has all reasons of the node."""
+    user = read.eContainer()
+    while isinstance(user, ex.Expression | rosgraph.NodeAssignment | rosgraph.InputAssignment):
+        user = user.eContainer()
+    event = user.event if isinstance(user, rosgraph.Reaction | rosgraph.Reception) else None
+    if event is None or event.kind != sct.EventKind.error:
+        yield read, "a reason is read at the error of a service or an action only"
+    missing = {*FAILURES} - {literal.name for literal in read.enumeration.literals}
+    if missing:
+        yield read, f"{read.enumeration.name} has no literal '{min(missing)}'"
+
+
+class _Shape:
+    """Structure of one message: an object, an array or a basic value at the end of each path."""
+
+    def __init__(self) -> None:
+        self._kinds: dict[tuple[str | int, ...], str] = {}
+
+    def add(self, element: Any, path: Sequence[str | int], kind: ex.Type | None) -> Iterator[Fault]:
+        """Add the type at the end of a path. `kind` is None for a whole object or array."""
+        for length, step in enumerate(path):
+            yield from self._at(element, tuple(path[:length]), "an array" if isinstance(step, int) else "an object")
+        if isinstance(kind, rosgraph.ArrayType):
+            yield from self.add(element, [*path, -1], kind.element)
+        elif kind is not None:
+            yield from self._at(element, tuple(path), type(kind).__name__)
+
+    def _at(self, element: Any, path: tuple[str | int, ...], kind: str) -> Iterator[Fault]:
+        known = self._kinds.setdefault(path, kind)
+        if known != kind:
+            place = f"'{'.'.join(map(str, path))}'" if path else "the message"
+            yield element, f"{place} is read or written as {kind} here, but as {known} elsewhere"
+
+
+def _converted_shape(conversion: rosgraph.Conversion, _model: Model) -> Iterator[Fault]:
+    shape = _Shape()
+    for read in _reads(rule.condition for rule in conversion.rules):
+        yield from shape.add(read, _path(read), read.type)
+
+
+def _sent_shape(sending: rosgraph.Sending, _model: Model) -> Iterator[Fault]:
+    shape = _Shape()
+    for alternative in sending.alternatives:
+        for field in alternative.fields:
+            kind = None if isinstance(field.type, rosgraph.ObjectType) else field.type
+            yield from shape.add(field, list(field.path), kind)
+
+
+def _received_shapes(graph: rosgraph.RosGraph, _model: Model) -> Iterator[Fault]:
+    sources = [list(subscription.receptions) for subscription in graph.subscriptions]
+    sources += [[client.response] for client in graph.serviceClients]
+    sources += [
+        [reception]
+        for client in graph.actionClients
+        for reception in (client.feedback, client.response, client.error, client.canceled)
+    ]
+    reactions: dict[Any, list[Any]] = defaultdict(list)
+    for reaction in graph.reactions:
+        reactions[reaction.event] += [*([reaction.guard] if reaction.guard else []), *reaction.needs]
+        reactions[reaction.event] += [assignment.value for assignment in reaction.assignments]
+    read_anywhere = set()
+    for receptions in sources:
+        shape = _Shape()
+        for reception in receptions:
+            read_anywhere.add(reception.event)
+            for access in _reads([*(input_.value for input_ in reception.inputs), *reactions[reception.event]]):
+                yield from _received(shape, access)
+    for event, values in reactions.items():
+        if event not in read_anywhere:
+            yield from ((read, f"'{event.name}' comes with no data") for read in _reads(values))
+
+
+def _received(shape: _Shape, access: rosgraph.WireAccess) -> Iterator[Fault]:
+    path = _path(access)
+    if access.type is not None and not path:
+        yield access, "a message is no basic value"
+    yield from shape.add(access, path, access.type)
+    owner = access.eContainer()
+    if isinstance(owner, rosgraph.ConversionCall):
+        for read in _reads(rule.condition for rule in owner.conversion.rules):
+            yield from shape.add(access, [*path, *_path(read)], read.type)
+
+
+def _reads(values: Iterable[ex.Expression]) -> Iterator[rosgraph.WireAccess]:
+    for value in values:
+        found = (access for _, access in tree(value) if isinstance(access, rosgraph.WireAccess))
+        yield from (access for access in found if source_of(access) is None)
+
+
+def _path(access: rosgraph.WireAccess) -> list[str | int]:
+    return [-1 if step == EACH else int(step) if step.isdigit() else step for step in path_of(access)]
+
+
+_BASIC_FIELD = demand(
+    lambda field: field.type is None or isinstance(field.type, _BASIC), "{0.type.eClass.name} is no type of a field"
+)
+_FIELD = demand(
+    lambda field: field.type is None or isinstance(field.type, (*_BASIC, rosgraph.ObjectType)),
+    "{0.type.eClass.name} is no type of a field",
+)
+_DATA = demand(
+    lambda provided: provided.location.eContainer().kind == sct.PlantKind.data,
+    "'{0.location.name}' is no location of a data plant",
+)
+_ONE_PLANT = demand(
+    lambda reaction: len({location.eContainer() for location in reaction.locations}) <= 1,
+    "the locations are of several plants",
+)
+_WHOLE = demand(
+    lambda access: (
+        access.type is not None
+        or isinstance(access.eContainer(), rosgraph.ConversionCall | rosgraph.NodeAssignment | rosgraph.FieldAssignment)
+    ),
+    "only what a conversion takes, and what is stored or sent as a whole, may be without a type",
+)
+
+_ALTERNATIVE = demand(
+    lambda choice: (
+        isinstance(choice.eContainer(), rosgraph.NodeAssignment | rosgraph.Reaction | ex.Expression)
+        and not reads_elements(choice.otherwise)
+        and infer(choice.value) == infer(choice.otherwise)
+    ),
+    "what takes the place of a value is of its type, and reads no element of an array",
+)
+
+CHECKS: Checks = {
+    ex.Expression: [fitting_operands],
+    object: [_own_event],
+    rosgraph.RosGraph: [_received_shapes],
+    rosgraph.NodeVariable: [typed("initial", lambda variable: declared_type(variable.type))],
+    rosgraph.FieldAssignment: [typed("value", lambda field: declared_type(field.type)), _FIELD],
+    rosgraph.InputAssignment: [typed("value", lambda assignment: declared_type(assignment.input.type))],
+    rosgraph.NodeAssignment: [typed("value", lambda assignment: declared_type(assignment.variable.type))],
+    rosgraph.ConversionRule: [typed("condition")],
+    rosgraph.Conversion: [_literals, _converted_shape],
+    rosgraph.Reception: [_inputs],
+    rosgraph.Sending: [_sent_shape],
+    rosgraph.ProvidedData: [_DATA],
+    rosgraph.Reaction: [_ONE_PLANT, typed("guard", lambda _: BOOLEAN)],
+    rosgraph.Subscription: [_interface(rosgraph.InterfaceKind.message)],
+    rosgraph.Publisher: [_interface(rosgraph.InterfaceKind.message)],
+    rosgraph.ServiceClient: [_interface(rosgraph.InterfaceKind.service)],
+    rosgraph.ActionClient: [_interface(rosgraph.InterfaceKind.action)],
+    rosgraph.WireAccess: [_WHOLE, _BASIC_FIELD],
+    rosgraph.ErrorReason: [_reason],
+    rosgraph.IfReadable: [_ALTERNATIVE],
+}

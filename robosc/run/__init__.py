@@ -1,0 +1,1 @@
+"""Running a model: simulation, ROS nodes, scenarios, tests of generated packages, the verification report."""

@@ -1,0 +1,156 @@
+"""Controller that runs in Python without ROS, with a simulated robot and a simulated clock."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from robosc.language.configuration.parameters import Value, controller_parameters
+from robosc.model.semantics.operators import UnreadableError
+from robosc.run.node_tests.robot import Robot
+from robosc.run.node_tests.samples import all_incoming
+from robosc.run.node_tests.trace_player import START, Pace
+from robosc.run.runtime.core.controller import Controller
+from robosc.run.runtime.core.event_log import EventLog
+from robosc.run.runtime.core.event_loop import EventLoop
+from robosc.run.runtime.core.json_text import json_text
+from robosc.run.runtime.core.settings import Settings
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from robosc.base.ros_types import RosDistribution
+    from robosc.language.configuration import Configuration
+    from robosc.model import rosgraph, sct
+    from robosc.run.node_tests.samples import Incoming
+    from robosc.run.runtime.core.clients import ActionClient, ServiceClient
+
+    #: Function that lets data come in and returns its fields, None if it has none.
+    Act = Callable[[], "dict[str, Any] | None"]
+
+_Made = TypeVar("_Made", bound="DrivenController")
+
+_DAY = 24 * 3600 * 1000
+#: Milliseconds after its time at which a timer has certainly expired.
+_MARGIN = 1.01
+
+
+def parameters(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[str, bool | int]:
+    """Return the parameters of a node under test. Every deadline is a multiple of the period, so none falls on a tick.
+
+    The watchdog does not stop the robot when its topics are silent between two lines of a trace.
+    """
+    period = configuration.control_loop.period_ms
+    declared = _defaults(graph, configuration)
+    most = _DAY // period * period
+    rounded: dict[str, bool | int] = {
+        name: min(-(-int(value) // period) * period, most)
+        for name, value in declared.items()
+        if name in ("service_timeout_ms", "action_timeout_ms", "retry_ms")
+    }
+    return {"period_ms": period, **rounded, "watchdog_stops": False}
+
+
+def _defaults(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[str, Value]:
+    return {parameter.name: parameter.default for parameter in controller_parameters(graph, configuration, "")}
+
+
+class _Lines(EventLog):
+    """Log that keeps its lines in memory."""
+
+    active = True
+
+    def __init__(self) -> None:
+        super().__init__("")
+        self.kept: list[str] = []
+
+    def append(self, line: str) -> None:
+        self.kept.append(line.removesuffix("\n"))
+
+
+class DrivenController(Controller):
+    """Controller with access to its clients, its timers, and the readability of data."""
+
+    def caller(self, service: rosgraph.ServiceClient) -> ServiceClient:
+        """Return the client that calls a service."""
+        return self._callers[service]
+
+    def starter(self, action: rosgraph.ActionClient) -> ActionClient:
+        """Return the client that sends the goals of an action."""
+        return self._starters[action]
+
+    def reads(self, receptions: Sequence[rosgraph.Reception], data: Any) -> bool:
+        """Return whether the data of a message that the transitions of the present state need can be read."""
+        try:
+            for reception in receptions:
+                self._data.received(reception.event, reception.inputs, data)
+        except UnreadableError:
+            return False
+        return True
+
+    @property
+    def pauses(self) -> bool:
+        """Whether the controller pauses after a failure."""
+        return any(failure.pause is not None for failure in self._failures.values())
+
+    @property
+    def up(self) -> int | None:
+        """The time of the next expiry in milliseconds; None if no timer runs."""
+        timers = self._control.timers
+        return None if timers.wait is None else timers.now + timers.wait
+
+
+class Drive:
+    """Runs of one controller, one after the other; `_lines.kept` is the trace of the present run."""
+
+    _controller: DrivenController
+
+    def __init__(self, graph: rosgraph.RosGraph, configuration: Configuration, distribution: RosDistribution) -> None:
+        self._graph = graph
+        self._distribution = distribution
+        self._configuration = configuration
+        self.parameters = parameters(graph, configuration)
+        self._period = self.parameters["period_ms"] / 1000
+        #: Reads and sample messages of each incoming event; the events of one topic share them.
+        self.incoming: dict[sct.Event, Incoming] = all_incoming(graph, distribution)
+
+    def _begin(self, kind: type[_Made]) -> _Made:
+        """Create the controller of a new run, without starting it."""
+        self._pace = Pace(self._period)
+        self._now = START * self._period
+        settings = Settings(_defaults(self._graph, self._configuration) | self.parameters, self._configuration)
+        self._robot = Robot(self._graph, self._distribution, lambda: self._now, self.incoming)
+        self._event_loop = EventLoop(lambda: self._now)
+        self._lines = _Lines()
+        controller = kind(self._graph, settings, self._robot, self._event_loop)
+        controller.log_to(self._lines)
+        return controller
+
+    def _let_in(self, act: Act) -> None:
+        before = len(self._lines.kept)
+        sent = act()
+        self._work()
+        if sent is not None and len(self._lines.kept) > before:
+            line = self._lines.kept[before]
+            self._lines.kept[before] = f'{line[:-1]},"message":{json_text(sent)}}}'
+
+    def _pass_period(self) -> None:
+        """Let a period pass as the player does: the clock stops where a timer expires on the way.
+
+        A tick that is due at such a stop comes after the timer, as in every node.
+        """
+        over = False
+        while not over:
+            self._work()
+            up = self._controller.up
+            stop = self._pace.next if up is None else self._pace.before((up + _MARGIN) / 1000)
+            if stop is None:
+                assert up is not None
+                self._now = (up + _MARGIN) / 1000
+            else:
+                self._now = stop
+                over = self._pace.advance()
+            self._work()
+
+    def _work(self) -> None:
+        while self._event_loop.run_pending() == 0:
+            pass

@@ -1,0 +1,366 @@
+"""Planner of tours: possible inputs, the effects in a control loop, and the route that reaches the goals."""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from dataclasses import dataclass, field
+from functools import cached_property, reduce
+from operator import or_
+from typing import TYPE_CHECKING, NamedTuple
+
+from robosc.engine import ControlLoop, Hooks
+from robosc.model import sct
+from robosc.model.semantics.roles import event_name
+from robosc.run.node_tests.coverage import Goal, Watcher, goals
+from robosc.run.node_tests.guide import Guide, Way
+from robosc.run.node_tests.steps import WAIT, Place, Step, Stimulus
+from robosc.synthesis import encoded
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Set as AbstractSet
+
+    from robosc.engine import Settings
+    from robosc.engine.control_loop import SavedLoop
+    from robosc.engine.state import Value
+    from robosc.synthesis.encoding import Encoding
+
+#: Maximum number of steps to explore; below it, all places are explored.
+_ALL = 12_000
+#: Number of randomized attempts to plan a tour: exhaustive, and guided.
+_PLANS, _GUIDED = 10, 5
+#: Maximum length in steps of a path that replaces a part of a tour.
+_DETOUR = 4
+#: Give a goal up after this many paths that missed it.
+_IN_VAIN = 4
+
+
+class _Way(NamedTuple):
+    """Consecutive steps, and the goals that they show together, as bits."""
+
+    steps: tuple[Step, ...]
+    shows: int
+
+
+@dataclass
+class _Known:
+    saved: SavedLoop
+    steps: list[Step] | None = None
+
+
+@dataclass
+class Plan:
+    """Places of one model's control loop, explored on demand, and tours through them."""
+
+    model: sct.SupervisoryControlModel
+    settings: Settings
+    stimuli: Sequence[Stimulus]
+    #: Longest time to wait for, in milliseconds.
+    longest: int
+    #: Duration of a period, and of the pause after a failure, in milliseconds.
+    period: int
+    pause: int
+    _known: dict[Place, _Known] = field(default_factory=dict)
+    _found: dict[Place, dict[Place, list[_Way]]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._loop = ControlLoop(self.model, self.settings, Hooks(self._before))
+        self._watcher = Watcher(self._loop)
+        #: All coverage goals.
+        self.goals = goals(self._loop)
+        #: Bit of each goal.
+        self.bits = {goal: 1 << number for number, goal in enumerate(self.goals)}
+        self._at_rest: dict[tuple[int, ...], int] = {}
+        resets = [event for plant in self.model.plants for event in plant.events if event.kind == sct.EventKind.reset]
+        self._resets = {event_name(event) for event in resets}
+        self._timers = {timer.event.name: number for number, timer in enumerate(self._loop.engine.executed.timers)}
+        self._pauses = self._time_passes = False
+        self._shown = self._anywhere = 0
+
+    def is_like(self, other: Plan) -> bool:
+        """Return whether another plan would plan the same tours from the same place and coverage."""
+        ours, others = (
+            (id(plan.model), plan.settings, tuple(plan.stimuli), plan.longest, plan.period, plan.pause)
+            for plan in (self, other)
+        )
+        return ours == others
+
+    def _before(self, event: str) -> bool:
+        if event in self._resets and self._pauses:
+            return False
+        self._shown |= self._mask(self._watcher.before_event(event))
+        return True
+
+    def _mask(self, seen: Iterable[Goal]) -> int:
+        return reduce(or_, (self.bits[goal] for goal in seen), 0)
+
+    def place(self, saved: SavedLoop, *, pauses: bool) -> Place:
+        """Return the place of a loop, and remember its saved state for exploration."""
+        now, up = saved.timers
+        left = tuple(-((now - up[number]) // self.period) for number in sorted(up)) if self._time_passes else ()
+        found = Place(saved.cells, frozenset(up), pauses, left)
+        self._known.setdefault(found, _Known(saved))
+        return found
+
+    @property
+    def places(self) -> list[Place]:
+        """The known places, in the order of their discovery."""
+        return list(self._known)
+
+    @cached_property
+    def possible(self) -> set[Goal]:
+        """The goals that can be seen: from the first known place on, else in the supervised system."""
+        if self.is_whole:
+            return {goal for goal in self.goals if self.bits[goal] & self._anywhere}
+        return encoded(self.model, lambda encoding: self._guide(encoding).possible)
+
+    @cached_property
+    def is_whole(self) -> bool:
+        """Whether there are so few places that all of them were explored."""
+        pending = list(self._known)
+        seen = set(pending)
+        while pending and len(seen) * len(self.stimuli) < _ALL:
+            for step in self.steps(pending.pop()):
+                self._anywhere |= step.shows
+                if step.end not in seen:
+                    seen.add(step.end)
+                    pending.append(step.end)
+        return not pending
+
+    def steps(self, place: Place) -> list[Step]:
+        """Return all steps from a place that lead to another one or show a goal."""
+        known = self._known[place]
+        if known.steps is None:
+            found = (self._step(place, known.saved, stimulus) for stimulus in self.stimuli)
+            known.steps = [step for step in found if step is not None and (step.end != place or step.shows)]
+        return known.steps
+
+    def _step(self, place: Place, saved: SavedLoop, stimulus: Stimulus) -> Step | None:
+        loop = self._loop
+        loop.restore(saved)
+        self._pauses, self._shown = place.pauses, 0
+        if stimulus.events:
+            if place.pauses or not all(loop.enabled(event) for event, _ in stimulus.events):
+                return None  # nothing comes in during the pause after a failure
+            loop.begin()
+            for event, inputs in stimulus.events:
+                loop.perform(event, dict(inputs))
+            self._pauses = stimulus.fails
+            loop.end()
+        else:
+            wait = self.pause if place.pauses else loop.timers.wait
+            if wait is None or wait > self.longest:
+                return None
+            if self._time_passes:
+                for _ in range(-(-wait // self.period) - 1):
+                    self._pass_period()
+            elif not place.pauses:
+                loop.timers.at(loop.timers.now + wait)
+                loop.expire()
+            self._pauses = False
+        return self._ended(stimulus)
+
+    def _ended(self, stimulus: Stimulus) -> Step:
+        self._shown |= self._rest()
+        self._pass_period()
+        return Step(stimulus, self.place(self._loop.saved, pauses=self._pauses), self._shown)
+
+    def _pass_period(self) -> None:
+        """Run a tick; if time counts, after a period, with the timers that expire on the way."""
+        loop = self._loop
+        if self._time_passes:
+            end = loop.timers.now + self.period
+            while (wait := loop.timers.wait) is not None and loop.timers.now + wait <= end:
+                loop.timers.at(loop.timers.now + wait)
+                loop.expire()
+                self._shown |= self._rest()
+            loop.timers.at(end)
+        loop.tick()
+        self._shown |= self._rest()
+
+    def _rest(self) -> int:
+        cells, _ = self._loop.engine.saved
+        if cells not in self._at_rest:
+            self._at_rest[cells] = self._mask(self._watcher.at_rest())
+        return self._at_rest[cells]
+
+    # Tours
+
+    def tour(self, start: Place, shown: AbstractSet[Goal]) -> list[Step]:
+        """Return a short path from a start that shows goals that can be shown and were not, as far as it is found.
+
+        If there are too many places to explore, decision diagrams guide the search.
+        """
+        wanted = self._mask(self.possible - shown)
+        if not self.is_whole and not self._time_passes:
+            known, self._known, self._time_passes = self._known, {}, True
+            start = self.place(known[start].saved, pauses=start.pauses)
+        if self.is_whole:
+            tours = [self._planned(start, wanted, choice) for choice in _choices(_PLANS)]
+        else:
+            tours = encoded(self.model, lambda encoding: self._all_guided(start, wanted, encoding))
+        return max(tours, key=lambda tour: ((_together(tour) & wanted).bit_count(), -len(tour)))
+
+    def _planned(self, start: Place, wanted: int, choice: random.Random) -> list[Step]:
+        tour: list[Step] = []
+        left, here = wanted, start
+        while left and (way := self._way_to_any(here, left, choice)):
+            tour += way
+            here = tour[-1].end
+            left &= ~_together(way)
+        return self._shortened(start, tour, wanted, _DETOUR)
+
+    def _way_to_any(self, start: Place, wanted: int, choice: random.Random) -> list[Step]:
+        """Return the shortest path to a wanted goal; among several, favor one that shows many, with some randomness."""
+        ways: dict[Place, list[Step]] = {start: []}
+        layer = [start]
+        while layer:
+            found: list[tuple[float, float, list[Step]]] = []
+            onwards: list[Place] = []
+            for place in layer:
+                for step in self.steps(place):
+                    if step.shows & wanted:
+                        much = (step.shows & wanted).bit_count() * (1 + choice.random())
+                        found.append((much, choice.random(), [*ways[place], step]))
+                    if step.end not in ways:
+                        ways[step.end] = [*ways[place], step]
+                        onwards.append(step.end)
+            if found:
+                return max(found, key=lambda way: way[:2])[2]
+            layer = onwards
+        return []
+
+    def _all_guided(self, start: Place, wanted: int, encoding: Encoding) -> list[list[Step]]:
+        guide = self._guide(encoding)
+        return [self._guided(start, wanted, guide, choice) for choice in _choices(_GUIDED)]
+
+    def _guided(self, start: Place, wanted: int, guide: Guide, choice: random.Random) -> list[Step]:
+        """Repeat the step that shows the most goals, else follow the supervised system's path to a missing goal."""
+        tour: list[Step] = []
+        left, here, in_vain = wanted, start, Counter[Goal]()
+        while left:
+            # Timers first: some expire only before anything has come in.
+            showing = [step for step in self.steps(here) if step.shows & left]
+            if showing:
+                much = [(step.stimulus == WAIT, (step.shows & left).bit_count(), choice.random()) for step in showing]
+                way = [showing[much.index(max(much))]]
+            else:
+                promising = [goal for goal in self.goals if self.bits[goal] & left and in_vain[goal] < _IN_VAIN]
+                events, aims = self._timed(here, promising) or guide.way(self._codes(here), promising)
+                if not events:
+                    break
+                in_vain.update(aims)
+                way = self._followed(here, events, left)
+            tour += way
+            here = way[-1].end if way else here
+            left &= ~_together(way)
+        return self._shortened(start, tour, wanted, 1)
+
+    def _guide(self, encoding: Encoding) -> Guide:
+        data: dict[str, list[dict[str, Value]]] = {}
+        for event, inputs in (pair for stimulus in self.stimuli for pair in stimulus.events):
+            data.setdefault(event, []).append(dict(inputs))
+        return Guide(self.model, encoding, self.goals, data)
+
+    def _codes(self, place: Place) -> Mapping[sct.Plant | sct.DiscreteVariable, int]:
+        self._loop.engine.restore((place.cells, self._loop.engine.saved[1]))
+        return self._loop.engine.codes
+
+    def _timed(self, here: Place, wanted: Iterable[Goal]) -> Way | None:
+        """Return the wait for a goal that is seen when a running timer expires."""
+        for goal in wanted:
+            event = event_name(goal.of.event) if isinstance(goal.of, sct.Edge) else ""
+            if self._timers.get(event) in here.running:
+                return Way([(event, {})], {goal})
+        return None
+
+    def _followed(self, start: Place, events: Iterable[tuple[str, dict[str, Value]]], wanted: int) -> list[Step]:
+        """Return steps that cause these events, or similar ones, until a wanted goal is seen."""
+        way: list[Step] = []
+        for event, inputs in events:
+            for _ in range(1 + len(self._timers)):
+                here = way[-1].end if way else start
+                like = [step for step in self.steps(here) if self._is(step.stimulus, event)]
+                if like:  # else the controller performs it itself, or it is not possible now
+                    way.append(min(like, key=lambda step: (_unlike(step.stimulus, event, inputs), step.stimulus.name)))
+                if _together(way) & wanted:
+                    return way
+                if not like or self._timers.get(event) not in way[-1].end.running:
+                    break  # else another timer expired before this one
+        return way
+
+    def _is(self, stimulus: Stimulus, event: str) -> bool:
+        if not stimulus.events:
+            return ".u_after" in event or event in self._resets
+        return event in dict(stimulus.events)
+
+    def _shortened(self, start: Place, tour: list[Step], wanted: int, detour: int) -> list[Step]:
+        """Remove detours from the tour: leave out a part, or take a shorter path, if no goal is lost."""
+        improved = True
+        while improved:
+            improved = False
+            places = [start, *(step.end for step in tour)]
+            before, after = _running(tour), _running(tour[::-1])[::-1]
+            for first in range(len(tour)):
+                seen, ways = _running(tour[first:]), self._ways(places[first], detour)
+                for last in range(len(tour), first, -1):
+                    lost = seen[last - first] & wanted & ~before[first] & ~after[last]
+                    shorter = (way for way in ways.get(places[last], ()) if len(way.steps) < last - first)
+                    way = next((way.steps for way in shorter if not lost & ~way.shows), None)
+                    if way is not None:
+                        tour = [*tour[:first], *way, *tour[last:]]
+                        improved = True
+                        break
+                if improved:
+                    break
+        while tour and not tour[-1].shows & wanted & ~_together(tour[:-1]):
+            tour.pop()
+        return tour
+
+    def _ways(self, start: Place, longest: int) -> dict[Place, list[_Way]]:
+        """Return paths of at most `longest` steps to all places, shortest first; each shows more than those before it.
+
+        The result is cached if all places were explored, since many tours request it.
+        """
+        if (found := self._found.get(start)) is not None:
+            return found
+        first = _Way((), 0)
+        found, nearest, layer = {start: [first]}, {start: first}, [start]
+        for _ in range(longest):
+            onwards = []
+            for place in layer:
+                for step in self._known[place].steps or ():
+                    way = _Way((*nearest[place].steps, step), nearest[place].shows | step.shows)
+                    others = found.setdefault(step.end, [])
+                    if all(way.shows & ~other.shows for other in others):
+                        others.append(way)
+                    if step.end not in nearest:
+                        nearest[step.end] = way
+                        onwards.append(step.end)
+            layer = onwards
+        if self.is_whole:
+            self._found[start] = found
+        return found
+
+
+def _choices(number: int) -> list[random.Random]:
+    return [random.Random(seed) for seed in range(number)]  # noqa: S311 - reproducible, and nothing is secret
+
+
+def _unlike(stimulus: Stimulus, event: str, inputs: Mapping[str, Value]) -> int:
+    """Return how many inputs of the event differ in a stimulus."""
+    given = dict(dict(stimulus.events).get(event, ()))
+    return sum(given.get(name) != value for name, value in inputs.items())
+
+
+def _together(steps: Iterable[Step]) -> int:
+    return reduce(or_, (step.shows for step in steps), 0)
+
+
+def _running(steps: Sequence[Step]) -> list[int]:
+    """Return the goals shown by each prefix of the steps, from the empty one on."""
+    shown = [0]
+    for step in steps:
+        shown.append(shown[-1] | step.shows)
+    return shown

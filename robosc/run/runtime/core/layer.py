@@ -1,0 +1,145 @@
+"""Supervisory layer between a controller and its robot: passes or blocks messages (thesis section 4.7)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.base.ros_types import Section
+from robosc.engine import Settings as LoopSettings
+from robosc.model import engine, rosgraph
+from robosc.model.semantics.operators import UnreadableError
+from robosc.model.semantics.roles import event_name, plant_of
+from robosc.run.runtime.core.composing import Composer
+from robosc.run.runtime.core.event_handler import EventHandler
+from robosc.run.runtime.core.json_text import Json, json_text
+from robosc.run.runtime.core.node_data import NotFiniteError
+from robosc.run.runtime.core.settings import SafeMessages
+from robosc.run.runtime.core.times import RESOLUTION_MS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from robosc.model import sct
+    from robosc.model.semantics.component_parts import Parts
+    from robosc.run.runtime.core.event_loop import EventLoop
+    from robosc.run.runtime.core.port import ControllerPort
+    from robosc.run.runtime.core.settings import Settings
+
+
+class Layer(EventHandler):
+    """Layer of a robot. It decides; others forward. Of `safe` it sends `on_blocked`.
+
+    Messages of the robot move the supervisor before they are forwarded (`receive`, `respond`, `fail`, `feed_back`).
+    Messages of the controller are forwarded if `passes` allows it. The proxies of actions add their `goals`.
+    """
+
+    def __init__(
+        self,
+        graph: rosgraph.RosGraph,
+        settings: Settings,
+        port: ControllerPort,
+        event_loop: EventLoop,
+        safe: SafeMessages | None = None,
+    ) -> None:
+        super().__init__(graph, settings, port, event_loop, LoopSettings(resolution_ms=RESOLUTION_MS))
+        self._period = settings.seconds("period_ms")
+        self._outgoing = self._of_role(engine.Role.trigger, engine.Role.cancel)
+        self._data_events = self._of_role(engine.Role.data)
+        #: Events blocked since the last report on `/diagnostics`.
+        self._blocked: set[sct.Event] = set()
+        self._composer = Composer(port, self._data)
+        instead = (safe or SafeMessages()).on_blocked
+        self._publishers = {
+            sending: publisher for publisher in graph.publishers for sending in publisher.sendings if sending in instead
+        }
+        #: Messages of `on_blocked` that were forwarded last: the layer sends one when it blocks the next.
+        self._forwarded: set[rosgraph.Sending] = set()
+
+    def start(self) -> None:
+        """Publish the definition, and the state from now on."""
+        self._reports.publish_definition()
+        self._times.start()
+        with self._times:
+            self._control.settle()
+        self._publish_state()
+
+    def _publish_state(self) -> None:
+        self._reports.publish_state(self._port.now())
+        if self._statuses.publish():
+            self._blocked.clear()
+        self._event_loop.call_later(self._period, self._publish_state)
+
+    # From the controller
+
+    def passes(self, sending: rosgraph.Sending) -> bool:
+        """Perform the event of a controller's message and return True; report it as blocked if it is not allowed."""
+        with self._times:
+            if self._control.perform(event_name(sending.event)):
+                self._control.settle()
+                if sending in self._publishers:
+                    self._forwarded.add(sending)
+                return True
+        reason = self._blocking.reason(sending.event)
+        self._report_blocked(sending.event, reason.kind, reason.because)
+        if sending in self._forwarded:
+            self._forwarded.remove(sending)
+            self._send_instead(sending)
+        return False
+
+    def _send_instead(self, sending: rosgraph.Sending) -> None:
+        """Send a message in place of blocked ones, with default data if its own can't be sent."""
+        publisher = self._publishers[sending]
+        frame = self._settings.configuration.frame_id.get(publisher.topic.removeprefix("/"), "")
+        target = sending, publisher.interface, Section.MESSAGE, frame
+        try:
+            message, logged = self._composer.compose(*target)
+        except (NotFiniteError, UnreadableError) as fault:
+            why = f"its {fault} would not be finite" if isinstance(fault, NotFiniteError) else str(fault)
+            self._warn((sending, why), f"{sending.name} is sent with default data: {why}")
+            message, logged = self._composer.default(*target), None
+        self._composer.port.publish(publisher, message)
+        self._log.write(self._port.now(), "outside", event_name(sending.event), logged)
+
+    def reject(self, sending: rosgraph.Sending) -> None:
+        """Reject a call or goal because another one has not ended."""
+        self._report_blocked(sending.event, "busy", [])
+
+    def _report_blocked(self, event: sct.Event, reason: str, because: Sequence[str]) -> None:
+        self._blocked.add(event)
+        plant = plant_of(event)
+        name = plant.origin or plant.name
+        report: dict[str, Json] = {
+            "robot": self._graph.name,
+            "time": self._port.now(),
+            "name": name,
+            "event": event_name(event),
+            "reason": reason,
+            "because": because,
+            "components": self._reports.components(),
+        }
+        self._port.publish_report("blocked", json_text(report))
+        self._log.write(self._port.now(), "blocked", event_name(event))
+        self._warn(event, f"{name} is blocked: {reason} {json_text(because)}")
+
+    def _faults(self, parts: Parts) -> list[str]:
+        blocked = [f"{sending.name} was blocked" for sending in parts.commands if sending.event in self._blocked]
+        troubles = [
+            (client.identifier, self.goals[client.cancel].trouble)
+            for client in parts.clients
+            if isinstance(client, rosgraph.ActionClient) and client.cancel in self.goals
+        ]
+        return [*blocked, *(f"{name}: {trouble}" for name, trouble in troubles if trouble)]
+
+    # Events
+
+    def _follow_up(self) -> None:
+        self._control.settle()
+
+    def _after(self, name: str) -> None:
+        if self._events[name] not in self._data_events:  # the controller chooses the data
+            super()._after(name)
+
+    def _act(self, event: sct.Event) -> tuple[str, Mapping[str, Json] | None] | None:
+        if event in self.goals:
+            self.goals[event].cancel()
+        return ("out", None) if event in self._outgoing else None

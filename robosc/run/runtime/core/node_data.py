@@ -1,0 +1,351 @@
+"""Data that a node keeps beside its supervisor, values of expressions over it, and data for messages."""
+
+from __future__ import annotations
+
+import math
+import re
+import struct
+from collections.abc import Iterable, Sequence
+from copy import deepcopy
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from robosc.base.ros_types.wire import INTEGER_RANGES
+from robosc.model import expression as ex
+from robosc.model import rosgraph, sct
+from robosc.model.semantics.evaluation import Program, Value, as_double, saturate
+from robosc.model.semantics.messages import first_value
+from robosc.model.semantics.operators import UnreadableError
+
+if TYPE_CHECKING:
+    from robosc.engine import Engine
+    from robosc.run.runtime.core.json_text import Json
+    from robosc.run.runtime.core.port import ControllerPort, Message
+
+#: Range of the whole numbers of a node.
+LEAST, MOST = INTEGER_RANGES["int64"]
+_FLOATS = {"float32": "f", "float": "f", "float64": "d", "double": "d"}
+#: Type of an array, with the type of its elements: `float64[]`, in ROS 2 `sequence<double, 9>`.
+_ELEMENT = re.compile(r"(?:sequence<)?([\w/]+).*")
+#: ROS 2 calls its `byte` an octet.
+_RANGES = {**INTEGER_RANGES, "octet": INTEGER_RANGES["uint8"]}
+
+
+class _Blank:
+    """Unset object, whose fields are unset, too."""
+
+    def __getattr__(self, name: str) -> _Blank:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return self
+
+    def __len__(self) -> int:
+        return 0
+
+
+BLANK: Any = _Blank()
+#: Values read of an unset object.
+_BLANK: dict[type[ex.Type], Any] = {
+    ex.BooleanType: False,
+    ex.IntegerType: 0,
+    ex.DoubleType: 0.0,
+    ex.StringType: "",
+    rosgraph.ArrayType: [],
+}
+
+
+def element_type(kind: str) -> str:
+    """Return the type of an array's elements, or the type itself if it is no array, as in `wire_types`."""
+    return _ELEMENT.sub(r"\1", kind)
+
+
+class PastEndError(UnreadableError):
+    """Access to a missing element of an array."""
+
+    def __init__(self, index: int, length: int) -> None:
+        super().__init__(f"there is no element {index} in an array of {length}")
+
+
+class Received(NamedTuple):
+    """Data of an event, computed in the state before it: its inputs by name, and the node's new values."""
+
+    inputs: dict[str, Any]
+    variables: dict[rosgraph.NodeVariable, Value]
+
+
+def fit(number: int) -> int:
+    """Return the nearest number of 64 bits."""
+    return saturate(number, LEAST, MOST)
+
+
+class NodeData:
+    """Variables of one node, and values of expressions over them, the supervisor's state and incoming data.
+
+    An enumeration's value is its literal.
+    """
+
+    def __init__(self, graph: rosgraph.RosGraph, engine: Engine) -> None:
+        self._engine = engine
+        #: Failure reason of the service or action of the present error.
+        self.reason: str | None = None
+        self._programs: dict[ex.Expression, Program[Value]] = {}
+        self.variables: dict[rosgraph.NodeVariable, Value] = {}
+        for variable in (*graph.variables, *graph.parameters):
+            self.variables[variable] = (
+                self.value(variable.initial)
+                if variable.initial is not None
+                else []
+                if isinstance(variable.type, rosgraph.ArrayType)
+                else BLANK
+            )
+        self._reactions: dict[sct.Event, list[rosgraph.Reaction]] = {}
+        for reaction in graph.reactions:
+            self._reactions.setdefault(reaction.event, []).append(reaction)
+
+    def value(self, expression: ex.Expression, data: Message = None) -> Value:
+        """Return the value of an expression; `data` is the incoming data. Raises UnreadableError."""
+        program = self._programs.get(expression)
+        if program is None:
+            program = Program[Value](expression, lambda reference: partial(self._read, reference), fit)
+            self._programs[expression] = program
+        return program(data)
+
+    def is_in(self, location: sct.Location) -> bool:
+        """Return whether the plant of a location is in it."""
+        plant: sct.Plant = location.eContainer()
+        return plant.locations[self._engine.location(plant)] is location
+
+    def received(
+        self, event: sct.Event, inputs: Sequence[rosgraph.InputAssignment] = (), data: Message = None
+    ) -> Received:
+        """Return the inputs and new values of an event in the present state; change nothing.
+
+        Raises UnreadableError if one of them can't be read: then the event must not happen.
+        """
+        variables = self._assigned(event, data)
+        return Received({given.input.name: self.input(given, data) for given in inputs}, variables)
+
+    def input(self, assigned: rosgraph.InputAssignment, data: Message) -> Any:
+        """Return the value of an input; its first value if it can't be read, as then no taken transition needs it."""
+        try:
+            value = self.value(assigned.value, data)
+        except UnreadableError:
+            value = first_value(assigned.input.type)
+        return value.name if isinstance(value, ex.EnumerationLiteral) else value
+
+    def _assigned(self, event: sct.Event, data: Message) -> dict[rosgraph.NodeVariable, Value]:
+        assigned: dict[rosgraph.NodeVariable, Value] = {}
+        for reaction in self.reactions(event):
+            if reaction.guard is None or self.value(reaction.guard, data):
+                for needed in reaction.needs:
+                    self.value(needed, data)
+                for assignment in reaction.assignments:
+                    assigned[assignment.variable] = bounded(
+                        self.value(assignment.value, data), assignment.variable.type
+                    )
+        return assigned
+
+    def reactions(self, event: sct.Event) -> list[rosgraph.Reaction]:
+        """Return the reactions of the node to the event in the present state, if their guards hold."""
+        return [reaction for reaction in self._reactions.get(event, ()) if any(map(self.is_in, reaction.locations))]
+
+    def values_read(self, event: sct.Event) -> list[ex.Expression]:
+        """Return all values that the event may assign to variables."""
+        return [assigned.value for reaction in self._reactions.get(event, ()) for assigned in reaction.assignments]
+
+    def convert(self, conversion: rosgraph.Conversion, argument: Any) -> ex.EnumerationLiteral:
+        """Return the literal of the first rule that holds; a rule that can't be read does not hold."""
+        for rule in conversion.rules:
+            try:
+                if self.value(rule.condition, argument):
+                    return rule.literal
+            except UnreadableError:
+                continue
+        return conversion.default
+
+    def _read(self, reference: ex.Expression, *given: Any) -> Value:
+        """Return the value of a reference; `given` is the element that it reads, its indices, and the incoming data."""
+        match reference:
+            case rosgraph.NodeVariableReference():
+                return self.variables[reference.variable]
+            case rosgraph.WireAccess():
+                return self.leaf(self._reach(reference, *given), reference.type)
+            case rosgraph.ConversionCall():
+                return self.convert(reference.conversion, self._reach(reference.argument, *given))
+            case rosgraph.ArrayLiteral():
+                return given[:-1]
+            case rosgraph.ErrorReason():
+                return next(literal for literal in reference.enumeration.literals if literal.name == self.reason)
+            case ex.EnumerationLiteralReference():
+                return reference.literal
+            case sct.LocationReference():
+                return self.is_in(reference.location)
+            case sct.VariableReference():
+                return self._variable(reference.variable)
+        raise TypeError(f"a ROS graph holds no {type(reference).__name__}")
+
+    def _reach(self, access: rosgraph.WireAccess, *given: Any) -> Any:
+        """Return the value that an access reads of a message or an element at these indices. Raises UnreadableError."""
+        start = given[-1] if access.variable is None else self.variables[access.variable]
+        rest = iter(given if access.quantifier else (start, *given[:-1]))
+        reached = next(rest)
+        for step in access.steps:
+            match step:
+                case rosgraph.FieldStep():
+                    reached = self._field(reached, step.name)
+                case rosgraph.IndexStep():
+                    index = step.index if step.position is None else next(rest)
+                    assert index is not None
+                    reached = self._element(reached, index)
+                case rosgraph.SliceStep():
+                    reached = self._slice(reached, next(rest), next(rest))
+        return reached
+
+    def at(self, data: Any, path: Sequence[str]) -> Any:
+        """Return the value at a path of names and positions. Raises UnreadableError."""
+        for step in path:
+            data = self._element(data, int(step)) if step.isdigit() else self._field(data, step)
+        return data
+
+    def _field(self, owner: Any, name: str) -> Any:
+        return getattr(owner, name)
+
+    def _element(self, array: Any, index: int) -> Any:
+        if not 0 <= index < len(array):
+            raise PastEndError(index, len(array))
+        return array[index]
+
+    def _slice(self, array: Any, first: int, last: int) -> Any:
+        if last >= first and not (first >= 0 and last < len(array)):
+            raise UnreadableError(f"there are no elements {first} to {last} in an array of {len(array)}")
+        return array[first : last + 1] if last >= first else []
+
+    def leaf(self, value: Any, kind: ex.Type | None) -> Value:
+        """Convert a value of ROS to one of the model: numpy's scalars and ROS 2's `byte` become plain numbers."""
+        if value is BLANK and kind is not None:
+            blank: Value = _BLANK[type(kind)]
+            return blank
+        match kind:
+            case rosgraph.ArrayType():
+                return [self.leaf(element, kind.element) for element in value]
+            case ex.IntegerType():
+                return fit(value[0] if isinstance(value, bytes) else int(value))
+            case ex.DoubleType():
+                return as_double(float(value))
+            case ex.BooleanType():
+                return bool(value)
+        return value  # type: ignore[no-any-return]
+
+    def _variable(self, variable: sct.DiscreteVariable) -> Value:
+        value = self._engine.value(variable)
+        if isinstance(variable.type, ex.EnumerationType):
+            return next(literal for literal in variable.type.enumeration.literals if literal.name == value)
+        return value
+
+
+def bounded(value: Value, kind: ex.Type) -> Value:
+    """Return the value as a variable of the type holds it: an integer within its range."""
+    if isinstance(kind, ex.IntegerType):
+        assert isinstance(value, int)
+        return saturate(fit(value), kind.minimum, kind.maximum)
+    if isinstance(kind, rosgraph.ArrayType) and kind.element is not None:
+        assert isinstance(value, Iterable)
+        return [bounded(element, kind.element) for element in value]
+    return value
+
+
+class NotFiniteError(Exception):
+    """Field whose value would not be finite."""
+
+    def __init__(self, path: Sequence[str]) -> None:
+        super().__init__(".".join(path))
+
+
+def fill(port: ControllerPort, message: Message, path: Sequence[str], value: Value) -> Json:
+    """Set a field at a path and return the value that it then holds. Raises NotFiniteError.
+
+    A number outside the field's range becomes the nearest one in it. A double is rounded to the field's precision.
+    """
+    owner = message
+    for name in path[:-1]:
+        owner = getattr(owner, name)
+    kind = port.wire_types(owner)[path[-1]]
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return _fill_array(owner, kind, value, path)
+    held: bool | int | float | str = _held(kind, value, path)
+    setattr(owner, path[-1], bytes([held]) if kind == "octet" and isinstance(held, int) else held)
+    return held
+
+
+def hand_on(port: ControllerPort, message: Message, path: Sequence[str], data: Any) -> None:
+    """Set a field to an object, or to an array of objects, unchanged; an empty path means the whole message.
+
+    Raises NotFiniteError if a number in it is not finite.
+    """
+    owner = message
+    if data is BLANK:
+        return
+    if not _is_finite(port, data):
+        raise NotFiniteError(path or ["data"])
+    for name in path[:-1]:
+        owner = getattr(owner, name)
+    for name in path[-1:] or port.wire_types(data):
+        setattr(owner, name, deepcopy(data if path else getattr(data, name)))
+
+
+def _is_finite(port: ControllerPort, data: Any) -> bool:
+    """Return whether all numbers in an object, or in an array of objects, are finite."""
+    if data is BLANK:
+        return True
+    if isinstance(data, Sequence):
+        return all(_is_finite(port, element) for element in data)
+    for name, kind in port.wire_types(data).items():
+        value, element = getattr(data, name), element_type(kind)
+        if element in _FLOATS and not all(map(math.isfinite, [value] if kind == element else value)):
+            return False
+        if "/" in element and not _is_finite(port, value):
+            return False
+    return True
+
+
+def _fill_array(owner: Message, kind: str, values: Sequence[Value], path: Sequence[str]) -> Json:
+    """Set the elements of an array; an array of fixed length keeps its further elements."""
+    element, length = _array(kind)
+    held = [_held(element, value, path) for value in values[:length]]
+    rest = [] if length is None else list(getattr(owner, path[-1]))[len(held) :]
+    octets = [bytes([number]) if element == "octet" and isinstance(number, int) else number for number in held]
+    setattr(owner, path[-1], [*octets, *rest])
+    return held
+
+
+def _array(kind: str) -> tuple[str, int | None]:
+    """Return the type of the elements, and the length if it is fixed; ROS 2 also has `sequence<double, 9>`."""
+    bounds = re.fullmatch(r"(?:sequence<)?(\w+(?:<\d+>)?)(?:\[(\d*)\]|(?:, *\d+)?>)", kind)
+    assert bounds is not None
+    return bounds[1], int(bounds[2]) if bounds[2] else None
+
+
+def _held(kind: str, value: Value, path: Sequence[str]) -> bool | int | float | str:
+    if isinstance(value, (bool, str)):
+        return value
+    assert isinstance(value, (int, float))
+    if kind in _FLOATS:
+        return _narrowed(as_double(value), _FLOATS[kind], path)
+    low, high = _RANGES.get(kind, (0, 1))
+    if isinstance(value, float):
+        value = int(_finite(value, path))
+    return saturate(value, low, high)
+
+
+def _narrowed(value: float, code: str, path: Sequence[str]) -> float:
+    try:
+        (narrowed,) = struct.unpack(code, struct.pack(code, value))
+    except OverflowError:
+        raise NotFiniteError(path) from None
+    return _finite(float(narrowed), path)
+
+
+def _finite(value: float, path: Sequence[str]) -> float:
+    if not math.isfinite(value):
+        raise NotFiniteError(path)
+    return value

@@ -1,0 +1,100 @@
+"""Start a controller or a layer as a node."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.language.configuration.parameters import controller_parameters, layer_parameters
+from robosc.run.runtime.core.controller import Controller
+from robosc.run.runtime.core.event_log import default_log
+from robosc.run.runtime.core.layer import Layer
+from robosc.run.runtime.core.node import Node, StartError
+from robosc.run.runtime.core.settings import SafeMessages, Settings
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from robosc.language.configuration import Configuration
+    from robosc.model import rosgraph
+
+
+def run_controller(
+    graph: rosgraph.RosGraph,
+    configuration: Configuration,
+    arguments: Sequence[str],
+    safe: SafeMessages,
+) -> None:
+    """Run the controller of a graph whose model has a supervisor, until the user interrupts it.
+
+    `arguments` are those of ROS. Raises StartError if the node can't start.
+    """
+
+    def make(node: Node, log: str) -> tuple[Controller, Settings]:
+        settings = Settings(node.parameters(controller_parameters(graph, configuration, log)), configuration)
+        return Controller(graph, settings, node, node.event_loop, safe), settings
+
+    name = configuration.package_name(graph)
+    _run(_node(name, graph, configuration, arguments), name, graph, configuration, make)
+
+
+def run_layer(
+    graph: rosgraph.RosGraph,
+    configuration: Configuration,
+    arguments: Sequence[str],
+    safe: SafeMessages,
+) -> None:
+    """Run the supervisory layer of a graph whose model has a supervisor, until the user interrupts it.
+
+    Precondition: no two communications of the graph share a topic. Raises StartError if the node can't start.
+    """
+
+    def make(node: Node, log: str) -> tuple[Layer, Settings]:
+        settings = Settings(node.parameters(layer_parameters(graph, configuration, log)), configuration)
+        return Layer(graph, settings, node, node.event_loop, safe), settings
+
+    name = configuration.layer_name(graph)
+    _run(_node(name, graph, configuration, arguments), name, graph, configuration, make)
+
+
+def _run(
+    node: Node,
+    name: str,
+    graph: rosgraph.RosGraph,
+    configuration: Configuration,
+    make: Callable[[Node, str], tuple[Controller | Layer, Settings]],
+) -> None:
+    try:
+        log = default_log(node.full_name, name) if configuration.write_events_to_log else ""
+        try:
+            handler, settings = make(node, log)
+        except OSError as error:
+            raise StartError(f"the event log {error.filename} can't be written: {error.strerror}") from None
+        reports = ["state", "definition"] if configuration.publish_state_information else []
+        node.open_reports([*reports, "blocked"] if isinstance(handler, Layer) else reports)
+        if settings.parameters.get("diagnostics_ms"):
+            node.open_diagnostics()
+        node.connect(handler, settings)
+    except StartError:
+        node.close()
+        raise
+    node.info(_started(node.full_name, graph, shows=bool(reports)))
+    node.spin(handler)
+
+
+def _node(name: str, graph: rosgraph.RosGraph, configuration: Configuration, arguments: Sequence[str]) -> Node:
+    from robosc.run.runtime.ros2.node import Ros2Node  # noqa: PLC0415  # reports what is missing if there is no ROS
+
+    return Ros2Node(name, graph, configuration, arguments)
+
+
+def _started(name: str, graph: rosgraph.RosGraph, *, shows: bool) -> str:
+    """Return the start message for the user: connections of the node, how to view it, how to stop it."""
+    parts = (
+        ("hears", [subscription.topic for subscription in graph.subscriptions]),
+        ("sends", [publisher.topic for publisher in graph.publishers]),
+        ("calls", [client.identifier for client in graph.serviceClients]),
+        ("starts", [client.identifier for client in graph.actionClients]),
+    )
+    connected = "; ".join(f"{verb} {', '.join(dict.fromkeys(names))}" for verb, names in parts if names)
+    look = " `robosc view` shows it decide." if shows else ""
+    return f"{name} runs{f': {connected}' if connected else ''}.{look} Ctrl-C ends it."

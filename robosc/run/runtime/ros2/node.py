@@ -1,0 +1,529 @@
+"""Node of ROS 2 on rclpy."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from robosc.base.ros_types import Section
+from robosc.base.ros_types.wire import FOLDERS
+from robosc.language.configuration import QualityOfService
+from robosc.model import rosgraph
+from robosc.model.semantics.communication import QUEUE_DEPTH, is_sensor_data
+from robosc.model.semantics.naming import below_layer
+from robosc.run.runtime.core.event_loop import EventLoop
+from robosc.run.runtime.core.node import DIAGNOSTICS, FAREWELL, LONGEST_WAIT, Node, StartError
+from robosc.run.runtime.core.port import CallHandlers, Endpoint, GoalHandlers
+from robosc.run.runtime.core.settings import check
+
+try:
+    import rclpy
+    import rclpy.action
+    import rclpy.exceptions
+    from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
+    from rclpy.clock import Clock, ClockType
+    from rclpy.executors import SingleThreadedExecutor
+    from rclpy.node import NodeNameNonExistentError
+    from rclpy.qos import (
+        DurabilityPolicy,
+        QoSCompatibility,
+        QoSPolicyKind,
+        QoSProfile,
+        ReliabilityPolicy,
+        qos_check_compatible,
+        qos_profile_sensor_data,
+        qos_profile_services_default,
+    )
+    from rclpy.qos_overriding_options import QoSOverridingOptions
+    from rclpy.signals import SignalHandlerOptions
+    from rclpy.type_support import NoTypeSupportImportedException, check_for_type_support
+    from std_msgs.msg import String
+
+    try:
+        from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+    except ImportError:  # before Iron
+        from rclpy.qos_event import PublisherEventCallbacks, SubscriptionEventCallbacks
+except ImportError as error:
+    raise StartError(
+        f"ROS 2 is not there for this Python: {error}",
+        "pip install -e '.[ros2]' in robosc's repository brings it; or start robosc with the Python of a ROS 2"
+        " installation, with its setup",
+    ) from error
+
+from robosc.run.runtime.ros2.actions import LateAnswer, Ros2ActionProxy, SentGoal, settle
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from robosc.language.configuration import Configuration
+    from robosc.language.configuration.parameters import Parameter
+    from robosc.run.runtime.core.event_handler import EventHandler
+    from robosc.run.runtime.core.layer import Layer
+    from robosc.run.runtime.core.port import Client, Goal, Message
+    from robosc.run.runtime.core.proxies import ActionProxy
+
+#: QoS policies that parameters may set of a subscription that receives kept messages.
+_KEPT_POLICIES = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH)
+#: Seconds between two looks at the publishers of topics.
+_LOOK = 0.05
+#: Messages of a topic handled before an expired timer, and before the turn of the next topic.
+MOST_HEARD = 1000
+MOST_AT_ONCE = 10
+
+
+class Ros2Node(Node):
+    """Node of ROS 2 named `name`; `arguments` are those of ROS, such as `--ros-args`."""
+
+    type_hint = (
+        "build the package with colcon and source its install/setup, with this same Python; or, without colcon, build"
+        " its modules with `robosc interfaces build FOLDER -o OUT` and put OUT on PYTHONPATH"
+    )
+    refusals = (
+        ValueError,
+        rclpy.exceptions.InvalidServiceNameException,
+        rclpy.exceptions.InvalidTopicNameException,
+        rclpy.exceptions.ParameterException,
+    )
+
+    def __init__(
+        self, name: str, graph: rosgraph.RosGraph, configuration: Configuration, arguments: Sequence[str]
+    ) -> None:
+        super().__init__(graph)
+        self._configuration = configuration
+        self.node = start(name, arguments)
+        self._executor = executor()
+        self._executor.add_node(self.node)
+        self._clock = self.node.get_clock()
+        self.simulated = bool(self.node.get_parameter("use_sim_time").value)
+        self.event_loop = EventLoop(self.now if self.simulated else time.monotonic, starts_late=self.simulated)
+        self._pending: dict[rosgraph.ServiceClient, Any] = {}
+        self._qualities: dict[rosgraph.Subscription | rosgraph.Publisher, Any] = {}
+        self._durabilities = _Durabilities(self.node)
+        #: Number of messages on each topic that `_take` handled.
+        self._heard: Counter[str] = Counter()
+
+    def _load_type(self, interface: rosgraph.Interface) -> Any:
+        found = super()._load_type(interface)
+        try:
+            check_for_type_support(found)
+        except (NoTypeSupportImportedException, ImportError) as error:
+            what = f"{interface.package}/{interface.type}"
+            raise StartError(f"{what} is there, but not built for this Python: {error}", self.type_hint) from None
+        return found
+
+    # The node's life
+
+    @property
+    def full_name(self) -> str:
+        return str(self.node.get_fully_qualified_name())
+
+    def open_reports(self, names: Sequence[str]) -> None:
+        for name in names:
+            kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+            quality = kept if name == "definition" else QoSProfile(depth=QUEUE_DEPTH)
+            self._reports[name] = self.node.create_publisher(String, f"~/{name}", quality)
+
+    def _diagnostics_publisher(self, kind: Any) -> Any:
+        return self.node.create_publisher(kind, DIAGNOSTICS, QoSProfile(depth=QUEUE_DEPTH))
+
+    def close(self) -> None:
+        self._executor.shutdown()
+        self.node.destroy_node()
+        rclpy.try_shutdown()
+
+    def inside(self, name: str) -> str:
+        return f"~/{below_layer(name)}"
+
+    def _parameter(self, parameter: Parameter) -> object:
+        descriptor = ParameterDescriptor(description=parameter.meaning, read_only=not parameter.changes)
+        if parameter.bounds is not None:
+            low, high = parameter.bounds
+            if isinstance(parameter.default, float):
+                descriptor.floating_point_range = [FloatingPointRange(from_value=float(low), to_value=float(high))]
+            else:
+                descriptor.integer_range = [IntegerRange(from_value=int(low), to_value=int(high), step=1)]
+        value: object = self.node.declare_parameter(parameter.name, parameter.default, descriptor).value
+        return value
+
+    def _follow_parameters(self, handler: EventHandler) -> None:
+        """Accept changed parameters between batches, in the thread of the event loop."""
+
+        def accept(given: Sequence[Any]) -> SetParametersResult:
+            try:
+                for parameter in given:
+                    if parameter.name in self._changing:
+                        check(self._changing[parameter.name], parameter.value)
+            except ValueError as error:
+                return SetParametersResult(successful=False, reason=str(error))
+            handler.set_parameters({parameter.name: parameter.value for parameter in given})
+            return SetParametersResult(successful=True)
+
+        if self._changing:
+            self.node.add_on_set_parameters_callback(accept)
+
+    def _is_up(self) -> bool:
+        return bool(rclpy.ok())
+
+    def _spin_once(self) -> None:
+        left = self.event_loop.run_pending()
+        wait = LONGEST_WAIT if left is None or self.simulated else min(left, LONGEST_WAIT)
+        # The executor sees all other work, one item at a time, also for each message that was taken here.
+        self._executor.spin_once(timeout_sec=0 if self._take(MOST_AT_ONCE) else wait)
+
+    def _take_leave(self) -> None:
+        until = time.monotonic() + FAREWELL
+        for publisher in self._publishers.values():
+            publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=max(0.0, until - time.monotonic())))
+
+    # Reports
+
+    def now(self) -> float:
+        return float(self._clock.now().nanoseconds) / 1e9
+
+    def publish_report(self, name: str, text: str) -> None:
+        self._reports[name].publish(String(data=text))
+
+    def report_listeners(self, name: str) -> int:
+        return int(self._reports[name].get_subscription_count())
+
+    def info(self, text: str) -> None:
+        self.node.get_logger().info(text)
+
+    def warn(self, text: str) -> None:
+        self.node.get_logger().warning(text)
+
+    def error(self, text: str) -> None:
+        self.node.get_logger().error(text)
+
+    # Topics
+
+    def quality(self, name: str, usual: Any = None) -> Any:
+        """Return the quality of service of a topic, service or action: the configuration, completed by `usual`."""
+        usual = usual or QoSProfile(depth=QUEUE_DEPTH)
+        chosen = self._configuration.qos.get(name.removeprefix("/"))
+        if chosen is None:
+            return usual
+        made = QoSProfile(depth=chosen.depth or usual.depth, reliability=usual.reliability, durability=usual.durability)
+        if chosen.reliability:
+            made.reliability = ReliabilityPolicy[chosen.reliability.upper()]
+        if chosen.durability:
+            made.durability = DurabilityPolicy[chosen.durability.upper()]
+        return made
+
+    def _chosen(self, element: rosgraph.Subscription | rosgraph.Publisher) -> QualityOfService:
+        """Return the configured quality of service of a topic."""
+        return self._configuration.qos.get(element.topic.removeprefix("/")) or QualityOfService()
+
+    def _received_quality(self, element: rosgraph.Subscription | rosgraph.Publisher) -> Any:
+        sensor = is_sensor_data(element.interface.package)
+        return self.quality(element.topic, qos_profile_sensor_data if sensor else None)
+
+    def _publisher(self, publisher: rosgraph.Publisher) -> Any:
+        kept = all(sending.onChange for sending in publisher.sendings)
+        usual = QoSProfile(depth=QUEUE_DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL) if kept else None
+        self._qualities[publisher] = self.quality(publisher.topic, usual)
+        return self.node.create_publisher(
+            self._types[publisher.interface],
+            publisher.topic,
+            self._qualities[publisher],
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            # The graph monitor reports mismatches.
+            event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
+        )
+
+    def _subscribe(self, subscription: rosgraph.Subscription, receive: Callable[[Message], None]) -> None:
+        made: list[Any] = []
+
+        def subscribe(lasting: bool) -> None:
+            quality = self._received_quality(subscription)
+            wanted = _durable(quality, self._chosen(subscription)) if lasting else quality
+            while made:
+                self.node.destroy_subscription(made.pop())
+            self._qualities[subscription] = wanted
+            made.append(
+                self.node.create_subscription(
+                    self._types[subscription.interface],
+                    subscription.topic,
+                    receive,
+                    wanted,
+                    # Their parameters have the reliability of the first subscription by default.
+                    qos_overriding_options=QoSOverridingOptions(_KEPT_POLICIES)
+                    if lasting
+                    else QoSOverridingOptions.with_default_policies(),
+                    event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+                )
+            )
+
+        subscribe(lasting=False)
+        if self._chosen(subscription).durability is None:
+            self._durabilities.watch(subscription.topic, subscribe, lasting=False)
+
+    def _relay(
+        self,
+        element: rosgraph.Subscription | rosgraph.Publisher,
+        source: str,
+        target: str,
+        passes: Callable[[Message], bool],
+    ) -> _Relay:
+        # Forwarded messages are reliable, whatever the received ones are.
+        chosen = self._chosen(element)
+        sent = QoSProfile(depth=chosen.depth or QUEUE_DEPTH)
+        kind, received = self._types[element.interface], self._received_quality(element)
+        return _Relay(self.node, self._durabilities, _Route(kind, source, target, received, sent, chosen), passes)
+
+    def type_name(self, interface: rosgraph.Interface) -> str:
+        return f"{interface.package}/{FOLDERS[interface.kind.name]}/{interface.type}"
+
+    def serving_nodes(self, client: Client) -> list[tuple[str, str]]:
+        part = ("/_action/send_goal", "_SendGoal") if isinstance(client, rosgraph.ActionClient) else ("", "")
+        name = self.node.resolve_service_name(client.identifier + part[0])
+        own = self.type_name(client.interface) + part[1]
+        # The types of clients are among these; the exact list of servers takes longer.
+        types = dict(self.node.get_service_names_and_types()).get(name, ())
+        if set(types) <= {own} and self.node.count_services(name) <= 1:
+            return []
+        found = []
+        for node, space in self.node.get_node_names_and_namespaces():
+            try:
+                served = dict(self.node.get_service_names_and_types_by_node(node, space))
+            except NodeNameNonExistentError:
+                continue  # it has just gone
+            full_name = f"{space.rstrip('/')}/{node}"
+            found += [(full_name, kind.removesuffix(part[1])) for kind in served.get(name, ())]
+        return found
+
+    def endpoints(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
+        self._durabilities.look()
+        return {element: self._endpoints(element) for element in self._topics}
+
+    def _endpoints(self, element: rosgraph.Subscription | rosgraph.Publisher) -> list[Endpoint]:
+        publishers = self.node.get_publishers_info_by_topic(element.topic)
+        found = [_endpoint(other, other.qos_profile, self._qualities[element]) for other in publishers]
+        if isinstance(element, rosgraph.Publisher):
+            # Use the node's own entry in the graph: the requested profile leaves deadlines and leases open.
+            own = [info.qos_profile for info in publishers if _full_name(info) == self.full_name]
+            found += [
+                replace(_endpoint(other, own[0], other.qos_profile), listens=True)
+                for other in self.node.get_subscriptions_info_by_topic(element.topic)
+                if own
+            ]
+        return [endpoint for endpoint in found if endpoint.node != self.full_name]
+
+    def hear(self) -> None:
+        # The executor handles one message at a time, with planned calls in between.
+        self._take(MOST_HEARD)
+
+    def _take(self, most: int) -> int:
+        """Handle arrived messages, at most `most` of each topic; return their number.
+
+        The executor takes messages in the order in which they came, so a stop would wait behind thousands of scans.
+        Here topics with few messages come first.
+        """
+        taken = 0
+        for subscription in sorted(self.node.subscriptions, key=lambda known: self._heard[known.topic_name]):
+            if subscription.topic_name == "/clock":
+                continue
+            for _ in range(most):
+                with subscription.handle:
+                    found = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+                if found is None:
+                    break
+                subscription.callback(found[0])
+                self._heard[subscription.topic_name] += 1
+                taken += 1
+        return taken
+
+    # Data
+
+    def create(self, interface: rosgraph.Interface, section: Section) -> Message:
+        kind = self._types[interface]
+        return (kind if section is Section.MESSAGE else getattr(kind, section.name.capitalize()))()
+
+    def wire_types(self, message: Message) -> Mapping[str, str]:
+        types: Mapping[str, str] = message.get_fields_and_field_types()
+        return types
+
+    def _stamp_now(self) -> Any:
+        return self._clock.now().to_msg()
+
+    # Services and actions
+
+    def is_served(self, client: Client) -> bool:
+        connected = self._clients[client]
+        action = isinstance(client, rosgraph.ActionClient)
+        return bool(connected.server_is_ready() if action else connected.service_is_ready())
+
+    def _service_client(self, service: rosgraph.ServiceClient) -> Any:
+        quality = self.quality(service.identifier, qos_profile_services_default)
+        return self.node.create_client(self._types[service.interface], service.identifier, qos_profile=quality)
+
+    def call(self, client: rosgraph.ServiceClient, request: Message, handlers: CallHandlers) -> None:
+        connected = self._clients[client]
+        if client in self._pending:
+            connected.remove_pending_request(self._pending[client])
+        self._pending[client] = connected.call_async(request)
+        self._pending[client].add_done_callback(partial(settle, handlers.answered, handlers.failed))
+
+    def serve(self, kind: Any, name: str, called: Callable[[Message, LateAnswer], None]) -> None:
+        """Offer a service whose calls are answered later; rclpy by itself answers as soon as `called` returns."""
+        under_way: list[LateAnswer] = []
+
+        def serve(request: Message, response: Message) -> Message:
+            under_way.append(LateAnswer(response))
+            called(request, under_way[-1])
+            return response
+
+        service = self.node.create_service(kind, name, serve)
+        send = service.send_response
+        service.send_response = lambda _, caller: under_way.pop().send_with(lambda response: send(response, caller))
+
+    def _action_client(self, action: rosgraph.ActionClient) -> Any:
+        kind, quality = self._types[action.interface], self.quality(action.identifier)
+        return rclpy.action.ActionClient(self.node, kind, action.identifier, feedback_sub_qos_profile=quality)
+
+    def send_goal(self, client: rosgraph.ActionClient, goal: Message, handlers: GoalHandlers) -> Goal:
+        return SentGoal(self._clients[client], goal, handlers, partial(self.servers, client.identifier))
+
+    def servers(self, action: str) -> frozenset[bytes]:
+        """Return the servers of an action in the ROS graph; a restarted server has another identity."""
+        found = self.node.get_publishers_info_by_topic(f"{action}/_action/status")
+        return frozenset(bytes(publisher.endpoint_gid) for publisher in found)
+
+    def _proxy(self, action: rosgraph.ActionClient, layer: Layer, timeout: float) -> ActionProxy[Any]:
+        return Ros2ActionProxy(self, self._types[action.interface].Impl, action, layer, timeout)
+
+
+def start(name: str, arguments: Sequence[str]) -> Any:
+    """Start ROS and a node of this name; `arguments` are those of ROS. Raises StartError."""
+    try:
+        rclpy.init(args=["robosc", *arguments], signal_handler_options=SignalHandlerOptions.NO)
+        return rclpy.create_node(name)
+    except (RuntimeError, rclpy.exceptions.ParameterException) as error:
+        # The error names an argument, a file or a folder; the place in rcl helps no user.
+        raise StartError(f"ROS 2 does not start: {str(error).partition(', at /')[0]}") from None
+
+
+def executor() -> Any:
+    """Return the executor: by events if rclpy has one, which takes a fiftieth of the time for a message."""
+    try:
+        from rclpy.experimental import EventsExecutor  # noqa: PLC0415  # not in every rclpy
+    except ImportError:
+        return SingleThreadedExecutor()
+    return EventsExecutor()
+
+
+def _endpoint(other: Any, offered: Any, asked: Any) -> Endpoint:
+    compatibility, reason = qos_check_compatible(offered, asked)
+    fault = reason.strip(";: ") if compatibility == QoSCompatibility.ERROR else None
+    name = _full_name(other)
+    return Endpoint("" if "UNKNOWN" in name else name, other.topic_type, fault)
+
+
+def _full_name(info: Any) -> str:
+    return f"{info.node_namespace.rstrip('/')}/{info.node_name}"
+
+
+@dataclass(frozen=True)
+class _Route:
+    """Route from one topic to another, each with its quality of service."""
+
+    kind: Any
+    source: str
+    target: str
+    received: Any
+    sent: Any
+    chosen: QualityOfService
+
+
+class _Durabilities:
+    """Detect whether the publishers of topics keep their last messages for late subscribers.
+
+    A topic lasts if all of its publishers are transient-local and reliable. A subscription that requests less receives
+    their messages, but not the kept ones. A subscription that requests durability receives nothing from other
+    publishers.
+    """
+
+    def __init__(self, node: Any) -> None:
+        self._node = node
+        self._watched: list[tuple[str, Callable[[bool], None]]] = []
+        self._lasting: dict[int, bool | None] = {}
+
+    def watch(self, topic: str, changed: Callable[[bool], None], *, lasting: bool | None = None) -> None:
+        """Call `changed` whenever a topic lasts or no longer does. `lasting`: the known state, None if unknown."""
+        if not self._watched:
+            # Publishers come and go whether simulated time passes or not.
+            self._node.create_timer(_LOOK, self.look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._lasting[len(self._watched)] = lasting
+        self._watched.append((topic, changed))
+
+    def look(self) -> None:
+        """Check all topics."""
+        for number, (topic, changed) in enumerate(self._watched):
+            publishers = self._node.get_publishers_info_by_topic(topic)
+            if not publishers:
+                continue
+            lasting = all(_keeps(info.qos_profile) for info in publishers)
+            if lasting != self._lasting[number]:
+                self._lasting[number] = lasting
+                changed(lasting)
+
+
+def _keeps(quality: Any) -> bool:
+    keeps: bool = quality.durability == DurabilityPolicy.TRANSIENT_LOCAL
+    return keeps and quality.reliability == ReliabilityPolicy.RELIABLE
+
+
+class _Relay:
+    """Forward messages from one topic to another if `passes` returns True.
+
+    The publisher is reliable, and transient-local if all publishers of the source are.
+    """
+
+    def __init__(
+        self, node: Any, durabilities: _Durabilities, route: _Route, passes: Callable[[Message], bool]
+    ) -> None:
+        self._node = node
+        self._route = route
+        self._passes = passes
+        self._lasting = False
+        self._subscription: Any = None
+        self._publisher = node.create_publisher(route.kind, route.target, route.sent)
+        durabilities.watch(node.resolve_topic_name(route.source), self._open)
+
+    def _open(self, lasting: bool) -> None:
+        node, route = self._node, self._route
+        if lasting != self._lasting:
+            self._lasting = lasting
+            node.destroy_publisher(self._publisher)
+            sent = _durable(route.sent, route.chosen) if lasting else route.sent
+            self._publisher = node.create_publisher(route.kind, route.target, sent)
+        if self._subscription is not None:
+            node.destroy_subscription(self._subscription)
+        quality = _durable(route.received, route.chosen) if lasting else _volatile(route.received)
+        self._subscription = node.create_subscription(route.kind, route.source, self._forward, quality)
+
+    def _forward(self, message: Message) -> None:
+        if self._passes(message):
+            self.publish(message)
+
+    def publish(self, message: Message) -> None:
+        """Send a message to the subscribers of the forwarded topic."""
+        self._publisher.publish(message)
+
+    def wait_for_all_acked(self, timeout: Any) -> None:
+        """Wait until all sent messages have arrived."""
+        self._publisher.wait_for_all_acked(timeout)
+
+
+def _durable(quality: Any, chosen: QualityOfService) -> Any:
+    """Return the same quality, but transient-local, and reliable unless the configuration sets the reliability."""
+    reliability = quality.reliability if chosen.reliability else ReliabilityPolicy.RELIABLE
+    return QoSProfile(depth=quality.depth, reliability=reliability, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+def _volatile(quality: Any) -> Any:
+    """Return the same quality, but volatile."""
+    return QoSProfile(depth=quality.depth, reliability=quality.reliability, durability=DurabilityPolicy.VOLATILE)

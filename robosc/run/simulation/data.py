@@ -1,0 +1,502 @@
+"""Data of events in scripts and traces, as values of the inputs of the supervisor."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from contextlib import suppress
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from robosc.base.ros_types import WireType
+from robosc.base.ros_types import wire as wire_types
+from robosc.base.ros_types.wire import Basic
+from robosc.engine.state import Domain
+from robosc.model import expression as ex
+from robosc.model import rosgraph, sct
+from robosc.model.reflection import tree
+from robosc.model.semantics.communication import happens_anyway
+from robosc.model.semantics.evaluation import as_double
+from robosc.model.semantics.failures import REASON, UNREADABLE, brings_data, is_reason, possible_reasons
+from robosc.model.semantics.messages import is_structured, receptions, source_of
+from robosc.model.semantics.operators import UnreadableError
+from robosc.model.semantics.roles import event_name, plant_of
+from robosc.model.semantics.walks import operands
+from robosc.run.runtime.core.event_log import nested
+from robosc.run.runtime.core.node_data import NodeData
+from robosc.run.simulation.unreadable import Unreadable, past_end
+from robosc.run.simulation.wire_fit import DIGITS, WireFit, in_short, place
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from robosc.base.ros_types import RosTypes
+    from robosc.engine import Engine
+    from robosc.engine.state import Value
+
+#: Stands for a value that the JSON text does not have.
+_ABSENT: Any = object()
+#: Name of each basic type, its type in JSON, and its value in ROS without a default.
+_BASIC: Mapping[type[ex.Type], tuple[str, Any, Value | float]] = {
+    ex.BooleanType: ("a boolean", bool, False),
+    ex.IntegerType: ("an integer", int, 0),
+    ex.DoubleType: ("a number", int | float, 0.0),
+    ex.StringType: ("a string", str, ""),
+}
+
+
+class DataError(Exception):
+    """Data that does not fit its event. `hint`: how to fix it."""
+
+    def __init__(self, message: str, hint: str | None = None) -> None:
+        super().__init__(message)
+        self.hint = hint
+
+
+def data_beside(graph: rosgraph.RosGraph, event: sct.Event) -> dict[tuple[str, ...], ex.Type]:
+    """Return the types of an event's data that the node stores and no input holds, by the path of fields.
+
+    The result is empty if an input of the event is a condition on the data: the data would determine it.
+    """
+    given = [
+        assignment
+        for reception in receptions(graph)
+        if reception.event == event
+        for assignment in reception.inputs
+        if not is_reason(assignment.input)
+    ]
+    if any(assignment.input.text is not None for assignment in given):
+        return {}
+    told = [tuple(map(_field, _access(assignment).steps)) for assignment in given]
+    kept = [
+        assigned.value
+        for reaction in graph.reactions
+        if reaction.event == event
+        for assigned in reaction.assignments
+        if not is_structured(assigned.variable.type)
+    ]
+    found: dict[tuple[str, ...], ex.Type] = {}
+    for _, part in (read for value in kept for read in tree(value)):
+        match part:
+            case rosgraph.WireAccess(variable=None, quantifier=None, type=ex.Type() as kind) if type(kind) in _BASIC:
+                if all(isinstance(step, rosgraph.FieldStep) for step in part.steps):
+                    found[tuple(map(_field, part.steps))] = kind
+    return {path: kind for path, kind in found.items() if path not in told}
+
+
+def reason_of(event: sct.Event, data: Mapping[str, Any]) -> str | None:
+    """Return the reason of an event with some data; None unless it is the error of a service or action.
+
+    An answer of a service makes the reason `unreadable`. Raises DataError.
+    """
+    possible = possible_reasons(event)
+    where = data.get("where")
+    if "reason" not in data and possible and isinstance(where, dict) and REASON in where:
+        data = {"reason": where[REASON]}
+    if "reason" not in data:
+        is_answered = "value" in data and plant_of(event).kind == sct.PlantKind.service
+        return UNREADABLE if possible and is_answered else next(iter(possible), None)
+    reason = data["reason"]
+    if not possible:
+        raise DataError("only the error of a service or an action has a reason")
+    if reason not in possible:
+        raise DataError(f"the reason is {in_short(reason)}, expected one of {', '.join(sorted(possible))}")
+    return str(reason)
+
+
+class EventData:
+    """Parser of event data: `{"value": ...}`, in the shape of the event log.
+
+    An error also has a `reason`; the default is `aborted` for actions and `failed` for services. Basic data is the
+    value itself, an object has fields, and an array is a list or an object from index to element. The name of a literal
+    may replace data that is converted to an enumeration. A missing field has its default in ROS 2, and a missing
+    enumeration the literal of its default rule. A condition that the node computes of data may be given by its text, as
+    in `{"where": {"value.range < 0.5": true}}`. Without a ROS graph data goes to inputs by their names.
+    """
+
+    def __init__(self, engine: Engine, graph: rosgraph.RosGraph | None, types: RosTypes | None = None) -> None:
+        """`types`: the definitions of ROS types; None: those of the environment."""
+        self._events = {event_name(event): event for plant in engine.model.plants for event in plant.events}
+        self._defaults = None if graph is None else WireFit(graph, types)
+        self._node = None if graph is None else _JsonData(graph, engine)
+        known = [] if graph is None else receptions(graph)
+        self._assignments = {given.input: given for reception in known for given in reception.inputs}
+        self._receptions = {event_name(reception.event): reception for reception in known}
+        clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = []
+        clients += [] if graph is None else [*graph.serviceClients, *graph.actionClients]
+        self._errors = {event_name(client.response.event): event_name(client.error.event) for client in clients}
+        self._responses = {error: response for response, error in self._errors.items()}
+        #: Whether the present event has no data, so that its data is that of a new message.
+        self._is_new = False
+
+    def inputs(self, event: str, data: Mapping[str, Any]) -> dict[str, Value]:
+        """Return values of the event's inputs by their names. Raises DataError, and KeyError for an unknown event."""
+        declared = self._events[event]
+        unknown = sorted(set(data) - {"value", "where", "reason"})
+        if unknown:
+            raise DataError(f'"{unknown[0]}" is no data of an event: write {{"value": ...}}')
+        reason, computed = reason_of(declared, data), _computed(declared, data.get("where", {}))
+        self._is_new = not brings_data(declared, reason)
+        if self._node is not None:
+            self._node.reason = reason
+        if data and not declared.inputs:
+            return {}  # stored by the node, or unused
+        value = data.get("value", _ABSENT)
+        found = {}
+        for given in declared.inputs:
+            domain = Domain(given.type)
+            try:
+                if is_reason(given) and ("reason" in data or given.text not in computed):
+                    told: Value = reason or ""
+                else:
+                    told = computed[given.text] if given.text in computed else self._value(event, given, value)
+                found[given.name] = domain.shown(domain.internal(told))
+            except ValueError as error:
+                raise DataError(f"{self._label(given, value)}: {error}") from None
+        return found
+
+    def _label(self, given: sct.Input, data: Any = None) -> str:
+        """Return the text of an input, or its place in the data of its event."""
+        if given.text is not None:
+            return str(given.text)
+        return place(self._path(given) if given in self._assignments else tuple(_names(data, _words(given))))
+
+    def unreadable(self, event: str, data: Mapping[str, Any]) -> Unreadable | None:
+        """Return why the node can't read this data in the present state; None if it can, as far as the data is given.
+
+        For an error with the reason `unreadable` the result is reversed: why its data is no such error.
+        """
+        if event in self._responses and "value" in data and reason_of(self._events[event], data) == UNREADABLE:
+            response = self._responses[event]
+            is_read = self._is_readable(self._receptions[response], data["value"])
+            return Unreadable("the node can read this data", None, response) if is_read else None
+        reception = self._receptions.get(event)
+        if self._node is None or reception is None or "value" not in data or happens_anyway(reception.event):
+            return None
+        for reaction in self._node.reactions(reception.event):
+            guard, value = reaction.guard, data["value"]
+            fault = None if guard is None else past_end([guard], value)
+            if fault is None and (guard is None or self._node.value(guard, self._received(event, whole(value, guard)))):
+                fault = past_end([*reaction.needs, *(assigned.value for assigned in reaction.assignments)], value)
+            if fault is not None:
+                return Unreadable(str(fault), self._errors.get(event))
+        return None
+
+    def _is_readable(self, reception: rosgraph.Reception, data: Any) -> bool:
+        """Return whether the node can read data in the present state; False if that depends on stored data.
+
+        A missing array is empty: the log of an answer that can't be read leaves out missing parts.
+        """
+        assert self._node is not None
+        event = event_name(reception.event)
+        try:
+            for reaction in self._node.reactions(reception.event):
+                values = [*reaction.needs, *(assigned.value for assigned in reaction.assignments)]
+                if any(map(_reads_kept, [value for value in (reaction.guard, *values) if value is not None])):
+                    return False
+                guard = reaction.guard
+                if guard is None or self._node.value(guard, self._received(event, whole(data, guard))):
+                    for value in values:
+                        self._node.value(value, self._received(event, whole(data, value)))
+        except (UnreadableError, DataError):
+            return False
+        return True
+
+    @staticmethod
+    def of_unreadable(data: Mapping[str, Any]) -> dict[str, Any]:
+        """Return data of the error that happens in place of an answer whose data can't be read."""
+        return {"value": data["value"], "reason": UNREADABLE} if "value" in data else {"reason": UNREADABLE}
+
+    def check(self, event: str, data: Mapping[str, Any], *, is_message: bool = False) -> None:
+        """Raise DataError if the data does not fit the event; an unknown event fits.
+
+        `is_message`: its value has the fields of the ROS message, without names of literals.
+        """
+        if event not in self._events:
+            return
+        if self._defaults is not None and "value" in data:
+            fault = self._defaults.fault(event, data["value"], is_message=is_message)
+            if fault is not None:
+                raise DataError(*fault)
+        inputs = self.inputs(event, data)
+        if self._defaults is not None:
+            self._check_reason(event, data, inputs)
+        if event in self._errors:
+            self.inputs(self._errors[event], self.of_unreadable(data))
+
+    def _check_reason(self, event: str, data: Mapping[str, Any], inputs: Mapping[str, Value]) -> None:
+        """Raise DataError if an error without data has data other than the defaults in an event log."""
+        declared = self._events[event]
+        reason = reason_of(declared, data)
+        if brings_data(declared, reason):
+            return
+        assert self._defaults is not None
+        new = self.inputs(event, {"reason": reason})
+        changed = (given for given in declared.inputs if given.name in inputs and inputs[given.name] != new[given.name])
+        parts = [f"`{self._label(given)}` is {in_short(inputs[given.name])}" for given in changed]
+        if "value" in data:
+            set_part = self._defaults.set_part(event, data["value"], partial(self._new_literal, event))
+            parts = [set_part, *parts] if set_part else parts
+        if parts:
+            raise DataError(f"an error with the reason `{reason}` brings no data, but {parts[0]}", "leave it out")
+
+    def _new_literal(self, event: str, conversion: rosgraph.Conversion, path: tuple[str, ...]) -> str:
+        """Return the literal that a conversion makes of the data at a path in a new message."""
+        assert self._node is not None
+        return str(self._node.literal(conversion, self._received(event, _ABSENT, path)))
+
+    def fitting(self, event: str, values: Mapping[str, Value]) -> dict[str, Value]:
+        """Return values of an event's inputs, with those replaced that do not fit its reason."""
+        declared = self._events[event]
+        reason = next((given.name for given in declared.inputs if is_reason(given)), None)
+        if reason is None:
+            return dict(values)
+        if not brings_data(declared, str(values[reason])):
+            return self.inputs(event, {"reason": values[reason]})
+        if self.unreadable(event, self.shaped(event, values)) is None:
+            return dict(values)
+        return {**values, reason: possible_reasons(declared)[0]}
+
+    def shaped(
+        self, event: str, values: Mapping[str, Value], others: Mapping[tuple[str, ...], Any] | None = None
+    ) -> dict[str, Any]:
+        """Return data that gives the event's inputs these values, by name; `others` are further values by path."""
+        inputs = self._events[event].inputs
+        reasons = [values[given.name] for given in inputs if is_reason(given)]
+        where = {given.text: values[given.name] for given in inputs if given.text is not None and not is_reason(given)}
+        paths = {**(others or {}), **{self._path(given): values[given.name] for given in inputs if given.text is None}}
+        shown: dict[str, Any] = {"where": where} if where else {}
+        if reasons:
+            shown["reason"] = reasons[0]
+        if not paths:
+            return shown
+        if len(paths) == 1 and next(iter(paths)) in ((), ("data",)):  # as in an event log
+            return {"value": next(iter(paths.values())), **shown}
+        return {"value": nested(paths), **shown}
+
+    def _path(self, given: sct.Input) -> tuple[str, ...]:
+        """Return the path of an input in the data of its event."""
+        assignment = self._assignments.get(given)
+        return tuple(_words(given)) if assignment is None else tuple(map(_field, _access(assignment).steps))
+
+    def _received(self, event: str, data: Any, path: tuple[str, ...] = ()) -> _Given:
+        return _Given(data, path, self._defaults, event)
+
+    def _value(self, event: str, given: sct.Input, data: Any) -> Value:
+        assignment = self._assignments.get(given)
+        if given.text is not None:
+            if assignment is None or self._node is None:
+                return _default(given.type)
+            received = self._received(event, data if data is _ABSENT else whole(data, assignment.value))
+            return self._node.input(assignment, received)  # type: ignore[no-any-return]
+        found = _fields(data, _words(given)) if assignment is None else _reached(data, _access(assignment))
+        source = None if assignment is None else assignment.value
+        if self._node is None or not isinstance(source, rosgraph.ConversionCall):
+            if found is not _ABSENT:
+                return found  # type: ignore[no-any-return]
+            default = 0 if assignment is None else self._received(event, found, self._path(given)).default
+            return _default(given.type, default)
+        conversion = source.conversion
+        if found is _ABSENT:
+            path = self._path(given)
+            return self._new_literal(event, conversion, path) if self._is_new else str(conversion.default.name)
+        if isinstance(found, str) and found in {literal.name for literal in conversion.enumeration.literals}:
+            return found
+        try:
+            return str(self._node.literal(conversion, self._received(event, found, self._path(given))))
+        except DataError as error:
+            literals = ", ".join(literal.name for literal in conversion.enumeration.literals)
+            raise DataError(f"expected one of {literals}, or the data to tell it from: {error}") from None
+
+
+class _Given(NamedTuple):
+    """JSON in place of data from ROS, and its path in the data of its event."""
+
+    value: Any
+    path: tuple[str, ...]
+    defaults: WireFit | None
+    event: str
+
+    def below(self, value: Any, step: str) -> _Given:
+        """Return a field or an element."""
+        return self._replace(value=value, path=(*self.path, step))
+
+    @property
+    def place(self) -> str:
+        """The place in the script's data."""
+        return place(self.path)
+
+    @property
+    def default(self) -> wire_types.Value | None:
+        """The default value; None if it is unknown."""
+        wire = self._wire
+        return wire.initial if isinstance(wire, Basic) else None
+
+    @property
+    def length(self) -> int:
+        """The number of elements of a missing array."""
+        wire = self._wire
+        return wire.initial_length if isinstance(wire, wire_types.Sequence) else 0
+
+    @property
+    def _wire(self) -> WireType | None:
+        return None if self.defaults is None else self.defaults.wire_type(self.event, self.path)
+
+
+class _JsonData(NodeData):
+    """Node data that reads JSON in place of data from ROS."""
+
+    def literal(self, conversion: rosgraph.Conversion, data: _Given) -> str:
+        """Return the literal that a conversion makes of data. Raises DataError, also for data of unused rules."""
+        for _, part in [read for rule in conversion.rules for read in tree(rule.condition)]:
+            if isinstance(part, rosgraph.WireAccess) and part.quantifier is None and not operands(part):
+                with suppress(UnreadableError):
+                    self.leaf(self._reach(part, data), part.type)
+        return str(self.convert(conversion, data).name)
+
+    def _field(self, owner: _Given, name: str) -> _Given:
+        value = owner.value
+        if value is not _ABSENT and not isinstance(value, dict):
+            raise DataError(f"{owner.place} is {in_short(value)}, expected an object with {name}")
+        return owner.below(_ABSENT if value is _ABSENT else value.get(name, _ABSENT), name)
+
+    def _element(self, array: Any, index: int) -> Any:
+        return super()._element(_list(array), index)
+
+    def _slice(self, array: Any, first: int, last: int) -> Any:
+        return super()._slice(_list(array), first, last)
+
+    def leaf(self, value: Any, kind: ex.Type | None) -> Any:
+        if isinstance(kind, rosgraph.ArrayType):
+            return super().leaf(_list(value), kind)
+        if kind is None or not isinstance(value, _Given):
+            return value  # an object, or an element of an array that was read as a whole
+        return super().leaf(_basic(value, kind), kind)
+
+
+class _Array(Sequence[Any]):
+    """Elements of an array in JSON, with their places; the array may be long and have few."""
+
+    def __init__(self, array: _Given) -> None:
+        self._array = array
+        self._elements = _elements(array)
+        self._length = max(max(self._elements, default=-1) + 1, array.length)
+
+    def __len__(self) -> int:
+        return self._length
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, slice):
+            return [self[place] for place in range(*index.indices(len(self)))]
+        if index >= len(self):
+            raise IndexError
+        return self._array.below(self._elements.get(index, _ABSENT), str(index))
+
+
+def _list(array: _Given | list[_Given]) -> Sequence[_Given]:
+    """Return the elements of an array in JSON; a slice is returned unchanged."""
+    return _Array(array) if isinstance(array, _Given) else array
+
+
+def _elements(array: _Given) -> dict[int, Any]:
+    data = array.value
+    if data is _ABSENT:
+        return {}
+    if isinstance(data, list):
+        return dict(enumerate(data))
+    if isinstance(data, dict) and all(index.isdecimal() and len(index) < DIGITS for index in data):
+        return {int(index): element for index, element in data.items()}
+    raise DataError(f"{array.place} is {in_short(data)}, expected a list, or an object from index to element")
+
+
+def _basic(given: _Given, kind: ex.Type | None) -> Any:
+    name, plain, zero = next((basic for known, basic in _BASIC.items() if isinstance(kind, known)), ("", object, 0))
+    data = given.value
+    if data is _ABSENT:
+        default = given.default
+        return zero if default is None else default
+    if data is None and isinstance(kind, ex.DoubleType):
+        return math.nan  # an event log writes null for a number that is not finite
+    if not isinstance(data, plain) or (isinstance(data, bool) and name in {"an integer", "a number"}):
+        raise DataError(f"{given.place} is {in_short(data)}, expected {name}")
+    return as_double(data) if isinstance(kind, ex.DoubleType) else data
+
+
+def _computed(event: sct.Event, where: Any) -> Mapping[str | None, Value]:
+    """Return the conditions on data that a script gives, by their texts in the model. Raises DataError."""
+    texts = [given.text for given in event.inputs if given.text is not None]
+    if not isinstance(where, dict) or not set(where) <= set(texts):
+        expected = f"the texts {', '.join(f'`{text}`' for text in texts)}" if texts else "no `where`"
+        raise DataError(f'"where" is {in_short(where)}, expected an object with {expected}')
+    return where
+
+
+def _reads_kept(expression: ex.Expression) -> bool:
+    """Return whether an expression reads stored data or parameters, which a script does not follow."""
+    return any(
+        isinstance(part, rosgraph.NodeVariableReference)
+        or (isinstance(part, rosgraph.WireAccess) and source_of(part) is not None)
+        for _, part in tree(expression)
+    )
+
+
+def whole(data: Any, read: ex.Expression) -> Any:
+    """Return the data with its fields: a lone value stands for the only field on the path to it."""
+    accesses = (part for _, part in tree(read) if isinstance(part, rosgraph.WireAccess) and part.quantifier is None)
+    access = next(accesses, None)
+    if access is None or isinstance(data, dict) or len(access.steps) != 1:
+        return data
+    return {_field(access.steps[0]): data}
+
+
+def _access(assignment: rosgraph.InputAssignment) -> rosgraph.WireAccess:
+    value = assignment.value
+    access = value.argument if isinstance(value, rosgraph.ConversionCall) else value
+    assert isinstance(access, rosgraph.WireAccess)
+    return access
+
+
+def _reached(data: Any, access: rosgraph.WireAccess) -> Any:
+    """Return the value that an access reads of the data; a lone value stands for the only field on the path to it."""
+    steps = list(access.steps)
+    if data is not _ABSENT and not isinstance(data, dict | list) and len(steps) == 1:
+        return data
+    reached = data
+    for step in steps:
+        if reached is _ABSENT:
+            return _ABSENT
+        if not isinstance(reached, dict):
+            raise DataError(f"{in_short(reached)} has no field {_field(step)}")
+        reached = reached.get(_field(step), _ABSENT)
+    return reached
+
+
+def _field(step: rosgraph.WireStep) -> str:
+    assert isinstance(step, rosgraph.FieldStep)  # elements of arrays are no inputs
+    return str(step.name)
+
+
+def _fields(data: Any, words: list[str]) -> Any:
+    """Return the value of an input whose name joins the names of fields."""
+    for name in _names(data, words):
+        data = data.get(name, _ABSENT) if isinstance(data, dict) else _ABSENT
+    return data
+
+
+def _names(data: Any, words: list[str]) -> list[str]:
+    """Return the fields whose names, joined by `_`, are these words; names of fields may have `_` in them, too."""
+    if not words:
+        return []
+    joined = ["_".join(words[:length]) for length in range(1, len(words) + 1)]
+    name = next((name for name in joined if isinstance(data, dict) and name in data), words[0])
+    rest = words[name.count("_") + 1 :]
+    return [name, *_names(data.get(name) if isinstance(data, dict) else None, rest)]
+
+
+def _words(given: sct.Input) -> list[str]:
+    return str(given.name).split("_")[2:]
+
+
+def _default(kind: ex.Type, value: Any = 0) -> Value:
+    domain = Domain(kind)
+    return domain.shown(domain.clamp(0 if value is None else int(value)))

@@ -1,0 +1,235 @@
+"""Runs of a supervised robot: event by event, with undo, or through its control loop."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from robosc.analysis.wording import name
+from robosc.engine import Blocked, ControlLoop, Engine, Hooks, Settings
+from robosc.model import expression as ex
+from robosc.model import sct
+from robosc.model.engine import Role
+from robosc.model.semantics.definition import named_state
+from robosc.model.semantics.domains import domain
+from robosc.model.semantics.printing import SctPrinter
+from robosc.model.semantics.roles import event_name
+from robosc.run.simulation.data import EventData
+from robosc.run.simulation.script import REFUSE, WAIT
+from robosc.run.simulation.unreadable import Unreadable
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from random import Random
+
+    from robosc.base.ros_types import RosTypes
+    from robosc.engine.state import State, Value
+    from robosc.model import rosgraph
+
+#: Lines of scripts beside events: the end of a period; the begin and end of a message with several events.
+TICK, BEGIN, END = "tick", "begin", "end"
+
+
+def whole_state(engine: Engine) -> dict[str, Value]:
+    """Return the location of every plant, also of those with only one, and the values of variables, by name."""
+
+    def value(element: sct.Plant | sct.DiscreteVariable) -> Value:
+        if isinstance(element, sct.Plant):
+            return str(element.locations[engine.location(element)].name)
+        return engine.value(element)
+
+    return named_state(engine.model, value)
+
+
+@dataclass(frozen=True)
+class Happened:
+    """Requested event: whether it happened, else what blocked it, and the state afterwards."""
+
+    event: str
+    data: Mapping[str, Any]
+    by: Blocked | Unreadable | None
+    state: Mapping[str, Value]
+
+    @property
+    def accepted(self) -> bool:
+        """Whether it happened."""
+        return self.by is None
+
+    def answer(self) -> dict[str, Any]:
+        """Return the object that `simulate --script` prints."""
+        by = None if self.by is None else str(self.by)
+        given = dict(self.data) if self.event == REFUSE else {}
+        return {"event": self.event, **given, "accepted": self.accepted, "by": by, "state": dict(self.state)}
+
+
+def refusal(engine: Engine, action: str) -> Blocked | None:
+    """Return why a server cannot refuse to cancel the goal of an action: it is not being canceled; else None."""
+    ends = (event for event in _plant(engine, action).events if event.kind == sct.EventKind.canceled)
+    return engine.blocked_by(event_name(next(ends)))
+
+
+def refusal_in_words(engine: Engine, action: str) -> str:
+    """Return the name of the step `refuse cancel` of an action, such as ``refusal to cancel `Base.go` ``."""
+    return f"refusal to cancel `{name(_plant(engine, action))}`"
+
+
+def _plant(engine: Engine, called: str) -> sct.Plant:
+    return next(plant for plant in engine.model.plants if plant.name == called)
+
+
+class Simulation:
+    """Supervised automaton of a model: only requested events happen. `trace` is the list of events that happened."""
+
+    def __init__(
+        self,
+        model: sct.SupervisoryControlModel,
+        graph: rosgraph.RosGraph | None = None,
+        types: RosTypes | None = None,
+    ) -> None:
+        """`types`: the definitions of ROS types, for fields missing in data; None: those of the environment."""
+        self.engine = Engine(model)
+        self.data = EventData(self.engine, graph, types)
+        self.trace: list[Happened] = []
+        self._before: list[State] = []
+        self._inputs = {event_name(event): list(event.inputs) for plant in model.plants for event in plant.events}
+
+    @property
+    def enabled(self) -> list[str]:
+        """The enabled events, in the order of the model."""
+        return [event for event in self.engine.events if self.engine.enabled(event)]
+
+    def perform(self, event: str, data: Mapping[str, Any] | None = None) -> Happened:
+        """Perform an event with data in the shape of the event log if it is enabled, else change nothing.
+
+        A refusal to cancel a goal changes nothing, too. Raises DataError, and KeyError for an unknown event.
+        """
+        if event == REFUSE:
+            given = data or {}
+            return Happened(event, given, refusal(self.engine, given["of"]), whole_state(self.engine))
+        inputs = self.data.inputs(event, data or {})
+        before = self.engine.state
+        by = self.engine.blocked_by(event) or self.data.unreadable(event, data or {})
+        if by is None:
+            self.engine.perform(event, inputs)
+        happened = Happened(event, data or {}, by, whole_state(self.engine))
+        if by is None:
+            self._before.append(before)
+            self.trace.append(happened)
+        return happened
+
+    def undo(self) -> Happened | None:
+        """Take back the last event that happened and return it; None if there is none."""
+        if not self.trace:
+            return None
+        self.engine.state = self._before.pop()
+        return self.trace.pop()
+
+    def random_event(self, random: Random) -> tuple[str, dict[str, Any]] | None:
+        """Return one of the enabled events, with random data; None if none is enabled."""
+        enabled = self.enabled
+        if not enabled:
+            return None
+        event = random.choice(enabled)
+        values = {given.name: _any(given.type, random) for given in self._inputs[event]}
+        return event, self.data.shaped(event, self.data.fitting(event, values))
+
+    def random_step(self, random: Random) -> Happened | None:
+        """Perform one of the enabled events, with random data; return None if none is enabled."""
+        chosen = self.random_event(random)
+        return None if chosen is None else self.perform(*chosen)
+
+    def reason(self, event: str, by: Blocked | Unreadable) -> str:
+        """Return in words why an event can't happen in the present state; `by` is what blocks it."""
+        if isinstance(by, Unreadable):
+            return f"{by.why}, so it counts as {by.error or by.response or 'not received'}"
+        if event == REFUSE:
+            return "its goal is not being canceled"
+        if by is Blocked.PLANT:
+            return "the robot is not ready for it"
+        if by is Blocked.REQUIREMENT:
+            texts = [failing.text for failing in self.engine.failing(event) if failing.text]
+            return f"forbidden by {' and '.join(texts) or 'a requirement'}"
+        supervisor = self.engine.model.supervisor
+        assert supervisor is not None
+        guard = next(guard for guard in supervisor.guards if event_name(guard.event) == event)
+        needed = SctPrinter()(guard.synthesis) if guard.synthesis is not None else "false"
+        otherwise = f"; otherwise, {guard.explanation}" if guard.explanation else ""
+        return f"forbidden by synthesis, which asks for {needed}{otherwise}"
+
+
+def _any(kind: ex.Type, random: Random) -> Value:
+    match kind:
+        case ex.BooleanType():
+            return random.random() < 0.5
+        case ex.IntegerType(minimum=int(low), maximum=int(high)):
+            return random.randint(low, high)
+    assert isinstance(kind, ex.EnumerationType)
+    low, high = domain(kind)
+    return str(kind.enumeration.literals[random.randint(low, high)].name)
+
+
+class LoopSimulation:
+    """Control loop of a model, step by step: incoming events as batches of one or more, and ticks."""
+
+    OWN = (TICK, BEGIN, END, WAIT)
+
+    def __init__(
+        self,
+        model: sct.SupervisoryControlModel,
+        graph: rosgraph.RosGraph | None = None,
+        settings: Settings | None = None,
+        types: RosTypes | None = None,
+    ) -> None:
+        """`types`: the definitions of ROS types, for fields missing in data; None: those of the environment."""
+        self._happened: list[str] = []
+        hooks = Hooks(after=self._happened.append, livelock=lambda: self._happened.append("livelock"))
+        self._loop = ControlLoop(model, settings, hooks)
+        self.data = EventData(self._loop.engine, graph, types)
+        self._in_batch = False
+
+    @property
+    def events(self) -> list[str]:
+        """The events that a script may name: those of the robot, and the loop's own steps."""
+        events = self._loop.engine.executed.events
+        return [*(event.name for event in events if event.role in (Role.incoming, Role.timeout)), *self.OWN]
+
+    def step(self, event: str, data: Mapping[str, Any]) -> dict[str, Any]:
+        """Perform a step; return the object that `simulate --loop --script` prints. Raises DataError."""
+        inputs = {} if event in (*self.OWN, REFUSE) else self.data.inputs(event, data)
+        self._happened.clear()
+        by: Blocked | Unreadable | None = None
+        if event == WAIT:
+            self._wait(round(data["seconds"] * 1000))
+        elif event == REFUSE:
+            by = refusal(self._loop.engine, data["of"])
+        elif event in self.OWN:
+            self._in_batch = event == BEGIN
+            getattr(self._loop, event)()
+        else:
+            if not self._in_batch:
+                self._loop.begin()
+            by = self._loop.engine.blocked_by(event) or self.data.unreadable(event, data)
+            if not isinstance(by, Unreadable):
+                self._loop.perform(event, inputs)
+            elif by.error is not None:
+                self._loop.perform(by.error, self.data.inputs(by.error, self.data.of_unreadable(data)))
+            if not self._in_batch:
+                self._loop.end()
+        given = dict(data) if event in (WAIT, REFUSE) else {}
+        return {
+            "event": event,
+            **given,
+            "accepted": by is None,
+            "by": None if by is None else str(by),
+            "happened": list(self._happened),
+            "state": whole_state(self._loop.engine),
+        }
+
+    def _wait(self, milliseconds: int) -> None:
+        """Let time pass; timers that expire on the way fire at their time."""
+        timers = self._loop.timers
+        end = timers.now + milliseconds
+        while timers.wait is not None and timers.now + timers.wait <= end:
+            timers.at(timers.now + timers.wait)
+            self._loop.expire()
+        timers.at(end)

@@ -1,0 +1,216 @@
+"""Command line: one module for each command, imported on its call."""
+
+from __future__ import annotations
+
+import gc
+import os
+import sys
+import traceback
+from contextlib import contextmanager
+from difflib import get_close_matches
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+from robosc import __version__
+from robosc.base.diagnostics.visible import visible, visible_lines
+from robosc.base.files.reading import noting
+from robosc.base.files.resources import locate
+from robosc.tools.cli import interruption
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+#: Exit statuses other than 0.
+ERRORS_FOUND = 1
+WRONG_CALL = 2
+EMPTY_SUPERVISOR = 3
+INTERNAL_ERROR = 70
+INTERRUPTED = 130
+
+_COMMANDS = {
+    "new": "Begin a model of a robot.",
+    "check": "Say what is wrong with models.",
+    "transform": "Generate code and models.",
+    "synthesize": "Show the supervisor.",
+    "explain": "Say why something can't happen.",
+    "verify": "Prove what the supervised robot promises.",
+    "report": "Write what one reads who must sign for the robot.",
+    "test": "Play scenarios, and say what is not as they expect.",
+    "simulate": "Try the supervised robot.",
+    "view": "See the supervised robot decide, in a browser.",
+    "dap": "Debug a robot in an editor.",
+    "run": "Be a robot's controller on ROS, without a build.",
+    "interfaces": "Build ROS 2 types of your own, without colcon.",
+    "format": "Lay out models in the one canonical way.",
+    "rule": "Say what a rule means.",
+    "lsp": "Serve an editor: findings while typing, completion, and more.",
+    "diagram": "Draw a model or a metamodel.",
+}
+#: Suffixes of model files.
+_MODELS = (".rscd", ".cif", ".xmi")
+#: Commands whose module has another name: the module `report` collects findings.
+_MODULES = {"report": "safety_report"}
+
+
+def say(text: str = "", *, err: bool = False, nl: bool = True) -> None:
+    """Print text for people, to standard error if `err`. Escapes characters that control the terminal."""
+    click.echo(visible_lines(text), err=err, nl=nl)
+
+
+def put(text: str, *, err: bool = False, nl: bool = True) -> None:
+    """Print text unchanged: output for programs, or text that is escaped and colored already."""
+    click.echo(text, err=err, nl=nl)
+
+
+class CallError(click.ClickException):
+    """Error of a call that cannot be executed: a wrong file, a folder that is not writable."""
+
+    exit_code = WRONG_CALL
+
+
+class _InternalError(click.ClickException):
+    exit_code = INTERNAL_ERROR
+
+
+@contextmanager
+def _visible_errors() -> Iterator[None]:
+    """Escape characters that control the terminal in error messages, which may cite the call."""
+    try:
+        yield
+    except click.ClickException as error:
+        said = error.format_message()
+        if visible_lines(said) == said:
+            raise
+        kind = _InternalError if isinstance(error, _InternalError) else CallError
+        raise kind(visible_lines(said)) from error
+
+
+class _Commands(click.Group):
+    """The commands, each in a module of this package with its name, and their common behavior."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(_COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in _COMMANDS:
+            return None
+        command: click.Command = import_module(f"{__name__}.{_MODULES.get(cmd_name, cmd_name)}").command
+        return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args and args[0] not in _COMMANDS and not args[0].startswith("-"):
+            close = get_close_matches(args[0], _COMMANDS, n=1)
+            meant = f"robosc check {args[0]}" if args[0].endswith(_MODELS) else close[0] if close else ""
+            hint = f" Did you mean '{meant}'?" if meant else ""
+            raise click.UsageError(f"No such command '{args[0]}'.{hint}", ctx)
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        # Like click, but without loading the commands.
+        with formatter.section("Commands"):
+            formatter.write_dl(list(_COMMANDS.items()))
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        with _visible_errors():
+            return super().parse_args(ctx, args)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        with _visible_errors():
+            return self._invoked(ctx)
+
+    def _invoked(self, ctx: click.Context) -> Any:
+        for stream in (sys.stdout, sys.stderr):
+            if hasattr(stream, "reconfigure"):
+                # A missing character in the terminal's encoding, or an undecodable file name, must not cause an error.
+                stream.reconfigure(errors="backslashreplace")
+        try:
+            with noting():
+                return super().invoke(ctx)
+        except (click.ClickException, click.exceptions.Exit, click.Abort, BrokenPipeError):
+            raise
+        except KeyboardInterrupt:
+            raise click.exceptions.Exit(INTERRUPTED) from None
+        except Exception as error:
+            if interruption.happened():
+                raise click.exceptions.Exit(INTERRUPTED) from None
+            raise _told(error, show=ctx.params["traceback"]) from error
+
+
+def _told(error: Exception, *, show: bool) -> click.ClickException:
+    """Return the error message for an exception that no command handles. With `show`, also print its traceback."""
+    if isinstance(error, OSError):
+        named = bool(error.filename)
+        return CallError(f"{visible(str(error.filename))}: {error.strerror}" if named else str(error))
+    if isinstance(error, MemoryError):
+        return CallError(f"the model is too large: {str(error) or 'out of memory'}")
+    if show:
+        traceback.print_exc()
+    hint = "" if show else "; `robosc --traceback ...` shows where"
+    return _InternalError(f"a fault of robosc itself, please report it: {type(error).__name__}: {error}{hint}")
+
+
+def _cmake_dir(context: click.Context, _parameter: click.Parameter, asked: bool) -> None:
+    if asked:
+        put(str(locate("cmake")))
+        context.exit()
+
+
+@click.command(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="robosc")
+@click.option(
+    "--cmake-dir",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_cmake_dir,
+    help="Say where the tool's CMake packages are, for CMAKE_PREFIX_PATH, and exit.",
+)
+@click.option("--traceback", is_flag=True, envvar="ROBOSC_TRACEBACK", help="Show where a fault of robosc itself is.")
+def main(**_: Any) -> None:
+    """Generate a ROS controller that provably does only what a model of the robot allows.
+
+    \b
+    Examples:
+      robosc check line_follower.rscd
+      robosc transform line_follower.rscd --to ros2,cif
+      robosc synthesize line_follower.rscd
+      robosc verify line_follower.rscd
+      robosc run line_follower.rscd --ros2
+      robosc rule marked-state
+
+    Exit status: 0 success, 1 errors in the model, 2 a wrong call, 3 an empty supervisor.
+    """
+
+
+def run() -> NoReturn:
+    """Run the program `robosc`.
+
+    Loaded objects live until the process ends. Collecting the objects of the metamodels and freeing them one by one
+    would take a third of the time of a short run.
+    """
+    interruption.note()
+    gc.set_threshold(500_000, 20, 20)
+    sys.set_int_max_str_digits(0)  # the number of states of a robot may have many digits
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:  # closed by the caller, who does not need it
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: PTH123, SIM115
+    status = ERRORS_FOUND
+    try:
+        try:
+            main(prog_name="robosc")
+        except SystemExit as end:
+            status = end.code if isinstance(end.code, int) else 0
+        if not sys.stdout.closed:  # a server closes it when its editor ends
+            sys.stdout.flush()
+    except KeyboardInterrupt:
+        pass  # reported below
+    except BrokenPipeError:
+        pass  # the reader needs no more output
+    except OSError as error:
+        status = WRONG_CALL
+        say(f"Error: the output can't be written: {error.strerror}", err=True)
+    os._exit(INTERRUPTED if interruption.happened() else status)

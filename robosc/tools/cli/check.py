@@ -1,0 +1,138 @@
+"""Command `robosc check`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import click
+
+from robosc.base.diagnostics import ModelError
+from robosc.base.diagnostics.visible import visible
+from robosc.base.files import reading as files
+from robosc.base.files.reading import noting
+from robosc.base.files.writing import write_file
+from robosc.base.ros_types import RosTypes
+from robosc.language.checks import check as rules_of
+from robosc.language.checks.fixing import safe_edits
+from robosc.language.libraries import search_folders
+from robosc.language.reading import read as read_text
+from robosc.language.text import Documents
+from robosc.tools.cli import CallError, interruption, say
+from robosc.tools.cli.options import FILE, Paths, findings_format, paths
+from robosc.tools.cli.reading import read
+from robosc.tools.cli.report import Report
+from robosc.tools.cli.watching import whenever_files_change
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robosc.base.diagnostics import Diagnostic
+    from robosc.language.reading import Reading
+
+#: Maximum number of rounds: an edit may uncover further faults, and edits may undo each other.
+_ROUNDS = 10
+
+
+@click.command("check")
+@click.argument("models", type=FILE, nargs=-1, required=True, metavar="MODEL...")
+@findings_format
+@click.option("--fix", is_flag=True, help="Do first what hints say to write, in the models themselves.")
+@click.option("--watch", is_flag=True, help="Check again whenever a file changes, until Ctrl-C.")
+@paths
+def command(models: Sequence[str], form: str, fix: bool, watch: bool, paths: Paths) -> None:
+    """Read robots and libraries, resolve their names, and report violations of the rules of the language.
+
+    MODEL is a .rscd file, a .cif file, or an .xmi file of one of the metamodels. With --fix, the command first edits
+    .rscd files where a hint has exactly one edit (`did you mean`, `write 0.0`), and then reports the remaining
+    findings. Exit status: 0 no errors, 1 errors.
+
+    \b
+    Examples:
+      robosc check line_follower.rscd
+      robosc check line_follower.rscd --fix
+      robosc check line_follower.rscd --watch
+      robosc check -I libraries robots/*.rscd --format sarif > findings.sarif
+    """
+    for model in models if fix else ():
+        _mend(model, paths)
+    if not watch:
+        _check(models, form, paths)
+        return
+
+    def again(changed: Sequence[str]) -> None:
+        because = f": {', '.join(map(visible, changed))} changed" if changed else ""
+        say(f"checking {', '.join(map(visible, models))}{because}", err=True)
+        try:
+            _check(models, form, paths)
+            say("no errors", err=True)
+        except click.exceptions.Exit:
+            pass  # the report has the errors
+        except OSError as error:
+            say(f"{visible(str(error.filename))}: {error.strerror}", err=True)
+        say("waiting for changes, Ctrl-C ends", err=True)
+
+    whenever_files_change(
+        again, models, [*dict.fromkeys(Path(model).parent for model in models), *search_folders(paths.libraries)]
+    )
+
+
+class _Checked(NamedTuple):
+    """A model and all its findings."""
+
+    reading: Reading
+    findings: list[Diagnostic]
+
+
+def _mend(model: str, paths: Paths) -> None:
+    """Apply the edits of findings to a text, repeatedly, unless they make it worse."""
+    if not model.endswith(".rscd"):
+        raise CallError(f"{model} is no .rscd file: only a text can be mended")
+    interfaces = RosTypes(paths.interfaces)
+
+    def checked(content: str) -> _Checked:
+        interruption.check()
+        with noting():  # files that this reads may be overwritten
+            reading = read_text(model, paths.libraries, interfaces, Documents({model: content}))
+        return _Checked(reading, [*reading.findings, *rules_of(reading.base, reading.findings, interfaces)])
+
+    with noting():
+        written = files.read(model)
+    try:
+        content = before = written.decode("utf-8")
+    except UnicodeDecodeError:
+        return  # writing the text would lose the bytes that cannot be decoded
+    seen = {content}
+    for _ in range(_ROUNDS):
+        found = checked(content)
+        edits = safe_edits(found, checked)
+        if not edits:
+            break
+        after = found.reading.file.text.after(edits, content)
+        if after in seen:
+            break
+        seen.add(after)
+        content = after
+    if content != before:
+        write_file(model, content)
+
+
+def _check(models: Sequence[str], form: str, paths: Paths) -> None:
+    """Check each model. An internal error in one model is raised after the findings for all others are reported."""
+    faults: list[Exception] = []
+    try:
+        with Report(form) as report:
+            for model in models:
+                try:
+                    read(model, paths, report)
+                except ModelError as error:
+                    report.add(error.diagnostics)
+                except (click.ClickException, click.exceptions.Exit, OSError):
+                    raise
+                except Exception as fault:
+                    if interruption.happened():
+                        raise
+                    faults.append(fault)
+    finally:
+        if faults:
+            raise faults[0]

@@ -1,0 +1,117 @@
+"""Command `robosc explain`."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from robosc.analysis.explain import (
+    NamingError,
+    Renderer,
+    data_of,
+    emptiness,
+    event_named,
+    explain,
+    explored,
+    possibility,
+    state_given,
+)
+from robosc.analysis.supervise import supervise
+from robosc.base.diagnostics.visible import visible
+from robosc.model.places import place
+from robosc.tools.cli import CallError, put, say
+from robosc.tools.cli.options import Paths, model, paths, synthesizer
+from robosc.tools.cli.progress import progress
+from robosc.tools.cli.reading import read_models, supervise_otherwise
+from robosc.tools.cli.report import Report
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from robosc.analysis.explain import Explanation, Possibility
+    from robosc.analysis.system import SynthesizedSystem
+    from robosc.model import sct
+
+
+@click.command("explain")
+@model
+@click.option("--event", metavar="EVENT", help="Why EVENT can or can't happen in a state.")
+@click.option(
+    "--state",
+    metavar="STATE",
+    help="That state: `Door=open,Gauge.level=3`, or JSON, such as `~/state` tells. Else it is the first one.",
+)
+@click.option("--why-empty", is_flag=True, help="Why the robot has no supervisor.")
+@click.option("--why-never", metavar="EVENT", help="Why EVENT can never happen, in whatever state.")
+@click.option("--json", "as_data", is_flag=True, help="Print one JSON object.")
+@synthesizer
+@paths
+def command(
+    model: str,
+    event: str | None,
+    state: str | None,
+    why_empty: bool,
+    why_never: str | None,
+    as_data: bool,
+    paths: Paths,
+) -> None:
+    """Explain why an event is forbidden in a state or in all states, or why there is no supervisor.
+
+    MODEL is a .rscd file with a robot, or an .xmi file written by `transform --to xmi`. An event is one of: a
+    communication's name for its usual event (`move`, `Platform.move`), one of its events (`drive.cancel`,
+    `grip.error`), or a name from `synthesize --json` (`message_move.c_trigger`). You may give only part of a state. The
+    tool picks the matching state that is reached in the fewest steps, and shows the path to it. The explained
+    supervisor is that of --synthesizer, else that of a saved model, else that of RoboSC's own synthesis. Suggestions
+    for looser requirements always refer to the latter.
+
+    \b
+    Examples:
+      robosc explain line_follower.rscd --event move
+      robosc explain line_follower.rscd --event move --state EmergencyStop=stopped,LineDetector=following
+      robosc explain line_follower.rscd --event move --state "$(ros2 topic echo --once --full-length /node/state)"
+      robosc explain line_follower.rscd --why-never halt
+      robosc explain broken.rscd --why-empty
+
+    Exit status: 0 success, 1 errors in the model, 2 a wrong call, 3 no supervisor exists (without --why-empty).
+    """
+    if [event is not None, why_empty, why_never is not None].count(True) != 1:
+        raise click.UsageError("give one of --event, --why-empty and --why-never")
+    if state is not None and event is None:
+        raise click.UsageError("--state needs --event")
+    with Report(aside=True) as report:
+        plants = read_models(model, paths, report, cif=True).sct
+        supervise_otherwise(plants)
+        with progress("exploring what the robot can do"):
+            answer = explored(plants, emptiness if why_empty else _question(plants, event, state, why_never))
+        if answer is None and not why_empty:
+            supervise(plants)  # raises with the cause
+        elif as_data:
+            put(json.dumps(data_of(answer, _position), indent=2))
+        else:
+            renderer = Renderer(plants, lambda element: visible("{file}:{line}:{column}".format(**_position(element))))
+            say(renderer.answer(answer))
+
+
+def _question(
+    model: sct.SupervisoryControlModel, event: str | None, state: str | None, why_never: str | None
+) -> Callable[[SynthesizedSystem], Explanation | Possibility | None]:
+    """Return the analysis that answers the question. Its result is None if the supervisor is empty."""
+    try:
+        asked = event_named(model, event or why_never or "")
+        codes = {} if state is None else state_given(model, state)
+    except NamingError as error:
+        raise CallError(str(error)) from error
+
+    def answer(system: SynthesizedSystem) -> Explanation | Possibility | None:
+        if not system.controlled.satisfiable():
+            return None
+        return possibility(system, asked) if event is None else explain(system, asked, codes)
+
+    return answer
+
+
+def _position(element: Any) -> dict[str, Any]:
+    file, span = place(element)
+    return {"file": file, "line": span.line, "column": span.column}

@@ -1,0 +1,95 @@
+"""Command `robosc new`."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from robosc.base.diagnostics.visible import visible
+from robosc.base.files.writing import write
+from robosc.language.formatting import format_text
+from robosc.language.text import Text
+from robosc.tools.cli import CallError, say
+from robosc.tools.starter import Choices, files
+
+#: Questions on a terminal, by the choice that they set.
+_QUESTIONS = {
+    "sensors": "Messages that say whether the robot may move (std_msgs/Bool)",
+    "command": "The command that needs them",
+    "stop": "The command that is sent otherwise; `-` for none",
+    "service": "A service to call first (std_srvs/Trigger); `-` for none",
+}
+_NONE = "-"
+
+
+@click.command("new")
+@click.argument("name")
+@click.option("--ros", type=click.Choice(["1", "2"]), help="The ROS that README.md speaks of; 2 if nothing is said.")
+@click.option("--sensor", "sensors", multiple=True, metavar="MESSAGE", help="Says whether to go; may be repeated.")
+@click.option("--command", "command", metavar="MESSAGE", help="Goes out while all sensors allow it.")
+@click.option("--stop", metavar="MESSAGE", help="Goes out otherwise; `-`: nothing does.")
+@click.option("--service", metavar="SERVICE", help="Is called first, until it succeeds.")
+@click.option("--twist", is_flag=True, help="Commands are velocities on /cmd_vel.")
+@click.option("-o", "--output", "folder", type=click.Path(), help="The new folder, if not one named after the robot.")
+@click.option("-y", "--yes", is_flag=True, help="Ask nothing on a terminal, either.")
+def command(name: str, folder: str | None, yes: bool, **given: Any) -> None:
+    """Create a model of a robot: a folder with model, configuration, README.md and test.
+
+    On a terminal, the command prompts for all choices that no option sets. The model passes `check`, `format --check`
+    and `verify`.
+
+    \b
+    Examples:
+      robosc new Porter
+      robosc new Porter --sensor clear --sensor docked --twist --yes
+      robosc new Lift --ros 1 --command raise --stop hold --service calibrate
+
+    Exit status: 0 success, 2 a wrong call, such as a folder that is not empty.
+    """
+    # Reject invalid names in the call before any prompt.
+    _choices(name, given)
+    choices = _choices(name, given if yes or not _on_terminal() else _asked(given))
+    target = Path(folder or choices.stem)
+    if os.path.lexists(target) and (not target.is_dir() or any(target.iterdir())):
+        raise CallError(f"{visible(str(target))} is there already: nothing is written over; -o names another folder")
+    texts = dict(files(choices))
+    model = f"{choices.stem}.rscd"
+    laid_out, _ = format_text(Text(model, texts[model]))
+    assert laid_out is not None
+    write({target: texts | {model: laid_out}})
+    say(f"{visible(str(target))}: {', '.join(texts)}")
+    say(f"next: cd {visible(str(target))}; robosc simulate {model}")
+
+
+def _choices(name: str, given: dict[str, Any]) -> Choices:
+    said = {key: value for key, value in given.items() if value}
+    said |= {key: None for key in ("stop", "service") if said.get(key) == _NONE}
+    choices = Choices(name, **{**said, "ros": int(said.get("ros", 2))})
+    fault = choices.fault()
+    if fault is not None:
+        raise CallError(fault)
+    return choices
+
+
+def _on_terminal() -> bool:
+    return sys.stdin.isatty() and sys.stdout.isatty()
+
+
+def _asked(given: dict[str, Any]) -> dict[str, Any]:
+    """Return the options of the call, with the user's answers for all missing choices."""
+    answers = dict(given)
+    if not answers["ros"]:
+        answers["ros"] = click.prompt("ROS", type=click.Choice(["1", "2"]), default="2", err=True)
+    for choice, question in _QUESTIONS.items():
+        if not answers[choice]:
+            default = getattr(Choices(""), choice)
+            shown = " ".join(default) if isinstance(default, tuple) else default or _NONE
+            answer = click.prompt(question, default=shown, err=True)
+            answers[choice] = tuple(answer.split()) if choice == "sensors" else answer
+    if not answers["twist"]:
+        answers["twist"] = click.confirm("Are the commands velocities (geometry_msgs/Twist on /cmd_vel)?", err=True)
+    return answers

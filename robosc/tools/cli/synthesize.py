@@ -1,0 +1,215 @@
+"""Command `robosc synthesize`."""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from robosc.analysis.supervise import Diagnosis, EmptySupervisorError, supervise
+from robosc.analysis.system import counted, grouped
+from robosc.analysis.wording import called, change
+from robosc.model import sct
+from robosc.model.places import place
+from robosc.model.semantics.printing import RobotPrinter, SctPrinter, conjunction
+from robosc.model.semantics.roles import SILENT, event_name, input_values
+from robosc.model.semantics.walks import copied
+from robosc.synthesis import count
+from robosc.tools.cli import EMPTY_SUPERVISOR, put, say
+from robosc.tools.cli.options import Paths, chosen_synthesizer, memory, model, paths, synthesizer
+from robosc.tools.cli.progress import synthesizing
+from robosc.tools.cli.reading import read_models, supervise_otherwise
+from robosc.tools.cli.report import Report
+
+if sys.platform != "win32":
+    import resource
+
+if TYPE_CHECKING:
+    from robosc.analysis.observations import Weight
+    from robosc.synthesis import Counts, Statistics, Synthesis
+
+#: Effort limit for one guard, in visited nodes: some tenths of a second, and far more than a readable guard needs.
+_EFFORT = 500_000
+
+
+@click.command("synthesize")
+@model
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@click.option("--counts", is_flag=True, help="Count states only: no guards, no findings.")
+@click.option(
+    "--count-inputs", is_flag=True, help="Count states as CIF does: each once for each value that inputs may have."
+)
+@memory
+@synthesizer
+@paths
+def command(model: str, as_json: bool, counts: bool, count_inputs: bool, megabytes: int, paths: Paths) -> None:
+    """Synthesize the supervisor of a robot and print its states and guards.
+
+    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file written by `transform --to xmi`. A guard is the
+    condition under which the supervisor allows an event that the robot itself can perform. Additions of synthesis,
+    which no requirement states, are shown separately. For each requirement, the output has the number of states in
+    which it restricts the robot; for `never` and `always`, the number of states that they forbid.
+
+    --json lists all events, including those for outgoing data and those from the robot, and the cost of synthesis.
+    Guards too long to read are omitted (`guard` is null), and `guard_nodes` is the size of the decision diagram.
+    --counts omits all guards. --count-inputs counts each state once for each value of the robot's inputs, as CIF's
+    tools do. States of .cif files are always counted in this way.
+
+    \b
+    Examples:
+      robosc synthesize line_follower.rscd
+      robosc synthesize line_follower.rscd --json | jq .controlled_states
+
+    Exit status: 0 success, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
+    """
+    if counts and chosen_synthesizer() is not None:
+        raise click.UsageError("--counts is what our own synthesis counts: leave it or --synthesizer out")
+    with Report(aside=True) as report:
+        plants = read_models(model, paths, report, cif=True).sct
+        times = input_values(plants) if count_inputs else 1
+        if counts:
+            _count(plants, megabytes << 20, times, as_json=as_json)
+            return
+        found = supervise_otherwise(plants, memory=megabytes << 20)
+        if found is not None:
+            show = _show_json if as_json else _show
+            show(plants, Diagnosis(**vars(found)), times)
+            return
+        try:
+            with synthesizing(plants) as statistics:
+                supervision = supervise(
+                    plants, memory=megabytes << 20, statistics=statistics, weigh=True, effort=_EFFORT
+                )
+        except EmptySupervisorError as error:
+            if as_json:
+                _show_json(plants, error.synthesis, times)
+            raise
+        report.add(supervision.findings)
+        show = _show_json if as_json else _show
+        show(plants, supervision.synthesis, times)
+
+
+def _count(model: sct.SupervisoryControlModel, memory: int, times: int, *, as_json: bool) -> None:
+    with synthesizing(model) as statistics:
+        counted = count(model, memory=memory, statistics=statistics)
+    if as_json:
+        put(json.dumps(_counts(model, counted, statistics, times), indent=2))
+    else:
+        say(_states(model, counted, times))
+    if not counted.controlled_states:
+        raise click.exceptions.Exit(EMPTY_SUPERVISOR)
+
+
+def _counts(
+    model: sct.SupervisoryControlModel, counted: Counts | Synthesis, statistics: Statistics, times: int, **more: Any
+) -> dict[str, Any]:
+    without = counted.uncontrolled_states
+    return {
+        "robot": model.name,
+        "uncontrolled_states": None if without is None else without * times,
+        "controlled_states": counted.controlled_states * times,
+        "empty": counted.controlled_states == 0,
+        **more,
+        "seconds": round(sum(statistics.seconds.values()), 3),
+        "processor_seconds": round(sum(statistics.processor_seconds.values()), 3),
+        "bdd_nodes": counted.bdd_nodes,
+        **_cost(statistics),
+    }
+
+
+def _show_json(model: sct.SupervisoryControlModel, synthesis: Diagnosis, times: int) -> None:
+    guards = {guard.event: guard for guard in synthesis.supervisor.guards} if synthesis.supervisor else {}
+    events = [event for plant in model.plants for event in plant.events] if synthesis.supervisor else []
+    answer = _counts(
+        model,
+        synthesis,
+        synthesis.statistics,
+        times,
+        requirements=[_weight(weight) for weight in synthesis.weights],
+        events=[_event(event, guards.get(event), synthesis) for event in events],
+    )
+    put(json.dumps(answer, indent=2))
+
+
+def _weight(weight: Weight) -> dict[str, Any]:
+    """Return a requirement of the text and the number of states in which it matters."""
+    first = weight.requirements[0]
+    file, span = place(first)
+    texts = list(dict.fromkeys(requirement.text for requirement in weight.requirements))
+    return {
+        "name": first.name,
+        "texts": texts,
+        "file": file,
+        "line": span.line,
+        "column": span.column,
+        "states": weight.states,
+    }
+
+
+def _cost(statistics: Statistics) -> dict[str, Any]:
+    """Return the cost of synthesis. Only its seconds and bytes differ from run to run."""
+    return {
+        "peak_nodes": statistics.peak_nodes,
+        "operations": statistics.operations,
+        "rounds": statistics.rounds,
+        "attempts": statistics.attempts,
+        "phase_seconds": {phase: round(seconds, 3) for phase, seconds in statistics.seconds.items()},
+        "peak_bytes": _peak_bytes(),
+    }
+
+
+def _peak_bytes() -> int | None:
+    """Return the peak memory of the process in bytes. None if the system does not report it."""
+    if sys.platform == "win32":
+        return None
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return most if sys.platform == "darwin" else most * 1024
+
+
+def _event(event: sct.Event, guard: sct.EventGuard | None, synthesis: Synthesis) -> dict[str, Any]:
+    """Return an event with its guard. Without a guard, `ever_enabled` depends on the reachable states of the plants."""
+    shown = RobotPrinter() if event.kind in (sct.EventKind.plain, sct.EventKind.input) else SctPrinter()
+    parts = [part for part in (guard.requirement, guard.synthesis) if part] if guard else []
+    whole = conjunction(map(copied, parts))
+    unwritten = synthesis.unwritten.get(event)
+    return {
+        "name": event_name(event),
+        "controllable": event.controllable,
+        "guard": None if unwritten else shown(whole) if whole else "true",
+        "added_by_synthesis": shown(guard.synthesis) if guard and guard.synthesis else None,
+        "ever_enabled": guard.everEnabled if guard else event in synthesis.possible,
+        **({"guard_nodes": unwritten} if unwritten else {}),
+    }
+
+
+def _states(model: sct.SupervisoryControlModel, counts: Counts | Synthesis, times: int) -> str:
+    """Return the number of states, each counted `times` times."""
+    without = counts.uncontrolled_states
+    beside = "" if without is None else f", of {grouped(without * times)} without requirements"
+    return f"{model.name}: {counted(counts.controlled_states * times, 'state')}{beside}"
+
+
+def _show(model: sct.SupervisoryControlModel, synthesis: Diagnosis, times: int) -> None:
+    """Print the states and guards. Omits the selection of outgoing data, which does not restrict the robot."""
+    assert synthesis.supervisor is not None
+    say(_states(model, synthesis, times))
+    for guard in synthesis.supervisor.guards:
+        if guard.event.kind == sct.EventKind.data:
+            continue
+        event = _event(guard.event, guard, synthesis)
+        heading = change(guard.event) if guard.event.kind in SILENT else event["name"]
+        say(f"\n{heading}{'' if event['ever_enabled'] else ' (never enabled)'}")
+        if event["ever_enabled"] or event["guard"] != "true":
+            nodes = event.get("guard_nodes")
+            too_long = f"too long to write out: a decision diagram of {nodes} nodes"
+            say(f"    guard: {too_long if nodes else event['guard']}")
+        if event["added_by_synthesis"]:
+            say(f"    added by synthesis: {event['added_by_synthesis']}")
+    for weight in synthesis.weights:
+        say(f"\n{called(weight.requirements)}")
+        count = counted(weight.states, "state")
+        invariant = isinstance(weight.requirements[0], sct.StateInvariant)
+        matters = f"forbids {count}" if invariant else f"forbids something in {count}"
+        say(f"    {matters if weight.states else 'matters in no state'}")

@@ -1,0 +1,81 @@
+"""Synthesis for an editor in a process of its own, so that typing never waits and the editor can stop it.
+
+    python -m robosc.tools.editor.verdict < request.json > answer.json
+
+The request holds the texts and folders (`answers.Request`), the answer the texts to show by line (`answers.Verdict`).
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import robosc
+from robosc.analysis.supervise import supervise
+from robosc.analysis.system import counted
+from robosc.base.diagnostics import ModelError, has_errors
+from robosc.model import sct
+from robosc.model.places import place
+from robosc.model.semantics.printing import RobotPrinter, conjunction
+from robosc.model.semantics.roles import plant_of
+from robosc.model.semantics.walks import copied
+from robosc.tools.editor.answers import Request, Verdict
+
+if TYPE_CHECKING:
+    from robosc.analysis.supervise import Supervision
+
+#: Memory limit of decision diagrams in bytes, for use beside an editor.
+_MEMORY = 1 << 30
+
+
+def verdict(request: Request) -> Verdict:
+    """Synthesize the supervisor of a robot without errors."""
+    texts: dict[str | os.PathLike[str], str] = {Path(path): text for path, text in request.texts.items()}
+    model = robosc.to_sct(robosc.load(request.path, request.libraries, request.interfaces, documents=texts))
+    try:
+        supervision = supervise(model, memory=_MEMORY, weigh=True)
+    except ModelError as error:
+        return Verdict(f"no supervisor: {error.diagnostics[0].message}", {}, {})
+    except MemoryError:
+        return Verdict("synthesis needs more than 1 GB: `robosc synthesize` tells more", {}, {})
+    return _verdict(request.path, model, supervision)
+
+
+def _verdict(path: str, model: sct.SupervisoryControlModel, supervision: Supervision) -> Verdict:
+    synthesis = supervision.synthesis
+    states = f"{counted(synthesis.controlled_states, 'state')} under its supervisor"
+    without = synthesis.uncontrolled_states
+    told = states + (f", {without} without requirements" if without is not None else "")
+    faults = [finding.message for finding in supervision.findings if has_errors([finding])]
+    requirements = {}
+    for weight in synthesis.weights:
+        file, span = place(weight.requirements[0])
+        if file == path:
+            forbids = "forbids" if isinstance(weight.requirements[0], sct.StateInvariant) else "forbids something in"
+            said = f"{forbids} {counted(weight.states, 'state')}" if weight.states else "matters in no state"
+            requirements[str(span.line)] = said
+    guards: dict[str, list[str]] = {}
+    printed = RobotPrinter()
+    for guard in synthesis.supervisor.guards if synthesis.supervisor is not None else ():
+        whole = conjunction(copied(part) for part in (guard.requirement, guard.synthesis) if part)
+        origin = plant_of(guard.event).origin
+        if whole is not None and origin and guard.event.kind in (sct.EventKind.trigger, sct.EventKind.cancel):
+            name = "request" if guard.event.kind == sct.EventKind.trigger else "cancel"
+            guards.setdefault(origin, []).append(f"{name}: {printed(whole)}")
+    return Verdict("; ".join([told, *faults]), requirements, guards)
+
+
+def main() -> None:
+    """Read a request and write the answer."""
+    if hasattr(os, "nice"):
+        os.nice(10)
+    answer = verdict(Request(**json.load(sys.stdin)))
+    sys.stdout.write(json.dumps(asdict(answer)))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,70 @@
+"""Choices of a user for a new robot."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from robosc.model.semantics.naming import ROBOSC_KEYWORDS, snake_case
+
+_ROBOT = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*")
+_COMMUNICATION = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*")
+
+
+@dataclass(frozen=True)
+class Choices:
+    """A robot's name, its ROS (1 or 2), and the names of its inputs and outputs.
+
+    `sensors` are messages that report whether `command` may be sent; while it may not, `stop` is sent. `service` is
+    called once, before anything else. With `twist`, both commands are velocities.
+    """
+
+    name: str
+    ros: int = 2
+    sensors: tuple[str, ...] = ("clear",)
+    command: str = "drive"
+    stop: str | None = "halt"
+    service: str | None = None
+    twist: bool = False
+
+    @property
+    def robot(self) -> str:
+        """The robot's name as the model writes it: `MyRobot` for `my_robot`."""
+        return camel(self.name)
+
+    @property
+    def stem(self) -> str:
+        """The robot's name in snake case, for its folder and files."""
+        return snake_case(self.robot)
+
+    @property
+    def package(self) -> str:
+        """The name of the generated ROS package, its node and executable."""
+        return f"{self.stem}_controller"
+
+    @property
+    def commands(self) -> list[str]:
+        """The messages that the controller sends."""
+        return [self.command, *([self.stop] if self.stop else [])]
+
+    def fault(self) -> str | None:
+        """Return the fault of a name with a hint, or None if all names are valid."""
+        if not _ROBOT.fullmatch(self.name):
+            return f"`{self.name}` can't name a robot: letters, digits and single `_` can, such as `Porter`"
+        names = [*self.sensors, *self.commands, *([self.service] if self.service else [])]
+        for name in names:
+            if not _COMMUNICATION.fullmatch(name):
+                return f"`{name}` can't name a message or service: small letters, digits and single `_` can"
+            if name in ROBOSC_KEYWORDS:
+                return f"`{name}` is a word of the language: take another name"
+        twice = next((name for name in names if names.count(name) > 1), None)
+        if twice:
+            return f"`{twice}` names two things: give each a name of its own"
+        components = [camel(name) for name in self.sensors]
+        alike = next((name for name in self.sensors if components.count(camel(name)) > 1), None)
+        return f"`{alike}` is too like another name: give each a name of its own" if alike else None
+
+
+def camel(name: str) -> str:
+    """Return the name without underscores and with capitalized words: `StopButton` for `stop_button`."""
+    return "".join(word[:1].upper() + word[1:] for word in name.split("_"))

@@ -1,0 +1,72 @@
+"""Only regular files of a bounded size are read, whatever a name means."""
+
+import os
+import socket
+from pathlib import Path
+
+import pytest
+
+from robosc.base.files import reading as files
+
+
+def test_a_regular_file_is_read_through_links(tmp_path: Path) -> None:
+    (tmp_path / "file").write_bytes(b"a\r\n\0\xff")
+    (tmp_path / "link").symlink_to("file")
+    assert files.read(tmp_path / "file") == files.read(str(tmp_path / "link")) == b"a\r\n\0\xff"
+
+
+@pytest.mark.parametrize("name", ["pipe", "socket", "/dev/zero", "/dev/tty", "folder", "missing", "circle", "nul\0"])
+def test_nothing_else_is_read(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "circle").symlink_to("circle")
+    server = socket.socket(socket.AF_UNIX)
+    monkeypatch.chdir(tmp_path)  # names of sockets are short
+    server.bind("socket")
+    with pytest.raises(OSError) as raised:  # noqa: PT011  # of whatever kind
+        files.read(tmp_path / name)
+    server.close()
+    assert str(raised.value.filename) == str(tmp_path / name)
+    assert raised.value.strerror
+
+
+def test_what_becomes_a_pipe_meanwhile_is_not_waited_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "file").touch()
+    opened = os.open
+
+    def swapped(path: str, flags: int) -> int:
+        Path(path).unlink()
+        os.mkfifo(path)
+        return opened(path, flags)
+
+    monkeypatch.setattr(os, "open", swapped)
+    with pytest.raises(OSError, match="this is a pipe; only regular files are read"):
+        files.read(tmp_path / "file")
+
+
+def test_a_file_is_read_up_to_a_size(tmp_path: Path) -> None:
+    with (tmp_path / "large").open("wb") as large:
+        large.truncate(files.MOST_BYTES)
+    assert len(files.read(tmp_path / "large")) == files.MOST_BYTES
+    with (tmp_path / "large").open("ab") as large:
+        large.write(b"x")
+    with pytest.raises(OSError, match="more than 128 MB, the most that is read"):
+        files.read(tmp_path / "large")
+
+
+@pytest.mark.skipif(not Path("/proc/kmsg").exists() or os.geteuid() != 0, reason="root's /proc only")
+def test_a_regular_file_that_waits_for_more_is_not_waited_for() -> None:
+    with pytest.raises(OSError, match="kmsg"):
+        files.read("/proc/kmsg")
+
+
+def test_inputs_are_noted(tmp_path: Path) -> None:
+    for name in ("input", "other"):
+        (tmp_path / name).touch()
+    with files.noting():
+        files.read(tmp_path / "input")
+        files.read(tmp_path / "other", is_input=False)
+        (tmp_path / "again").hardlink_to(tmp_path / "input")
+        assert files.input_named((tmp_path / "again").stat()) == str(tmp_path / "input")
+        assert files.input_named((tmp_path / "other").stat()) is None
+    assert files.input_named((tmp_path / "input").stat()) is None

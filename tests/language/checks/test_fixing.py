@@ -1,0 +1,378 @@
+"""Automatic edits never damage a text: they leave comments alone, and a model no worse than it was."""
+
+from collections import Counter
+from collections.abc import Sequence
+from functools import lru_cache, partial
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robosc.base.diagnostics import Diagnostic, Edit
+from robosc.language.checks import check
+from robosc.language.checks.fixing import Safety, objection, safe_edits, safety_of
+from robosc.language.reading import Reading, read
+from robosc.language.text import Documents, Text
+from robosc.language.tokens import Kind, Tokens
+from tests.language.checks.test_mending import HERE, INTERFACES, MODELS, TEXTS, ways
+
+PATH = HERE / "nowhere.rscd"
+#: All models that break a rule, and texts with syntax errors and names that stand for nothing.
+PATHS = {f"{path.parent.name}/{path.stem}": path for path in MODELS} | dict.fromkeys(TEXTS, PATH)
+BROKEN = {name: TEXTS.get(name) or path.read_text(encoding="utf-8") for name, path in PATHS.items()}
+
+
+class Checked(NamedTuple):
+    reading: Reading
+    findings: Sequence[Diagnostic]
+
+
+@lru_cache(64)
+def checked(content: str, path: Path = PATH) -> Checked:
+    reading = read(path, [HERE / "libraries"], INTERFACES, Documents({str(path): content}))
+    return Checked(reading, [*reading.findings, *check(reading.base, reading.findings, INTERFACES)])
+
+
+def fixed(content: str, path: Path = PATH) -> str:
+    """The text after all rounds of edits with one way."""
+    for _ in range(20):
+        found = checked(content, path)
+        edits = safe_edits(found, partial(checked, path=path))
+        if not edits:
+            return content
+        content = found.reading.file.text.after(edits)
+    raise AssertionError(f"edits go on for ever: {content}")
+
+
+def comments(content: str) -> list[str]:
+    return [content[start:end] for start, end in Tokens(content).comments]
+
+
+def strings(content: str) -> Counter[str]:
+    return Counter(token.text for token in Tokens(content) if token.kind in {Kind.STRING, Kind.OPEN_STRING})
+
+
+def of_rules(findings: Sequence[Diagnostic]) -> Counter[str]:
+    return Counter(finding.rule for finding in findings)
+
+
+def baited(content: str, every: int = 1) -> str:
+    """The text with a comment before each token, or each so many, that repeats what follows and a string."""
+    tokens = [token for token in Tokens(content) if token.kind is not Kind.OPEN_COMMENT]
+    pieces, behind = [], 0
+    for index, token in enumerate(tokens):
+        # The sign of a bound is one word with its number.
+        signed = tokens[index - 1].text == "-" or token.text == "-"
+        if index and index % every == 0 and not signed:
+            bait = " ".join(other.text for other in tokens[index - 2 : index + 6] if "*/" not in other.text)
+            pieces += [content[behind : token.start], f' /* {bait} "no" }} */ ']
+            behind = token.start
+    return "".join([*pieces, content[behind:]])
+
+
+def test_comments_do_not_change_what_is_found() -> None:
+    """So that what follows tries the same edits as the texts without comments."""
+    for name in list(BROKEN)[::8]:
+        if "fault" not in name and "foreign" not in name:
+            before, after = (checked(content, PATHS[name]).findings for content in (BROKEN[name], baited(BROKEN[name])))
+            assert [found.rule for found in before] == [found.rule for found in after], name
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_no_way_to_mend_a_finding_changes_a_comment(name: str) -> None:
+    content = baited(BROKEN[name])
+    before = checked(content, PATHS[name])
+    kept = comments(content)
+    for finding in before.findings:
+        for edits in ways(finding) if finding.file == str(PATHS[name]) else ():
+            assert comments(before.reading.file.text.after(edits)) == kept, (finding.message, edits)
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_edits_that_do_no_harm_leave_no_more_syntax_errors(name: str) -> None:
+    content = BROKEN[name]
+    before = checked(content, PATHS[name])
+    for finding in before.findings:
+        for edits in ways(finding) if finding.file == str(PATHS[name]) else ():
+            safety = safety_of(finding, edits, before, partial(checked, path=PATHS[name]))
+            after = checked(before.reading.file.text.after(edits), PATHS[name])
+            counts, left = of_rules(before.findings), of_rules(after.findings)
+            worse = left["syntax"] > counts["syntax"] or (finding in after.findings and left >= counts)
+            assert safety is Safety.HARMFUL if worse else True, (finding.message, edits)
+            if safety is Safety.SAFE and finding.rule != "syntax":
+                assert left <= counts
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_automatic_edits_make_nothing_worse(name: str) -> None:
+    assert_no_worse(baited(BROKEN[name], 3), PATHS[name])
+
+
+def assert_no_worse(content: str, path: Path) -> None:
+    """All edits with one way leave no finding that was not there, but for those that a syntax error had hidden."""
+    after = fixed(content, path)
+    assert comments(after) == comments(content)
+    before, found = (of_rules(checked(text, path).findings) for text in (content, after))
+    assert found["syntax"] <= before["syntax"]
+    if not before["syntax"]:
+        assert found <= before, after
+        assert found != before or after == content
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "safety"),
+    [
+        ("oops", "shut", Safety.SAFE),
+        ("goto oops", "do x := 1", Safety.DOUBTFUL),
+        ("oops", "oops", Safety.HARMFUL),
+        ("oops", "shut }", Safety.HARMFUL),
+        ("oops /* keep */", "shut", Safety.HARMFUL),
+        ("oops", "shut /* new */", Safety.HARMFUL),
+    ],
+)
+def test_effect_of_an_edit(old: str, new: str, safety: Safety) -> None:
+    content = """robot R {
+  component C {
+    incoming message go with type: none
+    behaviour { initial marked state shut { on request to go goto oops /* keep */ } }
+  }
+}"""
+    before = checked(content)
+    (finding,) = before.findings
+    start = content.index(old)
+    edit = Edit(before.reading.file.text.span(start, start + len(old)), new)
+    assert safety_of(finding, [edit], before, checked) is safety
+
+
+FRAGMENTS = ("/* no, send: change } */", '/* "state idle" */', "// goto idle { }\n", "/* { */", "/* marked initial */")
+
+
+@settings(max_examples=60, deadline=None)
+@given(name=st.sampled_from(sorted(BROKEN)), data=st.data())
+def test_comments_anywhere(name: str, data: st.DataObject) -> None:
+    tokens = list(Tokens(BROKEN[name]))
+    places = data.draw(st.lists(st.integers(0, len(tokens) - 1), max_size=12, unique=True), label="places")
+    content = BROKEN[name]
+    for place in sorted(places, reverse=True):
+        start = tokens[place].start
+        content = content[:start] + data.draw(st.sampled_from(FRAGMENTS)) + content[start:]
+    assert_no_worse(content, PATHS[name])
+
+
+@settings(max_examples=40, deadline=None)
+@given(name=st.sampled_from(sorted(BROKEN)), data=st.data())
+def test_words_that_are_missing_anywhere(name: str, data: st.DataObject) -> None:
+    """Damaged texts are mended, or left as they are."""
+    tokens = list(Tokens(BROKEN[name]))
+    content = BROKEN[name]
+    for place in sorted(data.draw(st.sets(st.integers(1, len(tokens) - 1), max_size=3), label="places"), reverse=True):
+        token = tokens[place]
+        new = data.draw(st.sampled_from(["", "}", "{", ",", "state", "^", '"', "goto x"]), label="word")
+        content = content[: token.start] + new + content[token.end :]
+    assert_no_worse(content, PATHS[name])
+
+
+ROBOT = """robot Cart {
+  component Drive {
+    incoming message go with type: none
+    outgoing message scan with type: boolean
+    behaviour {
+      initial marked state idle { on response from scan goto moving }
+      state moving { on request to go goto idle }
+    }
+  }
+}
+"""
+
+
+def test_only_the_clause_is_left_out() -> None:
+    content = ROBOT.replace("scan with", "scan /* , send: change is for commands */ with").replace(
+        "boolean", "boolean /* of the laser */ , /* no */ send: change // at once"
+    )
+    after = content.replace("*/ , /*", "*/ /*").replace(" send: change //", " //")
+    assert fixed(content) == after
+
+
+@pytest.mark.parametrize("comment", ["/* state moving of old */", "// state moving\n"])
+def test_the_name_is_renamed_and_no_comment(comment: str) -> None:
+    content = ROBOT.replace("state moving", f"state {comment} idle")
+    before = checked(content)
+    (finding,) = [found for found in before.findings if found.rule == "unique-state"]
+    (way,) = finding.alternatives
+    text = before.reading.file.text
+    assert text.after(way.edits) == content.replace(f"{comment} idle", f"{comment} idle_2")
+
+
+def test_a_point_in_a_comment_is_none() -> None:
+    content = """robot R {
+  datatype object P { x: double }
+  datatype object Q { points: array(P) }
+  component C {
+    outgoing message m with type: Q
+    behaviour {
+      variable d: double
+      marked initial state s { on response from m do d := value.points /* a.b */ . /* c.d */ x }
+    }
+  }
+}
+"""
+    assert fixed(content) == content.replace(". /* c.d */ x", "[0]. /* c.d */ x")
+
+
+def test_a_guess_that_leads_to_another_finding_is_not_made() -> None:
+    content = ROBOT.replace("goto moving", "do sped := true goto moving").replace(
+        "behaviour {", "behaviour { variable speed: integer(0..3) = 0"
+    )
+    found = checked(content)
+    (finding,) = [found for found in found.findings if found.edits]
+    assert "`speed`" in finding.hint
+    assert fixed(content) == content
+    text = found.reading.file.text
+    why = objection(found, checked(text.after(finding.edits)), {text.file: finding.edits}, [finding])
+    assert why == "line 6: a value for `speed` must be integer, found boolean"
+
+
+def test_one_bad_edit_keeps_no_other_back() -> None:
+    """Of many edits those that are safe are made, whatever the others do."""
+    wrong = (
+        ROBOT.replace("goto moving", "do sped := true goto movng")
+        .replace("goto idle", "goto idel")
+        .replace("behaviour {", "behaviour { variable speed: integer(0..3) = 0")
+    )
+    assert fixed(wrong) == wrong.replace("movng", "moving").replace("idel", "idle")
+
+
+@pytest.mark.parametrize("brace", ["}", "{"])
+def test_no_brace_goes_behind_another_error(brace: str) -> None:
+    """It may be one too many only because of that error."""
+    content = ROBOT.replace("goto moving }", f"goto moving }} {brace}").replace("with type: none", "3")
+    found = checked(content)
+    surplus = [finding for finding in found.findings if "one too many" in finding.message]
+    assert [finding.edits for finding in surplus] == [()] * len(surplus)
+    assert {finding.hint for finding in surplus} <= {"mend the error in line 3 first"}
+    assert Counter(fixed(content))[brace] == Counter(content)[brace]
+
+
+def test_a_lone_brace_too_many_goes() -> None:
+    content = ROBOT.replace("goto moving }", "goto moving }\n    }\n   ")
+    assert fixed(content) == ROBOT.replace("goto moving }", "goto moving }\n    \n   ")
+
+
+DOORS = """robot R {
+  datatype enum Level from double to { value > 1.0 -> high default -> low }
+  constant c: integer = 1
+  component Door {
+    action fold with request: none, response: none, feedback: none
+    incoming message togo with type: none
+    behaviour {
+      variable n: integer(0..3)
+      variable eager: boolean
+      variable locked: boolean
+      initial marked state idle { on request to togo do n := 2 goto idle }
+    }
+  }
+  requirement togo needs Door.eager
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "keyword"),
+    [
+        ("action fold", "actionfold", "behind `action`"),
+        ("component Door", "componentDoor", "behind `component`"),
+        ("datatype enum", "datatypeenum", "behind `datatype`"),
+        ("initial marked", "initialmarked", "behind `initial`"),
+        ("request to togo", "requesttotogo", "behind `request`"),
+        ("goto idle", "gotos", "behind `goto`"),
+        ("feedback: none", "feedback0.5 none", "behind `feedback`"),
+        ("type: none\n    behaviour", "type: none nonebehaviour", "before `behaviour`"),
+    ],
+)
+def test_no_keyword_takes_the_place_of_a_longer_word(old: str, new: str, keyword: str) -> None:
+    content = DOORS.replace(old, new)
+    assert content != DOORS
+    assert f"is a blank missing {keyword}?" in {finding.hint for finding in checked(content).findings}
+    assert fixed(content) == content
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("= 1", "= ()"),
+        ("= 1", "= 1.0*/"),
+        ("eager: boolean", "eager:: boolean"),
+        ("Door.eager", "Door.{"),
+        (":= 2", ":= := 2"),
+        ("locked: boolean", "locked: type = true"),
+        ("-> high default", "default"),
+        ("1.0 -> high default -> low", "1.0\n default -> low"),
+        ("default -> low", "default"),
+    ],
+)
+def test_nothing_is_written_before_what_is_no_name_or_value(old: str, new: str) -> None:
+    content = DOORS.replace(old, new)
+    assert content != DOORS
+    syntax = [finding for finding in checked(content).findings if finding.rule == "syntax"]
+    assert syntax
+    assert not any(finding.edits for finding in syntax)
+    assert fixed(content) == content
+
+
+def test_the_name_of_a_type_that_is_a_keyword() -> None:
+    content = DOORS.replace("Level", "^type").replace("locked: boolean", "locked: type = low")
+    assert fixed(content) == content.replace("locked: type", "locked: ^type")
+
+
+def test_a_syntax_error_that_becomes_another_one_stays() -> None:
+    content = DOORS.replace("action fold", "actionfold")
+    before = checked(content)
+    (finding,) = [found for found in before.findings if found.rule == "syntax"]
+    text, edits = before.reading.file.text, [at(content, "actionfold", "action")]
+    why = objection(before, checked(text.after(edits)), {text.file: edits}, [finding])
+    assert why == "line 5: found `request`, expected `with`"
+
+
+def test_errors_of_one_item_of_which_one_hides_the_next() -> None:
+    content = DOORS.replace("needs Door.eager", "needs not Door.eager or not Door.locked")
+    assert fixed(content) == content.replace("not ", "! ")
+    hopeless = DOORS.replace("needs Door.eager", "needs not Door.eager or not Door.{")
+    assert fixed(hopeless) == hopeless
+
+
+def objected(content: str, *edits: Edit) -> str | None:
+    before = checked(content)
+    text = before.reading.file.text
+    return objection(before, checked(text.after(edits)), {text.file: edits})
+
+
+def at(content: str, old: str, new: str) -> Edit:
+    start = content.index(old)
+    return Edit(Text("", content).span(start, start + len(old)), new)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "why"),
+    [
+        ("robot Cart", "robot Van", None),
+        ("state idle", "statee idle", "line 6: "),
+        ("goto idle", "goto moving", "line 7: no marked state"),
+        ("state moving", "state idle", "line 6: "),
+        ("robot", "/* robot */ robot", "a comment would change"),
+        ("go with", 'go with identifier: "go", ', None),
+        ("message go", "message went", "`go` would stand for something else"),
+        ("    incoming", "    /* incoming */ incoming", "a comment would change"),
+    ],
+)
+def test_what_is_worse(old: str, new: str, why: str | None) -> None:
+    found = objected(ROBOT, at(ROBOT, old, new))
+    assert (found is None) == (why is None), found
+    assert why is None or found.startswith(why.split("`")[0])
+
+
+def test_a_string_is_replaced_as_a_whole_or_not_at_all() -> None:
+    content = ROBOT.replace("go with", 'go with identifier: "/go", ')
+    assert objected(content, at(content, '"/go"', '"/stop"')) is None
+    assert objected(content, at(content, "/go", "/stop")) == "a string would change"

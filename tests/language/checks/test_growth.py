@@ -1,0 +1,97 @@
+"""Short texts whose names stand for very much are refused before anything is written out."""
+
+import sys
+from collections.abc import Callable
+
+import pytest
+
+from robosc.language.checks import check
+from robosc.language.reading import read
+from robosc.language.text import Documents
+from robosc.model.semantics import expansion
+
+COMPONENT = """component A {
+  outgoing message m with type: integer(0..9)
+  incoming message go with type: none
+  behaviour { variable k: integer(0..9) = 0 on response from m do k := value initial marked state a { } }
+}"""
+TOO_LARGE = "this has more than 20000 parts when names are written out"
+
+
+def doubled(head: str, first: str, step: str, use: str) -> str:
+    """A definition, and 39 more, each of which names the one before twice."""
+    lines = [head.format(0) + first, *(head.format(number) + step.format(number - 1) for number in range(1, 40))]
+    return "\n".join(["robot R {", COMPONENT, *lines, use.format(39), "}"])
+
+
+FUNCTION = "function f{}(x: integer): integer = "
+TEXTS = {
+    "functions": doubled(FUNCTION, "x + 1", "f{0}(x) + f{0}(x)", "requirement A.go needs f{}(A.k) > 3"),
+    "arguments": doubled(FUNCTION, "x + x", "f{0}(x + x)", "requirement A.go needs f{}(A.k) > 3"),
+    "conditions": doubled("condition c{} = ", "A.k > 3", "c{0} and c{0}", "requirement A.go needs c{}"),
+}
+
+
+@pytest.mark.parametrize("text", TEXTS.values(), ids=TEXTS)
+def test_what_would_be_too_large_is_never_written_out(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
+    steps = 0
+    copied = expansion.copied
+
+    def counted(*arguments: object) -> object:
+        nonlocal steps
+        steps += 1
+        return copied(*arguments)
+
+    monkeypatch.setattr(expansion, "copied", counted)
+    reading = read("r.rscd", documents=Documents({"r.rscd": text}))
+    findings = [*reading.findings, *check(reading.base, reading.findings)]
+    assert [finding.message for finding in findings] == [TOO_LARGE]
+    # Each of the small definitions is written out by several rules.
+    assert steps < 20 * expansion.LARGEST
+
+
+def test_squares_of_squares_stay_small() -> None:
+    text = doubled("constant c{}: integer = ", "3", "c{0} * c{0}", "requirement A.go needs A.k > c{}")
+    reading = read("r.rscd", documents=Documents({"r.rscd": text}))
+    messages = [finding.message for finding in check(reading.base, reading.findings)]
+    bounds = "an integer lies between -9223372036854775808 and 9223372036854775807, and this is "
+    assert f"{bounds}3433683820292512484657849089281" in messages
+    assert messages.count(f"{bounds}far larger") >= 33
+
+
+def test_texts_of_texts_are_not_written_out() -> None:
+    use = "component B { outgoing message n with identifier: c{}, type: none }".replace("{ ", "{{ ").replace(
+        " }", " }}"
+    )
+    text = doubled("constant c{}: string = ", '"ab"', "c{0} + c{0}", use)
+    reading = read("r.rscd", documents=Documents({"r.rscd": text}))
+    findings = [*reading.findings, *check(reading.base, reading.findings)]
+    assert {finding.message for finding in findings} == {TOO_LARGE}
+
+
+def calls(text: str) -> int:
+    """The number of Python functions that reading and checking a text calls."""
+    count = 0
+
+    def counted(_frame: object, event: str, _argument: object) -> None:
+        nonlocal count
+        count += event == "call"
+
+    before = sys.getprofile()
+    sys.setprofile(counted)
+    try:
+        reading = read("r.rscd", documents=Documents({"r.rscd": text}))
+        check(reading.base, reading.findings)
+    finally:
+        sys.setprofile(before)
+    return count
+
+
+@pytest.mark.parametrize("chain", [" = ".join, lambda parts: " = ".join(["lost", *parts[1:]])])
+def test_a_chain_of_reasons_costs_by_its_length(chain: Callable[[list[str]], str]) -> None:
+    text = """robot R {{ component A {{ service s with request: none, response: none behaviour {{
+      initial marked state idle {{ on request to s goto busy }}
+      state busy {{ on response from s goto idle on error from s if {} goto idle }} }} }} }}"""
+    calls(text.format("error = lost"))  # what is read once is read now
+    short, long = (calls(text.format(chain(["error"] * number))) for number in (100, 400))
+    assert long < 5 * short

@@ -1,0 +1,287 @@
+"""What hints say to write mends the finding, in all models that break a rule."""
+
+import ast
+import re
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from robosc.base.diagnostics import Diagnostic, Edit
+from robosc.base.ros_types import RosTypes
+from robosc.language.checks import check
+from robosc.language.reading import Reading, read
+from robosc.language.text import Documents
+from tests.language.test_recovery import FAULTS, FOREIGN, MODEL, changed
+
+HERE = Path(__file__).parent
+PACKAGE = HERE.parents[2] / "robosc"
+LINE = re.compile(r" \(line \d+\)| in line \d+")
+INTERFACES = RosTypes([HERE / "interfaces"])
+MODELS = sorted((HERE / "rejected").glob("*/*.rscd"))
+#: What breaks rules that no robot in `rejected` breaks: names, and what other languages write.
+TEXTS = {
+    "none": MODEL,
+    **{f"fault-{number}": changed(MODEL, old, new) for number, (old, new, *_) in enumerate(FAULTS)},
+    **{f"foreign-{number}": text for number, (text, _) in enumerate(FOREIGN)},
+    "names": """robot R {
+  datatype object Point { x: double }
+  datatype object Path { points: array(Point) length: double }
+  datatype enum E from double to { value > 1.0 -> clear default -> far }
+  component A {
+    incoming message m with type: none outgoing message path with type: Path
+    behaviour { variable d: double marked initial state s { on response from path do d := value.points.x } state u { } }
+  }
+  component B { outgoing message n with type: E behaviour { initial marked state t { transition if u } state u { } } }
+  component C { behaviour { initial marked state w { transition if u } } }
+  requirement m needs A.q and A.clear and B.sss
+}
+""",
+    "named": """robot R {
+  datatype object O { x: double }
+  datatype enum E from integer to { value = 1 -> one C.k > 1.0 -> two default -> other }
+  constant c: O = 1
+  parameter p: boolean(0.0..1.0) = true
+  function f(x: double = 1.0): double = x
+  function g(x: double): double = C.k
+  component C {
+    incoming message m with type: none
+    outgoing message a with type: E
+    outgoing message o with type: O
+    incoming message n with type: integer
+    incoming message l with type: std_msgs/Float64MultiArray
+    behaviour {
+      variable k: double = 1.0 variable e: E = one variable w: string = "a" variable b: boolean = all C: true
+      initial marked state i { after true s goto i transition if k + e > 1.0 or w + w = "a" or b }
+    }
+  }
+  component D { outgoing message a with type: E }
+  requirement at most 0 m since m
+  requirement at most 5000 m since m
+  requirement T: automaton { state u { on m goto u on m goto u } state v { } }
+  requirement U: automaton { initial state u { } initial state v { } }
+  provide n with 1.0
+  provide l with { data: 1.0 }
+}
+""",
+    "changes": """robot R {
+  component C {
+    incoming message m with type: boolean, send: change
+    outgoing message o with type: double, send: change
+    behaviour { initial marked state i { on request to m goto i when true unless true } var x: boolean }
+  }
+}
+""",
+    "calls": """robot R {
+  component C { service s with request: none, response: none }
+  component D { incoming message m with type: none }
+  requirement m needs !C.s.running.x
+  requirement m needs !C.s.runing
+  requirement m needs !C.s
+}
+""",
+    "escapes": 'robot R { component C { incoming message m with identifier: "a\\d", type: none } }',
+    "quotes": "robot R { component C { incoming message m with identifier: \u201c/m\u201d, type: none } }",
+    "numbers": "robot R { constant a: double = .5 constant b: double = 1e-3 constant c: double = 2. }",
+}
+#: How hints begin that say what to write; and those that nothing here draws, none of which an edit follows.
+SAYING = ("write `", "add ", "leave ", "rename ", "did you mean")
+UNSEEN = ("write `if` and `!` before the condition", "write `none`: no data type fits", "write `{}`")
+#: Hints that no edit follows, by how they begin, and why: they do not say what to write.
+TOLD = {
+    "what is missing is known to the writer alone": (
+        "compare double with double",
+        "compare it with `value` where data comes in",
+        "declare a `constant` for the whole text",
+        "declare `datatype object",
+        "declare `interface",
+        "declare `variable",
+        "declare an object",
+        "declare it from the object that has the array",
+        "end it with",
+        "for the data of a service or action, declare",
+        "is a name missing before",
+        "leave it out: this event carries no data",
+        "leave one of these uses out",
+        "let a variable remember",
+        "name a type of kind",
+        "narrow its range",
+        "store it in a variable",
+        "the `{` in line",
+        "the units are",
+        "turn it into an enum",
+        "use what both have",
+        "write `Ahead(limit",
+        "write `Bumper(topic",
+        "write `gain(distance",
+        "write a message that a component sends",
+        "write a number, a blank and a unit",
+        "write a number that is in the range",
+        "write a whole number or declare it double",
+        "write an integer from 1 on",
+        "write an object value",
+        "write `->` and the value",
+        "write a larger one",
+        "write a smaller one",
+        "write another expression",
+        "write the name of an array there",
+        "write what it has where it is needed",
+    ),
+    "a construct is to be written anew": (
+        "assign it `on canceled from",
+        "give both one type",
+        "go to a state",
+        "let `",
+        "choose another name, such as `why`",
+        "provide other data",
+        "read `error` at `on error from",
+        "store it in a variable by `on error from",
+        "write `on error from",
+        "`identifier` stands before all else",
+        "`links` stands behind all else",
+        "`send: change` stands behind the type",
+        "a file holds one robot or one library",
+        "a name is made of the letters",
+        "an `after` has no condition",
+        "compare an enum's values by `=` only",
+        "compare integers, or give the integers smaller ranges",
+        "compute it of `value`",
+        "declare it from the type that `Endless` is from",
+        "an enum's rules see only",
+        "give it a parameter for what it shall read",
+        "declare what gives the data and what takes it with one type",
+        "give the integers smaller ranges",
+        "move its states, variables and transitions",
+        "say it in a requirement",
+        "such a definition stands in",
+        "the automaton of a requirement has states",
+        "the condition of a transition stands before",
+        "the properties of an object stand in braces",
+        "the text stands before the colon",
+        "use literals, constants, operators",
+        "write `=` and one expression instead of braces",
+        "write `all`, `any` or `count`",
+        "write `component name(parameter",
+        "write `goto idle`",
+        "write the condition with `C` itself",
+        "write `if condition then value else value`",
+        "write `mod(a, b)`",
+        "write `parameter name: type = value` in the robot",
+        "write `requirement at most",
+        "write `requirement b after a`",
+        "write `requirement name: automaton",
+        "write a transition for each case",
+        "write it in the state whose time is meant",
+    ),
+    "it is done in another text": (
+        "assign it in",
+        "give other arguments",
+        "give the folder of its package",
+        "import only one of these",
+        "in library `TankLibrary`",
+        "repair it",
+        "restrict what the controller does about it",
+        "write a field that it has",
+    ),
+}
+
+
+def findings(path: Path, text: str | None = None) -> tuple[Reading, list[Diagnostic]]:
+    documents = None if text is None else Documents({str(path): text})
+    reading = read(path, [HERE / "libraries"], INTERFACES, documents)
+    return reading, [*reading.findings, *check(reading.base, reading.findings, INTERFACES)]
+
+
+@cache
+def before(path: Path, text: str | None = None) -> tuple[Reading, list[Diagnostic]]:
+    """The findings in a text that is edited afterwards."""
+    return findings(path, text)
+
+
+def edited(text: str, edits: tuple[Edit, ...]) -> str:
+    lines = text.split("\n")
+    for edit in sorted(edits, reverse=True):
+        span = edit.span
+        before, behind = lines[span.line - 1][: span.column - 1], lines[span.end_line - 1][span.end_column - 1 :]
+        lines[span.line - 1 : span.end_line] = (before + edit.text + behind).split("\n")
+    return "\n".join(lines)
+
+
+def like(finding: Diagnostic, others: list[Diagnostic]) -> int:
+    """How many findings say the same, wherever they stand now."""
+    key = (finding.rule, LINE.sub("", finding.message))
+    return sum((other.rule, LINE.sub("", other.message)) == key for other in others)
+
+
+def ways(finding: Diagnostic) -> list[tuple[Edit, ...]]:
+    return [*([finding.edits] if finding.edits else ()), *(way.edits for way in finding.alternatives)]
+
+
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: f"{path.parent.name}/{path.stem}")
+def test_an_edit_mends_its_finding(path: Path) -> None:
+    reading, found = before(path)
+    for finding in found:
+        if finding.file == str(path):
+            for edits in ways(finding):
+                text = edited(reading.file.text.content, edits)
+                _, after = findings(path, text)
+                assert like(finding, after) < like(finding, found), text
+                assert "syntax" not in {other.rule for other in after}, text
+
+
+@pytest.mark.parametrize("text", TEXTS.values(), ids=TEXTS)
+def test_an_edit_mends_what_is_no_syntax_or_no_name(text: str) -> None:
+    """What stands behind a mended word may have a fault of its own, which its finding hid.
+
+    What is found in the model without a fault is mended there alone.
+    """
+    path = HERE / "nowhere.rscd"
+    _, found = before(path, text)
+    _, anyway = before(path, MODEL)
+    for finding in found:
+        for edits in ways(finding) if text == MODEL or not like(finding, anyway) else ():
+            _, after = findings(path, edited(text, edits))
+            assert like(finding, after) < like(finding, found), edited(text, edits)
+
+
+@cache
+def drawn() -> dict[str, bool]:
+    """Each hint that is given for all these texts, and whether edits do what it says, wherever it is given.
+
+    With the titles of alternatives.
+    """
+    texts = [*((path, None) for path in MODELS), *((HERE / "nowhere.rscd", text) for text in TEXTS.values())]
+    found: dict[str, bool] = {}
+    for path, text in texts:
+        for finding in before(path, text)[1]:
+            if finding.hint is not None and finding.file == str(path):
+                found[finding.hint] = found.get(finding.hint, True) and bool(ways(finding))
+                found |= {way.title: True for way in finding.alternatives if way.title != finding.hint}
+    return found
+
+
+@pytest.mark.slow
+def test_every_hint_that_says_what_to_write_is_an_edit() -> None:
+    told = [start for starts in TOLD.values() for start in starts]
+    without = [hint for hint, is_edit in drawn().items() if not is_edit]
+    assert [hint for hint in without if not hint.startswith(tuple(told))] == []
+    assert [start for start in told if not any(hint.startswith(start) for hint in without)] == []
+
+
+def test_no_hint_is_forgotten() -> None:
+    """What the sources have as a hint that says what to write, one of the texts draws."""
+    modules = [*(PACKAGE / "language" / "checks").rglob("*.py"), *(PACKAGE / "language").glob("*.py")]
+    known = [*drawn(), *(start for starts in TOLD.values() for start in starts)]
+    written = [text for path in modules for text in literals(path) if text.startswith(SAYING)]
+    assert len(written) > len(TOLD)
+    assert [text for text in written if not any(text in hint for hint in known) and not text.startswith(UNSEEN)] == []
+
+
+def literals(path: Path) -> Iterator[str]:
+    """The strings of a module, of formatted ones how they begin, without their last blank."""
+    tree = ast.parse(path.read_text())
+    inside = {id(part) for node in ast.walk(tree) if isinstance(node, ast.JoinedStr) for part in node.values[1:]}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in inside:
+            yield node.value.rstrip()

@@ -1,0 +1,64 @@
+"""Random CIF specifications agree with synthesis by the definition, state by state."""
+
+import pytest
+
+from robosc.analysis.supervise import EmptySupervisorError, supervise
+from robosc.analysis.verify import Outcome, validate_c, verify_system
+from robosc.engine import Engine
+from robosc.language.configuration import Configuration
+from robosc.m2t import supervisor
+from robosc.m2t.models import Models
+from robosc.model import sct
+from robosc.model.semantics.start import first_state
+from robosc.synthesis import encoded
+from robosc.synthesis.encoding import Encoding, smallest
+from tests.language.cif.comparing import agrees, reading_of
+from tests.language.cif.random_specifications import Specification
+
+
+@pytest.mark.parametrize("start", [0, *(pytest.param(start, marks=pytest.mark.slow) for start in range(20, 60, 20))])
+def test_as_many_states_as_by_the_definition(start: int) -> None:
+    counts = [agrees(Specification(seed, narrow=seed % 2 == 1)) for seed in range(start, start + 20)]
+    assert counts.count(None) < 10
+    assert any(counts)
+
+
+def supervised(seed: int) -> sct.SupervisoryControlModel | None:
+    """A random specification with its supervisor; None where it is refused or has none."""
+    model = reading_of(Specification(seed)).model
+    if model is None:
+        return None
+    try:
+        supervise(model)
+    except EmptySupervisorError:
+        return None
+    return model
+
+
+@pytest.mark.slow
+def test_what_verify_says_of_them_and_where_they_start() -> None:
+    models = [model for seed in range(60) if (model := supervised(seed)) is not None]
+    assert len(models) >= 20
+    for model in models:
+        refuted = [verdict for verdict in verify_system(model) if verdict.outcome is Outcome.REFUTED]
+        assert refuted == []
+        start = first_state(model)
+        codes = {element: value - smallest(element) for element, value in start.items()}
+
+        def is_initial(encoding: Encoding) -> bool:
+            good = encoding.initial & encoding.holds(model.supervisor.initial) & encoding.state(codes)  # noqa: B023
+            return bool(good.satisfiable())
+
+        assert encoded(model, is_initial)
+        engine = Engine(model)
+        for plant in model.plants:
+            assert engine.location(plant) == start[plant]
+
+
+@pytest.mark.build
+@pytest.mark.slow
+def test_their_supervisors_in_c_do_what_they_say() -> None:
+    models = [model for seed in range(24) if (model := supervised(seed)) is not None]
+    outcomes = {validate_c(model, supervisor.generate(Models(model), Configuration())).outcome for model in models}
+    assert Outcome.PROVED in outcomes
+    assert outcomes <= {Outcome.PROVED, Outcome.SKIPPED}

@@ -1,0 +1,77 @@
+"""`send: change`: sent when it becomes possible or its data differs from what was last handed over, not every tick."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+import robosc
+from tests.run.runtime.fake import World
+
+LAMPS = Path(__file__).parent / "lamps.rscd"
+
+
+@pytest.fixture
+def world(tmp_path: Path) -> World:
+    return World(LAMPS, tmp_path / "events.jsonl").start()
+
+
+def sent(world: World, topic: str, seconds: float = 0.55) -> list[float]:
+    world.wait(seconds)
+    found = [fields["data"] for name, fields in world.port.sent if name == topic]
+    world.port.sent.clear()
+    return found
+
+
+def test_it_is_sent_once(world: World) -> None:
+    """Sent when it becomes possible, not every tick."""
+    assert sent(world, "/lamp") == [0.5]
+    assert len(sent(world, "/plain")) >= 5
+    assert sent(world, "/lamp") == []
+
+
+def test_it_is_sent_when_its_data_differs(world: World) -> None:
+    """Its data differs from what was last handed over."""
+    sent(world, "/lamp")
+    for level, expected in [(0.5, []), (0.75, [0.75]), (0.75, []), (0.25, [0.25])]:
+        world.hear("level", data=level)
+        assert sent(world, "/lamp") == expected
+
+
+def test_it_is_sent_again_when_it_becomes_possible_again(world: World) -> None:
+    """Sent when it becomes possible."""
+    sent(world, "/lamp")
+    world.hear("allow", data=False)
+    assert sent(world, "/lamp") == []
+    world.hear("level", data=2.0)
+    world.hear("level", data=0.5)
+    world.hear("allow", data=True)
+    assert sent(world, "/lamp") == [0.5]
+
+
+def test_what_is_withheld_was_not_handed_over(world: World) -> None:
+    """Withheld or failed data was not."""
+    sent(world, "/lamp")
+    world.hear("level", data=math.nan)
+    assert sent(world, "/lamp") == []
+    world.hear("level", data=0.5)
+    # The robot still has 0.5.
+    assert sent(world, "/lamp") == []
+    world.hear("level", data=0.75)
+    assert sent(world, "/lamp") == [0.75]
+
+
+def test_generated_nodes_compare_too() -> None:
+    """The node compares, the engine asks it. ROS 2: transient-local."""
+    robot = robosc.load(LAMPS)
+    models = robosc.Models(robosc.to_sct(robot), robosc.to_rosgraph(robot), robot)
+    robosc.synthesize(models.sct)
+    texts = {target: str(robosc.generate(target, models)) for target in ("ros1", "ros2", "ros2-layer", "supervisor")}
+    for target in ("ros1", "ros2"):
+        assert "!(lamp_handed_->data == lamp_message_.data)" in texts[target]
+        assert "plain_handed_" not in texts[target]
+    assert texts["ros2"].count("rclcpp::QoS(10).transient_local());") == 1
+    # No part in the layer.
+    assert "_handed_" not in texts["ros2-layer"]

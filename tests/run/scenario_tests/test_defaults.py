@@ -1,0 +1,164 @@
+"""Data that is left out has the defaults of ROS; what is handed on as it came is compared."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from robosc.tools.cli import main
+
+SRV = 'bool use_dock true\n---\nbool ready true\nint32 code 7\nfloat64[3] k\nint32[] codes [4, 5]\nstring side "left"\n'
+ACTION = "float64 speed 0.5\n---\nbool ok true\n---\nfloat32 left 0.5\n"
+MODEL = """\
+robot Porter {
+  component Dock {
+    service ask with identifier: "/ask", request: porter_msgs/Ask, response: porter_msgs/Ask
+
+    behaviour {
+      initial marked state idle { on request to ask goto asked }
+      marked state asked {
+        on response from ask
+          if value.ready and value.code = 7 and value.side = "left"
+            and value.k[2] = 0.0 and value.codes[1] = 5 and size(value.codes) = 2
+          goto ready
+        on response from ask goto idle
+      }
+      marked state ready {}
+    }
+  }
+
+  component Base {
+    action go with
+      identifier: "/go", request: porter_msgs/Go, response: porter_msgs/Go, feedback: porter_msgs/Go
+
+    behaviour {
+      initial marked state idle { on request to go goto going }
+      marked state going {
+        on feedback from go if value.left = 0.5 goto half
+        on response from go goto idle
+      }
+      marked state half { on response from go if value.ok goto done }
+      marked state done {}
+    }
+  }
+}
+"""
+POSES = """\
+robot Route {
+  component Mission {
+    outgoing message route with identifier: "/route", type: nav_msgs/Path
+    outgoing message fix with identifier: "/fix", type: sensor_msgs/NavSatFix
+    incoming message go with identifier: "/goal", type: geometry_msgs/PoseStamped
+
+    behaviour {
+      variable kept: array(geometry_msgs/PoseStamped)
+
+      initial marked state waiting {
+        on response from route if value.poses[0].pose.orientation.w = 1.0 do kept := value.poses goto upright
+        on response from route do kept := value.poses goto tilted
+      }
+      marked state upright {
+        on request to go
+        on response from fix if value.status.status = -2 goto lost
+      }
+      marked state tilted { on request to go }
+      marked state lost {}
+    }
+  }
+
+  provide go with Mission.kept[0]
+}
+"""
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name, text in {"srv/Ask.srv": SRV, "action/Go.action": ACTION}.items():
+        path = Path("interfaces", "porter_msgs", name)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    Path("porter.rscd").write_text(MODEL)
+    Path("route.rscd").write_text(POSES)
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(main, [*arguments, "--interface-path", "interfaces"], catch_exceptions=False)
+
+
+def played(model: str, steps: str, *options: str) -> Result:
+    Path("own.scenarios").write_text(f'scenario "one"\n{steps}')
+    return run("test", model, "own.scenarios", *options)
+
+
+def test_services_and_actions() -> None:
+    steps = """\
+  response from ask with message {}
+  expect Dock.ready
+  feedback from go with message {}
+  expect Base.half
+  response from go with message {}
+  expect Base.done
+"""
+    answer = played("porter.rscd", steps)
+    assert answer.exit_code == 0, answer.output
+
+
+def test_a_quaternion() -> None:
+    """ROS 2 has a default for `w`; an element without fields is one."""
+    answer = played("route.rscd", '  route with message {"poses": [{}]}\n  expect Mission.upright\n')
+    assert answer.exit_code == 0, answer.output
+
+
+def test_a_trace_names_the_defaults_that_only_one_ros_has() -> None:
+    steps = '  route with message {"poses": [{}, {"pose": {"position": {"x": 2.0}}}]}\n  expect go sent\n'
+    assert played("route.rscd", steps, "--traces", "traces").exit_code == 0
+    lines = map(json.loads, Path("traces/scenario_1.jsonl").read_text().splitlines())
+    [incoming] = [line for line in lines if line["direction"] == "in"]
+    upright = {"orientation": {"w": 1}}
+    assert incoming["message"] == {"poses": {"0": {"pose": upright}, "1": {"pose": {"position": {"x": 2}, **upright}}}}
+    assert incoming["data"]["value"]["poses"][1]["pose"]["orientation"]["w"] == 1
+
+
+@pytest.mark.parametrize(
+    ("expected", "fault"),
+    [
+        ('{"pose": {"position": {"x": 2.0}}}', ""),
+        ('{"pose": {"orientation": {"w": 1.0}}}', ""),
+        ('{"pose": {"position": {"x": 3.0}}}', "was sent with other data"),
+        ('{"pose": {"positon": {"x": 2.0}}}', "`pose.positon` of the request to `Mission.go` can't be compared"),
+        ('{"header": {"stamp": {"sec": 1}}}', "`header.stamp` of the request to `Mission.go` can't be compared"),
+    ],
+)
+def test_what_is_handed_on_is_compared(expected: str, fault: str) -> None:
+    steps = f"""\
+  route with message {{"poses": [{{"pose": {{"position": {{"x": 2.0}}}}}}]}}
+  expect go sent with {expected}
+"""
+    answer = played("route.rscd", steps)
+    assert fault in answer.output
+    assert answer.exit_code == bool(fault), answer.output
+    if "other data" in fault:
+        assert '"position":{"x":2,"y":0,"z":0}' in answer.output
+
+
+@pytest.mark.parametrize("loop", [[], ["--loop"]])
+def test_simulate(loop: list[str]) -> None:
+    def state_after(model: str, *lines: str) -> dict[str, str]:
+        Path("script").write_text("\n".join(lines))
+        answer = run("simulate", model, "--script", "script", *loop)
+        assert answer.exit_code == 0, answer.output
+        state: dict[str, str] = json.loads(answer.stdout.splitlines()[-1])["state"]
+        return state
+
+    start = ["tick"] if loop else ["service_ask.c_trigger", "action_go.c_trigger"]
+    porter = [*start, "service_ask.u_response {}", 'action_go.u_feedback {"value": {}}', "action_go.u_response"]
+    state = state_after("porter.rscd", *porter)
+    assert (state["component_Dock"], state["component_Base"]) == ("ready", "done")
+    upright = 'message_route.u_response {"value": {"poses": [{}]}}'
+    assert state_after("route.rscd", upright)["component_Mission"] == "upright"
+    fix = 'message_fix.u_response {"value": {"latitude": 1.0}}'
+    assert state_after("route.rscd", upright, fix)["component_Mission"] == "lost"

@@ -1,0 +1,108 @@
+"""Scenarios that wait while timers run: any wait, any period, any number of timers that start again."""
+
+from __future__ import annotations
+
+import json
+import random
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import robosc
+from robosc.base.ros_types import RosTypes
+from robosc.language import configuration as config
+from robosc.run.node_tests.drive import parameters
+from robosc.run.node_tests.samples import all_incoming
+from robosc.run.node_tests.trace_player import Log, Player, read_trace
+from robosc.run.node_tests.trace_test import player_files
+from robosc.run.runtime.core.event_loop import EventLoop
+from robosc.tools.cli import main
+from tests.run.node_tests import in_process_node
+from tests.run.node_tests.test_traces import be_impatient
+
+CLOCK = """\
+robot Clock {
+  component C {
+    outgoing message start with identifier: "/start", type: none
+
+    behaviour {
+      variable n: integer(0..600) = 0
+
+      initial marked state off {
+        on response from start goto on
+      }
+
+      marked state on {
+        after LENGTH ms do n := n + 1 goto on
+      }
+    }
+  }
+
+  component D {
+    incoming message cmd with identifier: "/cmd", type: none
+  }
+
+  requirement cmd needs C.n < 600
+}
+"""
+#: Periods, timers and waits in milliseconds. A timer of one period less than a millisecond meets every tick.
+MEETING = [(100, 99, 40_000), (100, 199, 90_000), (10, 9, 3_000), (1, 1, 600), (100, 1000, 50_000), (20, 7, 1_000)]
+
+
+def some(count: int) -> list[tuple[int, int, int]]:
+    """Other periods, timers and waits."""
+    choice = random.Random(5)  # noqa: S311  # the same each time
+    periods = [choice.randrange(1, 400) for _ in range(count)]
+    lengths = [choice.randrange(1, 8 * period + 1) for period in periods]
+    return [(*both, both[1] * choice.randrange(1, 500)) for both in zip(periods, lengths, strict=True)]
+
+
+class _LatestFirst(EventLoop):
+    """Makes the calls that are due in the opposite order, as an executor may: the tick before the timers."""
+
+    def run_pending(self) -> float | None:
+        while due := [planned for planned in self._timers if planned[0] <= self.clock()]:
+            self._timers.remove(max(due))
+            max(due)[2].fire()
+        return super().run_pending()
+
+
+@pytest.mark.parametrize(("period", "length", "wait"), [*MEETING, *some(18)])
+def test_every_wait_passes(
+    period: int, length: int, wait: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The timer has expired as often as time allows, and a node does the same, in whatever order its timers ring."""
+    monkeypatch.chdir(tmp_path)
+    whole = -(-wait // period) * period
+    # It starts up to a millisecond late, and the clock stops a millisecond after its time.
+    least, most = int(whole / (length + 2.1)) - 1, whole // length
+    Path("clock.rscd").write_text(CLOCK.replace("LENGTH", str(length)))
+    Path("clock.scenarios").write_text(
+        f'scenario "it counts"\n  start\n  wait {wait} ms\n  expect C.n >= {least} and C.n <= {most}\n'
+    )
+    Path(config.FILE_NAME).write_text(json.dumps({"controlLoop": {"periodMs": period}}))
+    command = ["test", "clock.rscd", "clock.scenarios", "--traces", "traces", "--config", config.FILE_NAME]
+    answer = CliRunner().invoke(main, command, catch_exceptions=False)
+    assert answer.exit_code == 0, answer.output
+
+    robot, configuration = robosc.load("clock.rscd"), config.read(config.FILE_NAME)
+    robosc.synthesize(robosc.to_sct(robot))
+    graph = robosc.to_rosgraph(robot)
+    started = parameters(graph, configuration)
+    files = player_files(graph, configuration, started, all_incoming(graph, RosTypes().distributions[0]))
+    be_impatient(monkeypatch)
+    monkeypatch.setattr(in_process_node, "EventLoop", _LatestFirst)
+    connections = json.loads(files["connections.json"])
+    node = in_process_node.InProcessNode(connections, graph, configuration, Path("events.jsonl"))
+    [trace] = Path("traces").iterdir()
+    Player(connections, node, Log("events.jsonl")).play(read_trace(str(trace)))
+
+
+def test_many_short_waits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("clock.rscd").write_text(CLOCK.replace("LENGTH", "1000"))
+    steps = "".join(f"  wait {500 + 10 * number} ms\n" for number in range(41))
+    Path("clock.scenarios").write_text(f'scenario "steps"\n  start\n{steps}  expect C.n >= 29 and C.n <= 30\n')
+    answer = CliRunner().invoke(main, ["test", "clock.rscd", "clock.scenarios"], catch_exceptions=False)
+    assert answer.exit_code == 0, answer.output
