@@ -18,7 +18,7 @@ ROOT = PACKAGE.parent
 PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 
 #: The packages in the order of the page. A package imports from itself and from packages to its left.
-ORDER = re.findall(r"\w+", re.findall(r"```text\n(.+)\n```", PAGE)[0])
+ORDER = re.findall(r"\w+", re.findall(r"```\n(.+ < .+)\n```", PAGE)[0])
 #: Folders of tests that concern several packages.
 COMMON_TESTS = {"benchmarks", "cmake", "docs", "every_view", "examples", "fuzz", "plugins", "ros", "scenarios"}
 #: Modules that all generators of `m2t` share.
@@ -81,7 +81,7 @@ def imports(nodes: list[ast.AST]) -> Iterator[tuple[str, ...]]:
 
 
 def index(parts: tuple[str, ...]) -> int:
-    """The place of a module's package in the order; the public API and the entry point are on the level of the tools."""
+    """The place of a module's package in the order; the public API and the entry point count as tools."""
     return ORDER.index(parts[0] if parts and parts[0] in ORDER else "tools")
 
 

@@ -165,7 +165,7 @@ def test_mermaid_is_drawn(site: Site, chromium: Any, scheme: str) -> None:
         opened.page.goto((site.folder / "docs" / "architecture.html").as_uri())
         opened.page.wait_for_selector("body[data-drawn]")
         assert opened.page.locator(".mermaid-drawing svg").count() == 1
-        assert "robosc_to_sct" in opened.page.locator(".mermaid-drawing svg").text_content()
+        assert "sct_to_engine" in opened.page.locator(".mermaid-drawing svg").text_content()
         assert opened.page.evaluate("document.body.dataset.drawn") == {"light": "neutral", "dark": "dark"}[scheme]
         assert opened.faults == []
 
