@@ -64,7 +64,7 @@ python benchmarks/sanitized.py
 The command builds packages with each sanitizer and drives them: a scenario, the [faults](faults.md), components that
 both kinds of containers load and unload under load, and the ways to end a node. ROS itself is built without a
 sanitizer, except for the run of ROS 2 and the thread sanitizer. There, the containers and the libraries of rclcpp are
-built with it, too. [sanitized.json](../benchmarks/sanitized.json) lists each report.
+built with it, too.
 
 TABLE
 ## How reports are counted

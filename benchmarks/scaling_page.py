@@ -34,7 +34,6 @@ python benchmarks/scaling.py
 ```
 
 `--quick` measures only the smallest robots. `python benchmarks/families.py philosophers 5` prints one of the robots.
-[scaling.json](../benchmarks/scaling.json) holds all measurements, with robots of other sizes.
 
 All times are seconds of processor time. A process has a limit of {limit} s.
 """

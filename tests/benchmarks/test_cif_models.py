@@ -1,6 +1,5 @@
 """The command that times models from CIF finds them by ESCET's scripts, and says where one has no answer."""
 
-import json
 from pathlib import Path
 
 import pytest
@@ -27,11 +26,6 @@ def test_each_is_counted_by_a_process_of_its_own(tmp_path: Path) -> None:
     assert said["states"] == 2
     path.write_text("controllable c")
     assert robosc_measured(path, 1, 60) is None
-
-
-def test_the_page_in_the_documentation_is_that_of_the_results() -> None:
-    results = json.loads((ROOT / "benchmarks" / "cif_models.json").read_text())
-    assert (ROOT / "docs" / "cif-models.md").read_text() == page(results)
 
 
 def test_the_page_names_the_models_that_are_slower() -> None:

@@ -1,10 +1,8 @@
-"""Whose fault a sanitizer's report is, and the page with the last result."""
+"""Assignment of a sanitizer's report to its cause."""
 
 from __future__ import annotations
 
-import json
-
-from benchmarks.sanitized import PAGE, RESULTS, page, sorted_reports
+from benchmarks.sanitized import sorted_reports
 
 OURS = """==================
 WARNING: ThreadSanitizer: data race (pid=1)
@@ -46,7 +44,3 @@ def test_a_report_belongs_to_who_does_it() -> None:
     assert sorted_reports([LOCKS]) == ({order: 1}, {})
     assert sorted_reports([ROSCPP, INTERRUPTED]) == ({}, {order: 2})
     assert sorted_reports([UNDEFINED, ""]) == ({"runtime error: signed integer overflow": 1}, {})
-
-
-def test_the_page_tells_the_last_result() -> None:
-    assert PAGE.read_text(encoding="utf-8") == page(json.loads(RESULTS.read_text(encoding="utf-8")))
