@@ -7,6 +7,7 @@ from collections import Counter
 from enum import Enum, auto
 from typing import TYPE_CHECKING, Any, Protocol
 
+from robosc.base.diagnostics import Severity
 from robosc.language.tokens import Kind
 
 if TYPE_CHECKING:
@@ -142,16 +143,22 @@ def _safe(findings: Sequence[Diagnostic], before: Checked, check: Callable[[str]
 
 
 def _leads_on(finding: Diagnostic, before: Checked, check: Callable[[str], Checked]) -> bool:
-    """Return whether mending a syntax error reveals others that can be mended, too, with fewer left in the end."""
+    """Return whether mending a syntax error reveals others that can be mended, too, with fewer left in the end.
+
+    Each of several edits is a guess at the intention, so that the lines that they change must have no error in the end.
+    """
     if finding.rule != "syntax":
         return False
+    changed: set[int] = set()
     for _ in range(_MOST_HIDDEN):
         text = before.reading.file.text
         edits = _edits([finding])
+        changed |= {edit.span.line for edit in edits}
         after = check(text.after(edits))
         comparison = _Comparison(before, after, {text.file: edits})
         if comparison.objection([finding]) is None:
-            return True
+            errors = (found for found in after.findings if found.severity is Severity.ERROR)
+            return not any(found.file == text.file and found.span.line in changed for found in errors)
         revealed = comparison.revealed(finding)
         if revealed is None or comparison.objection([finding], revealed=1) is not None:
             return False

@@ -100,6 +100,8 @@ class Expansion:
         #: Literals of constants that are expanded already.
         self._constants: dict[tuple[robosc.NamedExpression, Instance | None], ex.Expression] = {}
         self._elements: dict[ex.Located, ex.Located] = {}
+        #: Expanded arguments of functions without a place yet: the first use takes the argument, later ones copy it.
+        self._unplaced: set[ex.Expression] = set()
         self.too_large: dict[ex.Expression, None] = {}
 
     def __call__(self, expression: ex.Expression, within: Instance | None, *, readable: bool = False) -> ex.Expression:
@@ -169,7 +171,7 @@ class Expansion:
         element, environment = node
         match element:
             case robosc.Access(item=robosc.FormalParameter() as parameter) if parameter in environment.arguments:
-                return copied(environment.arguments[parameter])
+                return self._argument(environment.arguments[parameter])
             case robosc.Access(item=(robosc.Constant() | robosc.Condition()) as named):
                 written = yield from self._named(element, named, environment)
                 if written is not None:
@@ -181,6 +183,12 @@ class Expansion:
             case robosc.InstanceQuantifier(template=robosc.Component()) if self._instances and not self._readable:
                 return (yield from self._quantified(element, environment))
         return (yield from self._copy(element, environment))
+
+    def _argument(self, argument: ex.Expression) -> ex.Expression:
+        if argument not in self._unplaced:
+            return copied(argument)
+        self._unplaced.remove(argument)
+        return argument
 
     def _named(
         self, access: robosc.Access, item: robosc.Constant | robosc.Condition, environment: _Environment
@@ -209,6 +217,7 @@ class Expansion:
             return None
         for argument in call.arguments:
             given.append((yield (argument, environment)))  # noqa: PERF401
+        self._unplaced.update(given)
         arguments = dict(zip(function.parameters, given, strict=True))
         owner = environment.within if _is_member(function) else None
         if owner is not None:

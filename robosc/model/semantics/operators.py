@@ -103,8 +103,9 @@ class Operator:
 
 
 def as_double(number: Value) -> float:
-    """Return the number as a double. An integer that is too large becomes infinite."""
-    assert isinstance(number, (int, float))
+    """Return the number as a double. An integer that is too large becomes infinite. Raises TypeError for a text."""
+    if not isinstance(number, (int, float)):
+        raise TypeError(f"{number!r} is not a number")
     try:
         return float(number)
     except OverflowError:

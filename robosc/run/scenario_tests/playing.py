@@ -331,12 +331,15 @@ class Player(Drive):
             self._let_in(lambda: handlers.failed(""))
             return
         caller = self._controller.caller(client)
-        over = since + self.parameters["service_timeout_ms"] / 1000
-        while not self._has_happened(client.error.event) and self._now + self._period < over:
-            self._pass_period()
+        self._pass_until(since + self.parameters["service_timeout_ms"] / 1000, client.error.event)
         if reason is Failure.UNAVAILABLE:
             self._let_in(lambda: self._give_up(client, reason))
         while not self._has_happened(client.error.event) and caller.waiting:
+            self._pass_period()
+
+    def _pass_until(self, over: float, end: sct.Event) -> None:
+        """Let time pass up to the last period before a time in seconds, or until an event has happened."""
+        while not self._has_happened(end) and self._now + self._period < over:
             self._pass_period()
 
     def _fail_goal(self, client: rosgraph.ActionClient, reason: Failure, line: Incoming) -> None:
@@ -345,6 +348,8 @@ class Player(Drive):
             raise NamingError("the controller cancels this goal itself", hint)
         goal = self._robot.goals[client]
         self._check_not_accepted(goal, reason)
+        if reason in {Failure.UNAVAILABLE, Failure.TIMEOUT}:
+            self._pass_until(self._in_time(goal), client.error.event)
         if reason is Failure.UNAVAILABLE and goal.is_asked:
             hint = f"write `canceled from {self._called(client.canceled.event)}`"
             raise NamingError("a goal that is canceled before a server is there ends canceled", hint)
@@ -365,18 +370,19 @@ class Player(Drive):
             self._bring(client.error.event, line, end)
 
     def _check_not_accepted(self, goal: RunningGoal, reason: Failure) -> None:
-        """Raise NamingError if the robot has accepted the goal and the reason excludes that."""
-        in_time = goal.sent + self.parameters["action_timeout_ms"] / 1000
-        match reason:
-            case Failure.REJECTED | Failure.UNAVAILABLE:
-                is_excluded = goal.accepted is not None
-            case Failure.TIMEOUT:
-                is_excluded = goal.accepted is not None and goal.accepted < in_time
-            case _:
-                is_excluded = False
-        if is_excluded:
+        """Raise NamingError if the reason excludes that the robot has accepted the goal, or the present time."""
+        is_early = reason in {Failure.REJECTED, Failure.UNAVAILABLE}
+        is_late = reason is Failure.TIMEOUT
+        if goal.accepted is not None and (is_early or (is_late and goal.accepted < self._in_time(goal))):
             hint = "an accepted goal fails with `aborted`, `canceled`, `lost` or `unreadable`"
             raise NamingError(f"the goal has been accepted: it can't fail with `{reason}`", hint)
+        if is_early and self._now > self._in_time(goal):
+            hint = "after `actions.timeoutMs` a goal that was not accepted fails with `timeout`"
+            raise NamingError(f"the goal was sent too long ago to fail with `{reason}`", hint)
+
+    def _in_time(self, goal: RunningGoal) -> float:
+        """Return the time in seconds up to which a goal has to be accepted."""
+        return goal.sent + self.parameters["action_timeout_ms"] / 1000
 
     def _give_up(self, client: Client, reason: Failure, result: Any = None) -> None:
         """Report a failure from the node's client of a service or action."""

@@ -34,6 +34,10 @@ if TYPE_CHECKING:
     from robosc.run.runtime.core.settings import Settings
 
 
+#: Message sent last, if nothing was sent.
+_NOT_SENT: Message = object()
+
+
 @dataclass
 class _Sender:
     """Sender of the data of one trigger. `message` and `logged` hold the data prepared last."""
@@ -45,13 +49,13 @@ class _Sender:
     send: Callable[[Message], None]
     message: Message = None
     logged: Mapping[str, Json] | None = None
-    #: Message sent last, as long as it could be repeated; only for data sent on change.
-    handed: Message = None
+    #: Message sent last, as long as it could be repeated; only for data sent on change. A message may be None.
+    handed: Message = _NOT_SENT
 
     @property
     def unchanged(self) -> bool:
         """Whether the data prepared last equals the data sent last."""
-        return self.handed is not None and all(
+        return self.handed is not _NOT_SENT and all(
             _plain(reduce(getattr, path, self.handed)) == _plain(reduce(getattr, path, self.message))
             for path in paths_set(self.sending)
         )
@@ -308,7 +312,7 @@ class Controller(EventHandler):
         super()._after(name)
         for sender in self._on_change:
             if not self._control.engine.enabled(event_name(sender.sending.event)):
-                sender.handed = None
+                sender.handed = _NOT_SENT
 
     def _act(self, event: sct.Event) -> tuple[str, Mapping[str, Json] | None] | None:
         sender = self._senders.get(event)
