@@ -1,4 +1,4 @@
-"""Whose fault a sanitizer's report is, and the page with the last result."""
+"""Attribution of sanitizer reports, and the page with the last result."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ WARNING: ThreadSanitizer: data race (pid=1)
 SUMMARY: ThreadSanitizer: data race /usr/include/c++/12/bits/stl_vector.h:367 in std::vector<int>::~vector()
 ==================
 """
-#: Generated code is what called it.
+#: The race is inside rclcpp; generated code only calls it.
 THEIRS = OURS.replace("    #1", "    #1 rclcpp::Node::~Node() /src/rclcpp/node.cpp:7 (librclcpp.so+0x4)\n    #1")
 LOCKS = THEIRS.replace("data race", "lock-order-inversion (potential deadlock)")
-#: All locks are taken within roscpp; generated code is only where it was called from.
+#: roscpp takes all locks; generated code is only the caller.
 ROSCPP = LOCKS.replace("#0 rclcpp", "#0 ros::Connection::drop() <null> (libroscpp.so.4d+0x5)\n    #1 rclcpp").replace(
     "#1 rclcpp::Node::~Node() /src/rclcpp/node.cpp:7 (librclcpp.so+0x4)",
     "#1 ros::Connection::read() <null> (libroscpp.so.4d+0x4)",
 )
-#: rclcpp logs in its handler of signals.
+#: rclcpp logs in its signal handler.
 INTERRUPTED = LOCKS.replace(
     "#0 rclcpp",
     "#0 rclcpp_logging_output_handler /src/rclcpp/context.cpp:3 (librclcpp.so+0x6)\n"
