@@ -1,5 +1,5 @@
 """Topics of ROS 1 or ROS 2 for the scripts that tests run in the Python of a ROS installation."""
-# ruff: noqa: PLC0415  # which of the two is there is known when it is asked for
+# ruff: noqa: PLC0415  # only one of the two is installed
 
 import importlib
 import time
