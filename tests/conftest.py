@@ -184,7 +184,7 @@ def pytest_collection_finish() -> None:
 
 @pytest.hookimpl(trylast=True)
 def pytest_sessionfinish() -> None:
-    """Collect garbage once: pytest would collect it five times at its end to find unraised exceptions."""
+    """Collect garbage once: pytest would collect it five times at its end to report unraisable exceptions."""
     gc.collect()
     gc.freeze()
 

@@ -38,7 +38,7 @@ for kind, parts in (("msg", {"MESSAGE": None}), ("srv", {"REQUEST": "Request", "
 
 @pytest.mark.parametrize("shipped", [False, True])
 def test_new_messages(run_ros2: Runner, monkeypatch: pytest.MonkeyPatch, *, shipped: bool) -> None:
-    """Compare the defaults of the installed definitions, and those of the types that the tool ships."""
+    """The defaults are equal for types from the installed definitions, and for types that the tool ships."""
     command = [run_ros2.ros.python, "-c", NEW]
     done = subprocess.run(command, env=run_ros2.ros.environment, capture_output=True, text=True, check=True)
     prefix = Path(run_ros2.ros.python).parents[1]

@@ -131,7 +131,7 @@ def test_a_wrong_parameter_keeps_the_node_from_starting(graph: Graph, parameter:
 
 
 def started(graph: Graph, name: str) -> subprocess.Popen[bytes]:
-    """Start a node and wait until it is at rest; it sends every later message on /cmd_vel at its end."""
+    """Start a node and wait until it is connected and at rest: later messages on /cmd_vel are those of its end."""
     events = graph.folder / f"{name}.jsonl"
     parameters = ["_watchdog_stops:=false", "_period_ms:=3600000", f"_event_log:={events}"]
     node = graph.processes.start(name, [graph.executable, f"__name:={name}", *parameters])

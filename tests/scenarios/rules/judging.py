@@ -1,7 +1,7 @@
 """Base of all rule books. An event log has the node's own order, so its judgment is exact.
 
-A rule book follows from a scenario's requirements by hand, without the model. It keeps the inputs of the controller in
-plain variables and returns the fault of each command.
+A rule book is written by hand from a scenario's requirements, without the model. It stores the inputs of the controller
+in plain variables and returns the fault of each command.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Fault = str | None
 BUTTON_PATIENCE = 0.5
 #: Rounding error of times in a log, in seconds.
 ROUNDING = 0.001
-#: Maximum delay in seconds after which a node notices silence; the node and its clock have other work.
+#: Maximum delay in seconds until a node notices silence, because the node and its clock have other work.
 SLACK = 0.3
 
 
