@@ -1,4 +1,4 @@
-"""Text of a model in code of C++, in XML and in JSON: nothing gets out of its place."""
+"""Text of a model in C++ code, XML and JSON stays inside its literal or comment."""
 
 from __future__ import annotations
 
