@@ -1,4 +1,4 @@
-"""What the site needs beyond Sphinx's own: links to folders, Mermaid without a network, an entry at its root."""
+"""Sphinx extension of the site: links to folders, Mermaid without a network, an entry page at the root."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ENTRY = """<!doctype html>
 
 
 class Mermaid(SphinxDirective):
-    """A fence ```mermaid: the browser draws it; without the script it stays the text that it is."""
+    """Directive for a ```mermaid fence. The browser draws it, or shows its text without the script."""
 
     has_content = True
 
