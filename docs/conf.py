@@ -1,6 +1,6 @@
-"""How Sphinx makes the documentation site of these pages: `scripts/site`.
+"""Configuration of Sphinx for the documentation site, which `scripts/site` builds.
 
-Its sources are those of the whole repository, so that a link between files is the same on GitHub and on the site.
+The source folder is the whole repository, so that links between files are the same on GitHub and on the site.
 """
 
 import sys
@@ -36,15 +36,15 @@ exclude_patterns = [
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_copybutton", "_site.extension"]
 myst_enable_extensions = ["attrs_block", "deflist"]
-# Links to headings, as GitHub makes them.
+# The anchors of headings are those of GitHub.
 myst_heading_anchors = 4
 myst_fence_as_directive = ["mermaid"]
 
-# A fence without a word behind it shows what a program prints.
+# A fence without a language contains the output of a program.
 highlight_language = "none"
 pygments_style = "friendly"
 pygments_dark_style = "native"
-# Prompts are not copied.
+# The copy button omits prompts.
 copybutton_prompt_text = r"\$ |> "
 copybutton_prompt_is_regexp = True
 
@@ -52,7 +52,7 @@ default_role = "code"
 autodoc_typehints = "description"
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True
-# Types of other libraries, and of parts of the tool that have no page.
+# Types of other libraries, and of parts of the tool without a page.
 nitpick_ignore_regex = [("py:(class|exc|obj)", r".*")]
 
 html_theme = "furo"
