@@ -122,7 +122,7 @@ class _Drawing:
         return f"<circle cx='{x:.1f}' cy='{y:.1f}' r='{radius * self.scale:.1f}' {style}/>"
 
     def _way(self, points):
-        """Return the points of a polyline. Of consecutive points at the same pixel, only the first one remains."""
+        """Return the points of a polyline. Consecutive points at the same pixel are merged."""
         shown = [f"{x:.1f},{y:.1f}" for x, y in (self._at(*point) for point in points)]
         kept = [image for before, image in zip([None, *shown], shown) if image != before]  # noqa: B905  # old Pythons
         return " ".join(kept)

@@ -22,7 +22,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model.h" /* What the model decides; `explorer.c` says what that is. */
+#include "model.h" /* Declarations for the model, as in `explorer.c`. */
 
 #ifdef TIMES
 static uint32_t now;
@@ -32,7 +32,7 @@ static uint32_t now;
 #endif
 
 #ifndef PATIENCE
-#define PATIENCE 120 /* So many seconds an operation may take until the loop is taken to be an endless one. */
+#define PATIENCE 120 /* Maximum duration of an operation in seconds; a longer one counts as an endless loop. */
 #endif
 
 typedef struct moment {

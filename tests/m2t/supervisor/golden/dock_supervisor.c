@@ -9,9 +9,9 @@
 /* Cancels, triggers and silent events, in this order, are the first events. */
 #define CANCELS 1U
 #define QUEUED 5U /* cancels and triggers */
-#define SOURCES 5U /* topics, services and actions that events come from, and none of them */
+#define SOURCES 5U /* topics, services and actions that events come from, and one for none of them */
 #define SILENT 4U
-#define BOUND 24U /* So many silent events may happen in a row. */
+#define BOUND 24U /* Maximum number of silent events in a row. */
 #define EVENTS ((unsigned)DOCK_EVENT_COUNT)
 
 const dock_settings dock_default_settings = {

@@ -17,7 +17,7 @@ inline namespace ROBOSC_VERSION {
 /// the server does not know the goal.
 enum class CancelAnswer { accepted, refused, terminated, unknown };
 
-/// The reason for a goal whose result arrives without a known end.
+/// The reason for a goal whose result has no known end.
 inline constexpr const char* kLostGoal = "the server has lost the goal";
 /// The time that a node waits at its end for the end of a goal whose cancel the server has accepted.
 inline constexpr std::chrono::milliseconds kFarewell(500);

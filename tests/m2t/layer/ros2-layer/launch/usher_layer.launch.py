@@ -1,4 +1,4 @@
-"""Starts usher_layer, and the controller behind it."""
+"""Start usher_layer, and the controller behind it."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
