@@ -1,6 +1,6 @@
-"""Configuration of Sphinx for the documentation site, which `scripts/site` builds.
+"""Sphinx configuration of the documentation site: `scripts/site`.
 
-The source folder is the whole repository, so that links between files are the same on GitHub and on the site.
+The source folder is the repository, so that a link between files is the same on GitHub and on the site.
 """
 
 import sys
@@ -36,15 +36,15 @@ exclude_patterns = [
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_copybutton", "_site.extension"]
 myst_enable_extensions = ["attrs_block", "deflist"]
-# The anchors of headings are those of GitHub.
+# Anchors of headings, as on GitHub.
 myst_heading_anchors = 4
 myst_fence_as_directive = ["mermaid"]
 
-# A fence without a language contains the output of a program.
+# A fence without a language contains a program's output.
 highlight_language = "none"
 pygments_style = "friendly"
 pygments_dark_style = "native"
-# The copy button omits prompts.
+# Prompts are not copied.
 copybutton_prompt_text = r"\$ |> "
 copybutton_prompt_is_regexp = True
 
