@@ -38,13 +38,14 @@ def test_state_counts_agree(model):
 def read(text: str) -> sct.SupervisoryControlModel:
     """Return the model of a CIF text.
 
-    CIF does not name the event of an input: events whose updates read the input get it.
+    CIF does not name the event of an input: events whose guards or updates read the input get it.
     """
     model = rebuild(text)
     for plant in model.plants:
         for location in plant.locations:
             for edge in edges_from(location):
-                for _, part in (found for update in edge.updates for found in tree(update)):
+                reads = [edge.guard] if edge.guard is not None else []
+                for _, part in (found for read in [*reads, *edge.updates] for found in tree(read)):
                     if isinstance(part, sct.InputReference) and part.input not in edge.event.inputs:
                         edge.event.inputs.append(part.input)
     return model
