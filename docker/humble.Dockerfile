@@ -1,4 +1,5 @@
-# RoboSC beside ROS 2 Humble, whose Python 3.10 is too old for it: it generates and builds, `robosc run` does not work here.
+# RoboSC with ROS 2 Humble, whose Python 3.10 is too old for it. It generates and builds. `robosc run` does not work
+# here.
 #   docker build -f docker/humble.Dockerfile -t robosc:humble .
 FROM ros:humble-ros-base
 
@@ -9,7 +10,7 @@ RUN uv python install 3.12 \
     && uv venv --python-preference only-managed --python 3.12 /opt/robosc \
     && uv pip install --no-cache --python /opt/robosc/bin/python /tmp/robosc \
     && rm -rf /tmp/robosc
-# Only the tool: what else is called python3 stays ROS's.
+# Links only the tool: python3 stays that of ROS.
 RUN ln -s /opt/robosc/bin/robosc /usr/local/bin/robosc
 WORKDIR /work
 CMD ["bash"]

@@ -13,7 +13,7 @@ RUN apt-get update \
 COPY . /tmp/robosc
 # The page of `robosc view`, which a clone does not have.
 COPY --from=page /robosc/robosc/tools/view/built /tmp/robosc/robosc/tools/view/built
-# Python 3.12 of Ubuntu 24.04; the environment sees ROS's own modules, so that `robosc run` uses this ROS.
+# Python 3.12 of Ubuntu 24.04. The environment includes ROS's own modules, so that `robosc run` uses this ROS.
 RUN python3 -m venv --system-site-packages /opt/robosc \
     && /opt/robosc/bin/pip install --no-cache-dir '/tmp/robosc[view]' \
     && rm -rf /tmp/robosc

@@ -1,6 +1,6 @@
-"""How Sphinx makes the documentation site of these pages: `scripts/site`.
+"""Sphinx configuration of the documentation site: `scripts/site`.
 
-Its sources are those of the whole repository, so that a link between files is the same on GitHub and on the site.
+The source folder is the repository, so that a link between files is the same on GitHub and on the site.
 """
 
 import sys
@@ -36,11 +36,11 @@ exclude_patterns = [
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_copybutton", "_site.extension"]
 myst_enable_extensions = ["attrs_block", "deflist"]
-# Links to headings, as GitHub makes them.
+# Anchors of headings, as on GitHub.
 myst_heading_anchors = 4
 myst_fence_as_directive = ["mermaid"]
 
-# A fence without a word behind it shows what a program prints.
+# A fence without a language contains a program's output.
 highlight_language = "none"
 pygments_style = "friendly"
 pygments_dark_style = "native"
@@ -52,7 +52,7 @@ default_role = "code"
 autodoc_typehints = "description"
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True
-# Types of other libraries, and of parts of the tool that have no page.
+# Types of other libraries, and of parts of the tool without a page.
 nitpick_ignore_regex = [("py:(class|exc|obj)", r".*")]
 
 html_theme = "furo"

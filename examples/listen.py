@@ -1,8 +1,8 @@
-"""Prints what is published on topics of ROS 2, each message as it comes, until Ctrl-C.
+"""Print the messages on topics of ROS 2 as they arrive, until Ctrl-C.
 
     python listen.py TOPIC...
 
-For the wheels of ROS 2, which have no `ros2 topic echo`. Types are those that the publishers have.
+For the wheels of ROS 2, which have no `ros2 topic echo`. The publishers determine the types.
 """
 
 import sys
@@ -14,7 +14,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 
 def listen(node, name):
-    """Subscribes to a topic as its publishers offer it. Returns whether there is any yet."""
+    """Subscribe with the quality of service that the publishers offer. Return whether there are publishers."""
     publishers = node.get_publishers_info_by_topic(name)
     if not publishers:
         return False
@@ -37,7 +37,7 @@ def listen(node, name):
 
 
 def main(topics):
-    """Listens to topics, to each as soon as somebody publishes on it."""
+    """Subscribe to each topic once it has a publisher, and print its messages."""
     rclpy.init()
     node = rclpy.create_node("listen")
     waiting = [topic if topic.startswith("/") else f"/{topic}" for topic in topics]

@@ -58,7 +58,7 @@ def stub(name: str) -> str:
     lines += [""]
     for classifier in package.eClassifiers:
         if classifier.name == "Place":
-            continue  # a class of Python
+            continue  # a Python class
         doc = f'    """{documentation(classifier)}"""'
         if not isinstance(classifier, EClass):
             lines += [f"class {classifier.name}:", doc, "    name: str"]

@@ -1,4 +1,4 @@
-"""A browser for tests of the page of `robosc view` and of the documentation's site."""
+"""A browser for tests of the page of `robosc view` and of the documentation site."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from robosc.tools.view.page import PageError, page_files
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-#: Milliseconds for what a browser does in a moment, on a machine that is busy with twenty other programs.
+#: Milliseconds for a quick operation of the browser on a machine with twenty other busy programs.
 PATIENCE = 120_000
 
 
 @contextmanager
 def browser() -> Iterator[Any]:
-    """A browser without a window, as Playwright drives it. Skips where there is none.
+    """Run a browser without windows through Playwright, or skip the test if there is none.
 
-    The program that has no windows at all takes half the processor time of the one that hides them.
+    The program without any windows takes half the CPU time of the one that hides them.
     """
     program = shutil.which("chromium-headless-shell")
     if program is None:
@@ -29,7 +29,7 @@ def browser() -> Iterator[Any]:
     from playwright.sync_api import sync_playwright  # noqa: PLC0415
 
     with sync_playwright() as playwright:
-        # As root, as in containers, chromium has no sandbox.
+        # As root, for example in a container, chromium has no sandbox.
         chromium = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"], timeout=PATIENCE)
         yield chromium
         chromium.close()
@@ -37,7 +37,7 @@ def browser() -> Iterator[Any]:
 
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Any]:
-    """A browser for the page of `robosc view`. Skips where there is none, or where the page has not been built."""
+    """Run a browser for the page of `robosc view`; skip the test without a browser or a built page."""
     try:
         page_files()
     except PageError as error:
@@ -48,7 +48,7 @@ def chromium() -> Iterator[Any]:
 
 @contextmanager
 def opened(chromium: Any, address: str, *, drawn: str = "[data-moment]", **options: Any) -> Iterator[Any]:
-    """A page that has drawn its robot; it fails where anything in it does."""
+    """Open a page and wait until it has drawn its robot; fail at any error in it."""
     context = chromium.new_context(**{"viewport": {"width": 1400, "height": 900}, **options})
     context.set_default_timeout(PATIENCE)
     page = context.new_page()
@@ -64,12 +64,12 @@ def opened(chromium: Any, address: str, *, drawn: str = "[data-moment]", **optio
 
 
 def origin(address: str) -> str:
-    """The part of an address that is before the page."""
+    """Return the address of the server from the address of a page."""
     return address.rpartition("/")[0]
 
 
 def shown(page: Any) -> dict[str, Any]:
-    """What the page says: of each automaton its state, as a word and as what is lit, of each command its verdict."""
+    """Return the states (as text and as highlighted nodes) and the verdicts of the commands on the page."""
     found: dict[str, Any] = page.evaluate(
         """() => ({
           states: [...document.querySelectorAll(".card:not(.graph)")].map((card) => [

@@ -1,6 +1,7 @@
-"""What all tests share: golden files, kept beside their inputs and accepted anew with `pytest --accept`; one order.
+"""Fixtures and hooks of all tests: golden files beside their inputs, shared results, and the order of the tests.
 
-The tests of a file run in one process, unless `pytest_collection_modifyitems` of its folder has given them a group.
+`pytest --accept` writes new golden files. The tests of a file run in one process, unless
+`pytest_collection_modifyitems` of its folder assigns other groups.
 """
 
 import gc
@@ -33,21 +34,21 @@ from tests.examples.conftest import SCENARIOS
 from tests.searching import examples, less_effort
 from tests.sharing import made_once
 
-#: Characters of a text whose tree is not kept.
+#: Characters of a text from which on its tree is not cached.
 LONG_TEXT = 20_000
-#: Characters of a parameter that stand in the name of a test.
+#: Maximum number of characters of a parameter in the name of a test.
 LONGEST = 80
-#: Fixtures of tests that wait for others, a browser or a registry of packages, and so take long.
+#: Fixtures of slow tests, which wait for a browser or a registry of packages.
 WAITED_FOR = {"chromium", "wheel"}
 ROS, GENERATORS = Path(__file__).parent / "ros", Path(__file__).parent / "m2t"
 
-# Time is measured in benchmarks; a busy machine fails no test. `benchmarks/search.py` tries more.
+# Benchmarks measure time, so a busy machine fails no test. `benchmarks/search.py` tries more examples.
 settings.register_profile("robosc", deadline=None, max_examples=examples(50))
 settings.register_profile("ci", settings.get_profile("ci"), max_examples=examples(50))
 settings.load_profile("robosc")
-# Whoever runs the tests in the background of a script ignores interrupts; the programs that they start don't.
+# In the background of a script, this process ignores interrupts; the programs that the tests start must not.
 signal.signal(signal.SIGINT, signal.default_int_handler)
-# Tests make many objects, most of which stay: to look for garbage as often as Python does takes a fifth of the time.
+# The tests create many permanent objects. The default frequency of garbage collection takes a fifth of the time.
 gc.set_threshold(300_000, 10, 10)
 
 
@@ -56,7 +57,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_make_parametrize_id(val: object) -> str | None:
-    """The name of a long text among the parameters of a test: its beginning. pytest numbers those that begin alike."""
+    """Return the beginning of a long parameter as its name; pytest numbers equal names."""
     if not isinstance(val, str | bytes) or len(val) <= LONGEST:
         return None
     text = val if isinstance(val, str) else val.decode("latin-1")
@@ -65,7 +66,7 @@ def pytest_make_parametrize_id(val: object) -> str | None:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_configure_node(node: Any) -> None:
-    """Tells a process of pytest-xdist which folder it shares with the others."""
+    """Pass the shared folder to a process of pytest-xdist."""
     node.workerinput["shared_folder"] = str(node.config.stash[_SHARED])
 
 
@@ -83,9 +84,9 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def remember_trees(config: pytest.Config) -> None:
-    """Has each process parse a text once, as long as it is among the last: many tests read the same few robots.
+    """Cache the parse trees of the last texts in each process, because many tests read the same few robots.
 
-    A tree is not changed by who builds a model of it. Long texts, whose trees are large, are parsed each time.
+    Building a model does not change a tree. Long texts have large trees, which are not cached.
     """
     known = lru_cache(64)(grammar.parse)
     patch = pytest.MonkeyPatch()
@@ -95,15 +96,15 @@ def remember_trees(config: pytest.Config) -> None:
 
 @pytest.fixture(scope="session")
 def shared_folder(pytestconfig: pytest.Config) -> Path:
-    """A folder that all processes of this run of the tests have in common: see `tests.sharing`."""
+    """Return the folder that all processes of a test run share: see `tests.sharing`."""
     return pytestconfig.stash[_SHARED]
 
 
 @pytest.fixture(scope="session")
 def verified_once(shared_folder: Path) -> Callable[[Path], Callable[..., Any]]:
-    """What takes the place of `verify` for a model: it verifies it once in this run of the tests.
+    """Return a replacement of `verify` for a model, which verifies the model once in a run of the tests.
 
-    The robots of the thesis' scenarios with all effort.
+    It verifies the robots of the thesis scenarios with the full effort.
     """
 
     def once(path: Path) -> Callable[..., Any]:
@@ -122,7 +123,7 @@ def verified_once(shared_folder: Path) -> Callable[[Path], Callable[..., Any]]:
 
 @pytest.fixture(scope="session")
 def verified(shared_folder: Path, verified_once: Callable[[Path], Callable[..., Any]]) -> Callable[[Path], Any]:
-    """What `verify --json` says of a model in which nothing is refuted, asked once in this run of the tests."""
+    """Return the output of `verify --json` for a model without refuted properties, computed once in a test run."""
 
     def asked(path: Path) -> str:
         with pytest.MonkeyPatch.context() as patch:
@@ -140,7 +141,7 @@ def verified(shared_folder: Path, verified_once: Callable[[Path], Callable[..., 
 
 @pytest.fixture(scope="session")
 def planned_once(shared_folder: Path) -> Callable[[Path, RosGraph, Configuration], list[TraceTest]]:
-    """What `trace_test` makes of a model with its settings, for ROS 1 and 2, planned once in this run of the tests."""
+    """Return the results of `trace_test` for a model and its settings, for ROS 1 and 2, computed once in a run."""
 
     def once(path: Path, graph: RosGraph, settings: Configuration) -> list[TraceTest]:
         def made() -> str:
@@ -156,10 +157,10 @@ def planned_once(shared_folder: Path) -> Callable[[Path, RosGraph, Configuration
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Tests over ROS wait, so they take turns with others that are long: where all processes wait, no core works.
+    """Alternate tests over ROS, which mostly wait, with other long tests, so that no core is idle.
 
-    Those that need the workspace of ROS 1 come in the middle, as it is built meanwhile. At the end come short tests,
-    which leave no process idle. Before xdist reads the groups, and after those of `ros`.
+    Tests with the workspace of ROS 1 come in the middle, because its build runs meanwhile. Short tests at the end keep
+    all processes busy. The hook runs before xdist reads the groups, and after the hook of `tests/ros`.
     """
     for item in items:
         if item.get_closest_marker("xdist_group") is None:
@@ -177,13 +178,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """What was loaded to find the tests stays."""
+    """Exclude the objects of the collection phase from garbage collection."""
     gc.freeze()
 
 
 @pytest.hookimpl(trylast=True)
 def pytest_sessionfinish() -> None:
-    """pytest looks for garbage five times when it ends, for exceptions that nobody saw. Once is enough."""
+    """Collect garbage once: pytest would collect it five times at its end to report unraisable exceptions."""
     gc.collect()
     gc.freeze()
 
@@ -198,7 +199,7 @@ def _turn(item: pytest.Item, is_long: bool) -> int:
 
 
 def _groups(items: list[pytest.Item]) -> list[Sequence[pytest.Item]]:
-    """The items by the groups in which xdist hands them out."""
+    """Return the items in the groups that xdist assigns to processes."""
     groups: dict[str, list[pytest.Item]] = {}
     for item in items:
         (mark, *_) = item.iter_markers("xdist_group")
@@ -213,7 +214,7 @@ def _room(path: Path) -> Path | None:
 
 @pytest.fixture
 def golden(request: pytest.FixtureRequest) -> Callable[[Path, str], None]:
-    """`golden(path, text)` fails where the file at `path` has not exactly this text."""
+    """Return `golden(path, text)`, which fails unless the file at `path` has exactly this text."""
 
     def compare(path: Path, text: str) -> None:
         if request.config.getoption("--accept"):

@@ -1,21 +1,22 @@
-"""Sends a signal to a process of its own just before it changes the file system for the n-th time."""
+"""Interruption of a process by a signal just before its n-th change of the file system."""
 
 import os
 import signal
 from collections.abc import Callable, Iterator
 from typing import Any, NoReturn
 
-#: The functions of `os` through which files are made, moved and removed, by pathlib, tempfile and shutil, too.
+#: The functions of `os` with which pathlib, tempfile and shutil also create, move and remove files.
 CHANGES = ("mkdir", "replace", "unlink", "rmdir")
 
 _MOST = 100
 
 
 def interrupted(action: Callable[[], object], number: int, sent: signal.Signals, *, again: bool = False) -> int:
-    """How a process that runs an action ends when it gets a signal before its n-th change, counted from 1.
+    """Run an action in a process that gets a signal before its n-th change (from 1), and return the exit status.
 
-    With `again` it gets the signal before each change that follows, too. 0: the action came to its end; minus the
-    number of a signal: that has killed it; 130: KeyboardInterrupt; what SystemExit says; 1: another exception.
+    With `again` the process gets the signal before each later change, too. The status is 0 after the end of the action,
+    minus the number of the signal that killed the process, 130 for KeyboardInterrupt, the value of SystemExit, or 1 for
+    another exception.
     """
     process = os.fork()
     if process == 0:
@@ -24,7 +25,7 @@ def interrupted(action: Callable[[], object], number: int, sent: signal.Signals,
 
 
 def interruptions(run: Callable[[int], int]) -> Iterator[tuple[int, int]]:
-    """Calls `run` with 1, 2, 3, ... until it answers 0, and yields each number with the answer before that."""
+    """Call `run` with 1, 2, 3, ... until it returns 0, and yield each earlier number with its result."""
     for number in range(1, _MOST + 1):
         status = run(number)
         if status == 0:
@@ -36,7 +37,7 @@ def interruptions(run: Callable[[int], int]) -> Iterator[tuple[int, int]]:
 def _run(action: Callable[[], object], number: int, sent: signal.Signals, *, again: bool) -> NoReturn:
     status = 1
     try:
-        # Also where the tests were started with signals ignored, as shells do behind `&` and `nohup` does.
+        # The tests may run with ignored signals: shells do that for `&`, and `nohup` does.
         for heeded in (signal.SIGHUP, signal.SIGQUIT, signal.SIGTERM):
             signal.signal(heeded, signal.SIG_DFL)
         signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -1,4 +1,4 @@
-"""Random robots as text, over the whole language: all names resolve, and little is wrong with them, or nothing."""
+"""Random robots as text, over the whole language. All names resolve; the models have few mistakes, or none."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from robosc.model.semantics.naming import ROBOSC_KEYWORDS, written
 
-#: Names that are words of some language, that generated names look like, or that give the same when joined.
+#: Names that are words of some language, look like generated names, or are equal after joining.
 ODD_NAMES = (
     *("int", "class", "struct", "bool", "union", "namespace", "operator", "and_", "NULL", "main", "errno", "EOF"),
     *("plant", "event", "location", "edge", "marker", "min", "max", "controllable", "supervisor", "alg", "tau"),
@@ -27,7 +27,7 @@ EVENTS = {
 
 @dataclass(frozen=True)
 class Type:
-    """A type as written; of an object its properties, of an array its elements, of an enum its values and its base."""
+    """A type: its text, and the properties of an object, the element of an array, the values and base of an enum."""
 
     text: str
     kind: str
@@ -38,7 +38,7 @@ class Type:
 
     @property
     def is_finite(self) -> bool:
-        """Whether the supervisor can have it."""
+        """Whether the supervisor can represent the type."""
         return self.kind in {"boolean", "enum"} or (self.kind == "integer" and "(" in self.text)
 
     @property
@@ -66,7 +66,7 @@ ROS_TYPES = [
     Type("geometry_msgs/Twist", "object", TWIST.properties),
     Type("sensor_msgs/LaserScan", "object", (("ranges", Type("array(double)", "array", element=DOUBLE)),)),
 ]
-#: Of basic types some that exist; `i` is for all others.
+#: Interfaces: existing ones for some basic types, and `i` for all other types.
 INTERFACES = (
     "interface i use Some from some_msgs",
     "interface i_boolean use Bool from std_msgs",
@@ -87,7 +87,7 @@ class Communication:
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable; one that may be needed by the supervisor is computed from finite data only."""
+    """A variable. If the supervisor may need it, only finite data determine its value."""
 
     name: str
     type: Type
@@ -96,19 +96,19 @@ class Variable:
 
 @dataclass
 class Component:
-    """A component; of an imported one `text` is what imports it."""
+    """A component. For an imported one, `text` is the import."""
 
     name: str
     communications: list[Communication] = field(default_factory=list)
     variables: list[Variable] = field(default_factory=list)
     states: list[str] = field(default_factory=list)
-    #: States that are not marked, that nothing leads to and nothing leads out of.
+    #: Unmarked states without incoming and outgoing transitions.
     apart: list[str] = field(default_factory=list)
     text: str = ""
 
 
 class Writer:
-    """Writes one robot, if asked to with mistakes now and then."""
+    """Writer of one robot, with occasional mistakes on request."""
 
     def __init__(self, seed: int, *, mistakes: bool) -> None:
         self.random = Random(seed)  # noqa: S311 - nothing here is secret
@@ -128,7 +128,7 @@ class Writer:
         return text if self.random.randrange(chance) == 0 else ""
 
     def name(self, plain: str) -> str:
-        """A name that nothing else in the robot has."""
+        """Return a name that is unique in the robot."""
         return written(self.odd_names.pop()) if self.odd_names and self.random.randrange(3) == 0 else plain
 
     def robot(self, name: str) -> str:
@@ -144,7 +144,7 @@ class Writer:
         return "\n".join([f"robot {name} {{", *INTERFACES, *types, *imports, *parts, "}"])
 
     def imported(self, number: int) -> str:
-        """Imports a component of the standard library, often with topics of its own."""
+        """Import a component of the standard library, often with changed topics."""
         component = Component(self.name(f"L{number}"))
         if self.one([True, True, False]):
             source = "from EmergencyStopLibrary import EmergencyStop"
@@ -162,7 +162,7 @@ class Writer:
         return component.text
 
     def reference(self, component: Component, communication: Communication) -> str:
-        """How a communication is named; two instances of one component need the name of theirs."""
+        """Return a reference to a communication; names of several instances need the name of the component."""
         names = [communication.name for c in self.components for communication in c.communications]
         if names.count(communication.name) == 1 and self.one([True, True, False]):
             return communication.name
@@ -206,7 +206,7 @@ class Writer:
             kind = self.one(EVENTS)
             made = Communication(self.name(f"m{number}{index}"), kind)
             topic = self.maybe('identifier: "/shared", ', 4)
-            if "_" in made.name:  # Not every name is one of a topic.
+            if "_" in made.name:  # Some names are invalid in topics.
                 topic = f'identifier: "/t{number}/m{index}", '
             name = f"{made.name} with {topic}"
             if kind == "outgoing":
@@ -237,7 +237,7 @@ class Writer:
             component.communications.append(made)
         if self.random.randrange(6) == 0:
             self.components.append(component)
-            return  # It has no behaviour.
+            return  # The component has no behavior.
         for index in self.many(4):
             kind = self.one([self.simple(), *RANGED, BOOLEAN, *self.enums])
             may_be_needed = kind.is_finite and self.one([True, True, False])
@@ -291,7 +291,7 @@ class Writer:
         return f"transition{guard}{self.assigned(component, [])}{goto}"
 
     def timed(self, component: Component, *, everywhere: bool = False) -> str:
-        """A transition that waits; outside of states for the silence of a message, if there is one."""
+        """Return a timed transition. Outside of states it needs a silent message, and is empty if there is none."""
         messages = [(owner, found) for owner in self.components for found in owner.communications]
         heard = [self.reference(owner, found) for owner, found in messages if found.kind == "outgoing"]
         if everywhere and not heard:
@@ -353,7 +353,7 @@ class Writer:
     # Expressions
 
     def readable(self, *, finite: bool) -> list[tuple[str, Type]]:
-        """What can be read by its full name."""
+        """Return everything that a full name can refer to, with its type."""
         states = [(f"{c.name}.{state}", BOOLEAN) for c in self.components for state in (*c.states, *c.apart)]
         variables = [
             (f"{c.name}.{variable.name}", variable.type)
@@ -364,7 +364,7 @@ class Writer:
         return states + variables
 
     def expression(self, kind: Type, reads: list[tuple[str, Type]], depth: int, *, constant: bool = True) -> str:
-        """An expression of the type; without `constant` it is no constant where anything can be read."""
+        """Return an expression of a type; without `constant` it reads something, if possible."""
         alike = [
             text
             for text, found_kind in reads
@@ -401,12 +401,12 @@ class Writer:
 
 
 def paths(start: str, kind: Type) -> list[tuple[str, Type]]:
-    """What can be read of data, each with its type."""
+    """Return all readable parts of data with their types."""
     if kind.element is not None:
         return paths(f"{start}[{len(start) % 4}]", kind.element)
     return [(start, kind), *(read for name, inner in kind.properties for read in paths(f"{start}.{name}", inner))]
 
 
 def random_robot(seed: int, name: str = "R", *, mistakes: bool = True) -> str:
-    """The text of a robot, the same for the same seed; no rule finds an error in it if no mistakes are asked for."""
+    """Return the text of a robot, equal for equal seeds, and without errors unless mistakes are requested."""
     return Writer(seed, mistakes=mistakes).robot(name)

@@ -1,4 +1,4 @@
-"""Random valid SCT models, small enough to be explored state by state."""
+"""Random valid sct models, small enough to enumerate their states."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -16,7 +16,7 @@ _KINDS = ("message", "service", "action", "behaviour")
 
 @dataclass(frozen=True)
 class _Scope:
-    """What expressions may read, by type; a type is `bool`, `E`, `F` or a range."""
+    """Names that expressions may read, by type: `bool`, `E`, `F` or a range."""
 
     locations: tuple[str, ...]
     values: tuple[tuple[str, str], ...]
@@ -39,10 +39,10 @@ class _Sketch:
 
 @st.composite
 def sct_models(draw: st.DrawFn, *, data: bool = True, requirements: bool = False) -> sct.SupervisoryControlModel:
-    """Models without a supervisor: plants that share events, guards, saturating updates, inputs, requirements.
+    """Return models without a supervisor: plants with shared events, guards, saturating updates, inputs, requirements.
 
-    With `data`, some have plants as provide statements make them (semantics.md, point 4): nothing reads them.
-    With `requirements`, some have invariants, requirement automata, and requirements on uncontrollable events.
+    With `data`, some have plants like those of provide statements (semantics.md, point 4), which nothing reads. With
+    `requirements`, some have invariants, requirement automata, and requirements on uncontrollable events.
     """
     sketches = [draw(_sketches(f"p{index}")) for index in range(draw(st.integers(1, 3)))]
     scope = _Scope(
@@ -126,8 +126,10 @@ def _plant(draw: st.DrawFn, sketch: _Sketch, sketches: Sequence[_Sketch], scope:
 
 
 def _edges(draw: st.DrawFn, sketch: _Sketch, declaring: _Sketch, event: str, scope: _Scope):
-    """One edge, or several that are tried one after the other: a robot's conditions, of which the first that holds
-    counts, and which may read the data of the event."""
+    """Return one edge, or several in order of preference, like the conditions of a robot.
+
+    The first edge whose guard holds is taken. The guards may read the data of the event.
+    """
     carried = declaring.uncontrollable.get(event, ())
     inputs = tuple((f"{declaring.name}.{name}", declaring.inputs[name]) for name in carried)
     with_inputs = replace(scope, values=scope.values + inputs)
@@ -171,7 +173,7 @@ def _data_plant(draw: st.DrawFn, name: str, scope: _Scope):
 
 
 def _requirement_automaton(draw: st.DrawFn, sketches: Sequence[_Sketch], scope: _Scope):
-    """An automaton that follows some events and blocks none."""
+    """Return an automaton that follows some events and blocks none."""
     events = [
         f"{sketch.name}.{event}" for sketch in sketches for event in (*sketch.controllable, *sketch.uncontrollable)
     ]

@@ -1,4 +1,4 @@
-"""Random robots that use what the language's second edition adds."""
+"""Random robots with the constructs of the language's second edition."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _NAMED = (
     "function f2(a: double, b: integer): double = if a > b then a / 2 else -a + k1",
     "function f3(a: boolean, b: integer): boolean = if f1(a) then f0(b, k0) > 0 else f1(b = 1)",
 )
-#: What a call needs for each parameter, by the kind of what it gives.
+#: Functions and the types of their parameters, by the kind of the result.
 _CALLS = {
     "integer": (("f0", INTEGER, INTEGER),),
     "boolean": (("f1", BOOLEAN), ("f3", BOOLEAN, INTEGER)),
@@ -40,7 +40,7 @@ _CALLS = {
 
 
 class SecondWriter(Writer):
-    """Writes names for values and conditions, templates, alternatives, times, and requirements on states and orders."""
+    """Writer of named values and conditions, templates, alternatives, times, and requirements on states and orders."""
 
     def __init__(self, seed: int) -> None:
         super().__init__(seed, mistakes=False)
@@ -48,7 +48,7 @@ class SecondWriter(Writer):
         self.constants = [("k0", INTEGER), ("k1", DOUBLE), ("k2", BOOLEAN)]
         self.conditions: list[str] = []
         self.templates: list[str] = []
-        #: States of requirement automata, which requirements and properties alone may read.
+        #: States of requirement automata, which only requirements and properties may read.
         self.turns: list[tuple[str, Type]] = []
         self.grips = False
 
@@ -71,7 +71,7 @@ class SecondWriter(Writer):
         return "\n".join([head, *_NAMED, *lines, *self.templates, *kept(self.seed), end])
 
     def imported(self, number: int) -> str:
-        """Now and then a component that a template of a library makes."""
+        """Sometimes import a template of a library instead."""
         if self.one([True, True, False]):
             return super().imported(number)
         tries = self.one(["", ", 2", ", tries: k0"])
@@ -95,7 +95,7 @@ class SecondWriter(Writer):
         return component.text
 
     def automaton(self, number: int, sent: list[tuple[Component, Communication]]) -> str:
-        """A requirement automaton, whose states others read. It forbids requests, and no answers."""
+        """Return a requirement automaton with readable states. It forbids requests, but no responses."""
         states = "abc"[: self.one([2, 3])]
         chosen = self.random.sample(sent, min(len(sent), self.random.randint(1, 2)))
         requests = [self.reference(*found) for found in chosen]
@@ -124,7 +124,7 @@ class SecondWriter(Writer):
             self.template(number)
 
     def template(self, number: int) -> None:
-        """A component with parameters, made several times."""
+        """Add a component with parameters and several instances of it."""
         name = f"Made{number}"
         made = [
             Communication(f"bump{number}", "outgoing", data={"response": NONE}),
@@ -158,7 +158,7 @@ class SecondWriter(Writer):
         self.conditions.append(f"(count {name}: {name}.up) {self.one(['<', '>='])} {self.one('12')}")
 
     def transition(self, component: Component, owner: Component, communication: Communication, event: str) -> str:
-        """Several that are tried in order."""
+        """Return several transitions, tried in order."""
         last = super().transition(component, owner, communication, event)
         data = paths("value", communication.data.get(event, NONE))
         made = []
@@ -170,7 +170,7 @@ class SecondWriter(Writer):
         return " ".join([*made, *([last] if not made or self.one([True, False]) else [])])
 
     def guard(self, data: list[tuple[str, Type]]) -> str:
-        """A condition over data, over what the supervisor knows, or both."""
+        """Return a condition over data, over the supervisor's knowledge, or over both."""
         known = self.expression(BOOLEAN, self.readable(finite=True), 2)
         told = self.expression(BOOLEAN, [read for read in data if "[" not in read[0]], 2)
         return self.one([known, f"({told})", f"({known}) {self.one(['and', 'or'])} ({told})"])
@@ -218,7 +218,7 @@ class SecondWriter(Writer):
         return super().expression(kind, reads, depth, constant=constant)
 
     def call(self, kind: Type, reads: list[tuple[str, Type]], depth: int) -> str | None:
-        """A call of a function; one that gives an integer reads something, so that it is no constant out of range."""
+        """Return a call of a function. A call with an integer result reads a variable, so that it is no constant."""
         alike = [text for text, found in reads if found.kind == "integer"]
         calls = _CALLS.get(kind.kind, ())
         if not calls or (kind.kind == "integer" and not alike):
@@ -235,7 +235,7 @@ class SecondWriter(Writer):
 
 
 def kept(seed: int) -> list[str]:
-    """Of every other robot a component that keeps arrays and objects, and hands them on; parameters, times by name."""
+    """For half of the seeds, return a component that stores and sends arrays and objects, with parameters and times."""
     random = Random(seed)  # noqa: S311 - nothing here is secret
     if random.random() < 0.5:
         return []
@@ -301,7 +301,7 @@ def kept(seed: int) -> list[str]:
 
 
 def nested(choose: Callable[..., str]) -> list[str]:
-    """A component that keeps objects within objects, as a whole and in parts, of data types of its own."""
+    """Return a component that stores nested objects of its own data types, as a whole and in parts."""
     place = choose("0", "nestAt", "size(value.list) - 1", "mod(nestAt, 2)")
     read = choose(
         "outer.list[nestAt].deep.known",
@@ -341,5 +341,5 @@ def nested(choose: Callable[..., str]) -> list[str]:
 
 
 def second_edition_robot(seed: int, name: str = "R") -> str:
-    """The text of a robot, the same for the same seed, in which no rule finds an error."""
+    """Return the text of a robot without errors, equal for equal seeds."""
     return SecondWriter(seed).robot(name)

@@ -1,4 +1,4 @@
-"""All regular expressions of the product, by their places, and texts that make a backtracking engine slow."""
+"""All regular expressions of the product with their places, and texts that make a backtracking engine slow."""
 
 import ast
 import builtins
@@ -21,8 +21,8 @@ from robosc.language.highlighting.rules import rules
 ROOT = Path(__file__).parents[1]
 SCANNING = frozenset({"search", "finditer", "findall", "sub", "subn", "split"})
 METHODS = SCANNING | {"match", "fullmatch"}
-#: Characters in a row, and processor time for one text in seconds. A linear search needs a hundredth of that time, one
-#: that grows with the square needs several times as much.
+#: Length of a repetition in characters, and limit of CPU time for one text in seconds. A linear search takes a
+#: hundredth of the limit, a quadratic one several times as much as the limit.
 LENGTH, SECONDS = 50_000, 0.5
 PUMPS = (
     *("/", "*", " ", "\n", "\t", '"', "'", "\\", "[", "]", "(", ")", "{", "}", "<", ">", "_", ".", ":", ";", ",", "^"),
@@ -52,7 +52,7 @@ PUMPS = (
 
 @dataclass(frozen=True)
 class Expression:
-    """A regular expression: the place in the product, and the methods by which it is applied."""
+    """A regular expression: its place in the product, and the methods that apply it."""
 
     place: str
     pattern: str | bytes
@@ -61,7 +61,7 @@ class Expression:
 
 
 class _Anything(str):
-    """The value of a local variable in a pattern."""
+    """Placeholder for the value of a local variable in a pattern."""
 
     __slots__ = ()
 
@@ -83,7 +83,7 @@ class _Names(dict[str, Any]):
 
 
 def collect() -> list[Expression]:
-    """All regular expressions of Python, of the grammars, of the colors, schemas, templates and pages."""
+    """Return all regular expressions of Python code, grammars, colors, schemas, templates and pages."""
     everywhere = (*_python(), *_templates(), *_grammars(), *_colors(), *_schemas(), *_pages())
     return list({(found.pattern, found.flags, found.methods): found for found in everywhere}.values())
 
@@ -115,7 +115,7 @@ def _python() -> Iterator[Expression]:
 
 
 def _constants(tree: ast.AST) -> list[str]:
-    """The constants of a module that read as patterns: those that a variable may stand for."""
+    """Return the constants of a module that are patterns, as possible values of variables."""
     parts = {id(part) for node in ast.walk(tree) if isinstance(node, ast.JoinedStr) for part in node.values}
     nodes = (node for node in ast.walk(tree) if isinstance(node, ast.Constant) and id(node) not in parts)
     texts = (node.value for node in nodes if isinstance(node.value, str))
@@ -134,7 +134,7 @@ def _names(path: Path) -> _Names:
     parts = path.relative_to(ROOT).with_suffix("").parts
     try:
         return _Names(vars(importlib.import_module(".".join(parts[:-1] if parts[-1] == "__init__" else parts))))
-    except ImportError:  # A module over ROS, where there is none.
+    except ImportError:  # The module needs a ROS that is not installed.
         return _Names(re=re)
 
 
@@ -153,7 +153,7 @@ def _is_call_of_re(node: ast.AST) -> bool:
 
 
 def _methods(tree: ast.AST, name: str | None) -> frozenset[str]:
-    """The methods of an expression that its module calls; none where it is used in another way, too."""
+    """Return the methods that a module calls on an expression, or an empty set if there are other uses."""
     uses = [node for node in ast.walk(tree) if isinstance(node, ast.Name) and node.id == name]
     called = [node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute) and node.value in uses]
     return frozenset(called) if len(called) == len(uses) - 1 and set(called) <= METHODS else frozenset()
@@ -207,7 +207,7 @@ def _pages() -> Iterator[Expression]:
 
 
 def slow(expression: Expression) -> str | None:
-    """What makes an expression slow, with how it is applied; None where nothing does."""
+    """Return a description of the text and method that make an expression slow, or None."""
     compiled = re.compile(expression.pattern, expression.flags)
     methods = sorted(expression.methods - SCANNING) + ["finditer"] * bool(
         expression.methods - {"search", "match", "fullmatch"}
@@ -243,7 +243,7 @@ def _is_fast(compiled: "re.Pattern[Any]", method: str, text: str | bytes) -> boo
 
 
 def _texts(expression: Expression) -> Iterator[Any]:
-    """Rows behind each beginning of a match, with something behind that does not go on."""
+    """Yield repetitions after each beginning of a match, with and without a mismatch at the end."""
     texts = dict.fromkeys(
         before + pump * (LENGTH // len(pump)) + after
         for before in ("", *_beginnings(expression))
@@ -264,21 +264,21 @@ def _parsed(expression: Expression) -> Any:
 
 
 def _beginnings(expression: Expression) -> list[str]:
-    """What stands before a repetition, for each of the expression."""
+    """Return a matching text before each repetition of an expression."""
     found: dict[str, None] = {}
     _walk(_parsed(expression), "", found, {})
     return list(found)
 
 
 def _bodies(expression: Expression) -> list[str]:
-    """What is repeated."""
+    """Return a matching text for the body of each repetition."""
     bodies: dict[str, None] = {}
     _walk(_parsed(expression), "", {}, bodies)
     return [body for body in bodies if body]
 
 
 def _walk(nodes: Any, before: str, found: dict[str, None], bodies: dict[str, None]) -> str:  # noqa: C901
-    """One text that nodes match, behind a text; notes where a repetition begins."""
+    """Return `before` with one text that the nodes match, and record the beginnings and bodies of repetitions."""
     for operation, argument in nodes:
         name = str(operation)
         if name == "LITERAL":
@@ -309,7 +309,7 @@ def _walk(nodes: Any, before: str, found: dict[str, None], bodies: dict[str, Non
 
 
 def _one(members: Any) -> str:
-    """A character of a set."""
+    """Return a character of a set."""
     options = re.compile(_set(members))
     characters = (*"a0 _A", *map(chr, range(33, 127)), "\n", "é", "\N{ZERO WIDTH SPACE}")
     return next((character for character in characters if options.fullmatch(character)), "a")

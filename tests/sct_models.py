@@ -1,4 +1,4 @@
-"""Writes SCT models in a few lines, for the tests of everything that reads them.
+"""Functions that write sct models in a few lines, for the tests of all their readers.
 
     model(
         plants=[
@@ -12,10 +12,10 @@
     )
 
 Expressions are Python's: `and or not == != < <= > >= + - *`, `a if c else b`, `implies(a, b)`, `abs(a)`, `min(a, b)`,
-`max(a, b)`, and `/` and `double(x)` for what an SCT model must not hold. A name is a variable, input or location of the
-own plant, else an enumeration literal, else a variable of any plant; `p.x` is x of plant p, `Colour.red` a literal. A
-type is `bool`, `0..5` or an enumeration; ` = value` gives a variable's initial value, by default false, the value
-nearest to 0, the first literal.
+`max(a, b)`. `/` and `double(x)` are for invalid sct models. A name is a variable, input or location of the same plant,
+else an enumeration literal, else a variable of any plant; `p.x` is x of plant p, `Colour.red` a literal. A type is
+`bool`, `0..5` or an enumeration. ` = value` gives a variable's initial value. The default is false, the value nearest
+to 0, or the first literal.
 """
 
 import ast
@@ -72,7 +72,7 @@ class _Requirement:
 
 
 def edge(event: str, to: str | None = None, *, when: str | None = None, do: Mapping[str, Any] | None = None) -> _Edge:
-    """An edge to location `to` (absent: a self-loop) under guard `when` with the updates `do` (variable to value)."""
+    """Return an edge to location `to` (or a self-loop) with guard `when` and updates `do` (variable to value)."""
     return _Edge(event, to, when, {name: str(value) for name, value in (do or {}).items()})
 
 
@@ -91,12 +91,12 @@ def plant(
     origin: str | None = None,
     everywhere: Sequence[_Edge] = (),
 ) -> _Plant:
-    """A plant and the events it declares, each given by name, or as a mapping to the inputs that carry its data.
+    """Return a plant and the events that it declares, each by name, or as a mapping to the inputs that carry its data.
 
-    Each location has its edges and those from `everywhere`, which say where they lead.
+    Each location has its edges and those of `everywhere`, which name their target.
 
-    The first location is initial and alone marked unless said otherwise. An event's kind follows from its name
-    (`c_trigger`, `u_response`, `c_tau1`); in a data plant it is data; else trigger or response.
+    By default, the first location is initial and the only marked one. An event's kind follows from its name
+    (`c_trigger`, `u_response`, `c_tau1`). Events of a data plant are data; others are triggers or responses.
     """
     first = next(iter(locations))
     declared = [(event, True) for event in controllable] + [(event, False) for event in uncontrollable]
@@ -133,12 +133,12 @@ def plant(
 
 
 def needs(event: str, condition: str, text: str | None = None) -> _Requirement:
-    """A requirement: the event needs the condition."""
+    """Return a requirement: the event needs the condition."""
     return _Requirement("needs", event, condition, text)
 
 
 def disables(event: str, condition: str, text: str | None = None) -> _Requirement:
-    """A requirement: the condition disables the event."""
+    """Return a requirement: the condition disables the event."""
     return _Requirement("disables", event, condition, text)
 
 
@@ -151,7 +151,7 @@ def model(
     guards: Mapping[str, str | tuple[str | None, str | None]] | None = None,
     invariants: Sequence[str] = (),
 ) -> sct.SupervisoryControlModel:
-    """The model. `guards` attaches a supervisor that was not synthesized: event to requirement part, or both parts."""
+    """Return the model. `guards` attaches a supervisor without synthesis: event to requirement part, or both parts."""
     scope = _Scope(
         [given_plant.element for given_plant in plants],
         [

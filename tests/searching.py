@@ -1,4 +1,4 @@
-"""How much a test looks at: how many random models, and what of it in a quick run."""
+"""Effort of the tests: the number of random models, and the selection for a quick run."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from robosc.analysis.verify.model_reading import Effort
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-#: How many times as long the random searches are: `benchmarks/search.py` has the same tests search longer.
+#: Factor for the effort of random searches; `benchmarks/search.py` runs the same tests with more.
 TIMES = int(os.environ.get("ROBOSC_SEARCH", "1"))
 
 
 def examples(number: int) -> int:
-    """The number of random models, where a run of all tests tries so many."""
+    """Return the number of random models for a test that tries `number` in a run of all tests."""
     return number * TIMES
 
 
 def slow_but(quick: Iterable[str], values: Iterable[Any]) -> list[Any]:
-    """Values for the parameter of a test: names, or paths, all of them marked slow but those with the `quick` names."""
+    """Return the values (names or paths) of a test's parameter, all marked slow except those with `quick` names."""
     names = set(quick)
 
     def is_quick(value: Any) -> bool:
@@ -37,23 +37,23 @@ def slow_but(quick: Iterable[str], values: Iterable[Any]) -> list[Any]:
 
 
 def matrix_but(chosen: Iterable[str], values: Iterable[Any]) -> list[Any]:
-    """As `slow_but`; those that are not chosen only `benchmarks/matrix.py` tries."""
+    """Return values like `slow_but`; only `benchmarks/matrix.py` tries those that are not chosen."""
     names, rest = set(chosen), [pytest.mark.slow, pytest.mark.matrix]
     return [pytest.param(value, marks=[pytest.mark.slow] if value in names else rest) for value in values]
 
 
 def long_but(short: Iterable[str], names: Iterable[str]) -> list[str]:
-    """Names for the parameter of a test: the `short` ones where a run of all tests is made, all in a longer search."""
+    """Return the names of a test's parameter: the `short` ones in a run of all tests, all in a longer search."""
     chosen = set(short)
     return [name for name in names if TIMES > 1 or name in chosen]
 
 
 @contextmanager
 def less_effort() -> Iterator[None]:
-    """While it lasts `verify` tries a tenth of the operations of a control loop, and of the states of a large model.
+    """Reduce the effort of `verify` to a tenth of the control loop's operations and of a large model's states.
 
-    For models that are too large for all their states in any case, or whose constructs others have that are tried with
-    all effort. In `benchmarks/search.py` these are, too.
+    This is for models that are too large to enumerate, or whose constructs other models cover with the full effort.
+    `benchmarks/search.py` verifies these with more effort, too.
     """
     loop = LoopEffort(LoopEffort.explored * TIMES // 10, LoopEffort.walked * TIMES // 10)
     model = Effort(states=Effort.states * TIMES // 10, random=Effort.random * TIMES // 10)

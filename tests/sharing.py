@@ -1,4 +1,4 @@
-"""What the processes of one run of the tests share."""
+"""Results that the processes of a test run share."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-#: The domains of ROS 2 whose ports no other program is given by chance.
+#: The ROS 2 domains whose ports are outside the ephemeral range.
 _DOMAINS = range(1, 100)
 
 
 def made_once(folder: Path, name: str, make: Callable[[], str]) -> str:
-    """What `make` returns. The first process of those that share a folder calls it, the others wait for it."""
+    """Return the result of `make`. The first process that shares a folder calls it, and the others wait for it."""
     made = folder / name
     with (folder / f"{name}.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
@@ -28,7 +28,7 @@ def made_once(folder: Path, name: str, make: Callable[[], str]) -> str:
 
 @contextmanager
 def own_domain() -> Iterator[int]:
-    """A domain of ROS 2 that no other test of this machine has meanwhile."""
+    """Reserve a ROS 2 domain that no other test of this machine uses."""
     for domain in random.sample(_DOMAINS, len(_DOMAINS)):
         with Path(gettempdir(), f"robosc-domain-{domain}.lock").open("w") as lock:
             try:

@@ -1,4 +1,4 @@
-"""Work in a thread as small as those of some servers and of macOS."""
+"""Work in a thread with a small stack, as in some servers and in macOS."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _Result = TypeVar("_Result")
 
 
 def on_small_stack(work: Callable[[], _Result]) -> _Result:
-    """What `work` returns in a thread with a stack of 512 KiB; what it raises is raised here."""
+    """Return the result of `work` in a thread with a stack of 512 KiB, or raise its exception."""
     before = threading.stack_size(STACK)
     try:
         with ThreadPoolExecutor(1) as threads:

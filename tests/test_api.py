@@ -1,4 +1,4 @@
-"""The public functions do what the command line does."""
+"""The public functions behave like the command line."""
 
 import subprocess
 import sys

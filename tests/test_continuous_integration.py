@@ -1,4 +1,4 @@
-"""The steps of `action.yml`, each run by bash as GitHub runs it, and the hooks for pre-commit."""
+"""The steps of `action.yml`, each run by bash as on GitHub, and the hooks for pre-commit."""
 
 import json
 import os
@@ -46,7 +46,7 @@ class Job:
         self.git("add", "--", name)
 
     def run(self, name: str, **inputs: str) -> subprocess.CompletedProcess[str]:
-        """A step, as `shell: bash` runs it; the inputs are those of the action."""
+        """Run a step like `shell: bash`; the inputs are those of the action."""
         step = STEPS[name]
         given = {key: declared["default"] for key, declared in ACTION["inputs"].items()} | inputs
         expression = re.compile(r"\$\{\{ inputs\.([a-z-]+) \}\}")
@@ -140,13 +140,13 @@ def test_each_robot_is_verified(job: Job) -> None:
 
 
 def test_the_action_is_whole() -> None:
-    """What GitHub asks of a composite action; its expressions name inputs and steps that are there."""
+    """The action meets GitHub's rules for composite actions, and its expressions name existing inputs and steps."""
     assert ACTION["runs"]["using"] == "composite"
     for step in STEPS.values():
         assert ("run" in step) != ("uses" in step)
         assert "run" not in step or step["shell"] == "bash"
     text = (ROOT / "action.yml").read_text()
-    # Names of files come behind `--`: one that begins with a dash is no option.
+    # File names come after `--`, so that a name with a leading dash is no option.
     assert all(
         " -- " in line
         for line in text.split("\n")
@@ -169,7 +169,7 @@ def test_the_page_speaks_of_all_inputs_and_hooks() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("hook", HOOKS, ids=lambda hook: hook["id"])
 def test_a_hook_runs_and_can_fail(job: Job, hook: dict[str, Any]) -> None:
-    """As pre-commit calls it: the entry, then `args`, then those staged files that it is for."""
+    """pre-commit runs the entry, then `args`, then the matching staged files."""
     assert hook["language"] == "python"
     program, *words = hook["entry"].split()
     assert program == "robosc"
@@ -192,7 +192,7 @@ def test_a_hook_runs_and_can_fail(job: Job, hook: dict[str, Any]) -> None:
 
 
 def test_the_tests_of_a_file_run_in_one_process(request: pytest.FixtureRequest) -> None:
-    """They share what one of them has made; xdist reads the groups before any hook that comes late."""
+    """The tests of a file share results; xdist reads the groups before any hook that comes later."""
     if not getattr(request.config.option, "loadgroup", False):
         pytest.skip("only processes of xdist have groups")
     assert request.node.nodeid.endswith(f"@{Path(__file__).name}")

@@ -1,4 +1,4 @@
-"""The examples of the language's second edition, each in a model with the little that it needs, in all views."""
+"""The examples of the language's second edition, each in a small model, in all views."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ EACH = pytest.mark.parametrize("name", NAMES)
 
 
 def in_all_views(name: str, folder: Path) -> Robot:
-    """It draws no error, is what is saved of it and what its CIF says, becomes every package, and has a supervisor."""
+    """Check that a model has no errors and a supervisor, equals its saved form and its CIF, and yields all packages."""
     copied = shutil.copytree(FOLDER, folder / "models")
-    # Each fifth number is saved as XMI and read back.
+    # Seeds that are multiples of five also save the models as XMI and read them back.
     _, robot = taken_through(copied / f"{name}.rscd", 5 * NAMES.index(name))
     assert robot is not None
     return robot

@@ -1,4 +1,4 @@
-"""The snippets of the language pages, put together, are a model that draws nothing and has a supervisor."""
+"""The snippets of the language pages form a model without findings and with a supervisor."""
 
 import re
 from pathlib import Path
@@ -28,7 +28,7 @@ def test_the_snippets_make_a_model(tmp_path: Path) -> None:
     path = tmp_path / "porter.rscd"
     path.write_text("robot Porter {\n" + "\n".join(parts) + "}\n")
     robot = robosc.load(path)
-    # nav2_msgs and its like are not known here, and the page's data is not really theirs.
+    # Packages such as nav2_msgs are unknown here, and the data on the page differ from theirs.
     assert [finding for finding in robosc.check(robot) if not finding.rule.startswith("interface-")] == []
     assert robosc.synthesize(robosc.to_sct(robot)).controlledStates > 1
 

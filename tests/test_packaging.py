@@ -1,4 +1,4 @@
-"""The wheel has all that the tool needs: installed elsewhere it generates the same bytes as the repository does."""
+"""The wheel is complete: installed elsewhere, it generates the same bytes as the repository."""
 
 import os
 import shutil
@@ -20,7 +20,7 @@ TARGETS = "cif,supervisor,ros1,ros2,xmi"
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("wheel")
-    # That the packages it is built with are named, the wheel of the source distribution shows.
+    # Another test, with the source distribution, checks that the build requirements are complete.
     options = ["--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir", folder]
     run(sys.executable, "-m", "pip", "wheel", *options, ROOT, cwd=folder)
     (built,) = folder.glob("*.whl")
@@ -28,7 +28,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def run(*command: str | Path, cwd: Path) -> str:
-    """What a command says, in a folder and an environment that know nothing of the repository."""
+    """Return the output of a command in a folder and an environment without access to the repository."""
     kept = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "ROBOSC", "VIRTUAL"))}
     done = subprocess.run(command, cwd=cwd, env=kept, check=False, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr + done.stdout
@@ -94,7 +94,7 @@ def test_the_dockerfiles_are_in_order() -> None:
 
 
 def test_a_release_needs_its_section_in_the_changelog(tmp_path: Path) -> None:
-    """Or a trial: the script ends before it builds anything."""
+    """Without `--trial`, a missing section or uncommitted changes end the script before it builds anything."""
     for name in ("scripts/release", "scripts/environment", "robosc/__init__.py"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         shutil.copy(ROOT / name, tmp_path / name)

@@ -1,4 +1,4 @@
-"""The models of the pages of patterns: each draws nothing, does what its page says, and stands there word for word."""
+"""The models of the pattern pages have no findings, behave as documented, and appear on their pages unchanged."""
 
 import json
 import re
@@ -19,7 +19,7 @@ PASSED, REFUSED = ' {"value": {"success": true}}', ' {"value": {"success": false
 
 
 def play(name: str, *lines: str) -> list[list[str]]:
-    """What the controller sends after each line of a script and the tick that follows it, by name, once each."""
+    """Return the commands of the controller after each line of a script and the tick after it, without repetitions."""
     script = "\n".join(f"{line}\ntick" for line in lines)
     done = CliRunner().invoke(main, ["simulate", str(PATTERNS / f"{name}.rscd"), "--loop", "--script", "-"], script)
     assert done.exit_code == 0, done.stderr
@@ -41,7 +41,7 @@ def answered(name: str, result: str = "") -> str:
 
 @pytest.fixture(autouse=True)
 def nav2(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The definitions of Nav2 are known, as they are beside a robot that drives with it."""
+    """Make the definitions of Nav2 available, as on a robot with Nav2."""
     monkeypatch.setenv("ROBOSC_INTERFACE_PATH", str(DOCS.parent / "tests" / "ros" / "interfaces" / "ros2"))
 
 

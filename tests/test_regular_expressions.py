@@ -1,4 +1,4 @@
-"""No text makes a regular expression of the product slow: each one takes time in proportion to the text."""
+"""No text makes a regular expression of the product slow: each takes time proportional to the text."""
 
 import re
 

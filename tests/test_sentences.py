@@ -1,4 +1,4 @@
-"""Sentences of the language's second edition that hold in every view, each in those that it speaks of."""
+"""Sentences about the language's second edition hold in each view that they concern."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def simulated(path: Path, *lines: str, loop: bool = False) -> list[dict[str, Any
     return [json.loads(line) for line in done.stdout.splitlines()]
 
 
-# `all` of nothing is true
+# `all` over an empty array is true
 
 SCANNER = """component Eye {
     outgoing message scan with identifier: "/scan", type: sensor_msgs/LaserScan
@@ -74,7 +74,7 @@ READS = "requirement go needs Eye.free provide go with Eye.seen"
 
 @pytest.mark.parametrize(("ranges", "free"), [([], True), ([0.5], False), ([2.0], True)])
 def test_all_of_nothing_is_true(tmp_path: Path, ranges: list[float], free: bool) -> None:
-    """Of what comes in, told to the supervisor, and of what the node keeps; in C++: tests/m2t/cpp/test_expressions."""
+    """It holds for received data, for the supervisor, and for stored data; in C++: tests/m2t/cpp/test_expressions."""
     path = written(tmp_path, EYE, READS)
     (answer,) = simulated(path, f'message_scan.u_response {{"value": {{"ranges": {json.dumps(ranges)}}}}}')
     assert answer["state"]["Eye.free"] is free
@@ -114,7 +114,10 @@ LAMP = """component Lamp {{
 
 @pytest.mark.parametrize("unit", DAYS)
 def test_a_time_is_1_ms_to_24_days_in_each_unit(tmp_path: Path, unit: str) -> None:
-    """The longest is a time of the plants, of `simulate`, of a node and of the C engine; one more is none."""
+    """The sct model has the shortest and the longest time; shorter and longer ones are errors.
+
+    The next tests wait for the longest time in `simulate`, in a node and in the C engine.
+    """
     for given, found in ((LEAST[unit], 1), (str(DAYS[unit]), DAYS["ms"])):
         model = supervised(tmp_path, LAMP.format(f"{given} {unit}"))
         assert [timer.milliseconds for _, timer in tree(model) if isinstance(timer, sct.Timer)] == [found]
@@ -190,7 +193,7 @@ provide lamp with if loud then speed else 0.0"""
 
 
 def test_the_c_supervisor_has_no_parameter_but_durations(tmp_path: Path) -> None:
-    """The C supervisor takes such durations in its struct, and has no other parameter."""
+    """The struct of the C supervisor has the parameters that are durations, and no others."""
     model = supervised(tmp_path, CLOCK)
     texts = "".join(engine.generate(transform(model), ControlLoop()).values())
     assert [duration.parameter for duration in model.durations] == ["pause"]
@@ -199,11 +202,11 @@ def test_the_c_supervisor_has_no_parameter_but_durations(tmp_path: Path) -> None
         assert name not in texts
 
 
-# `send: change` has no part in the layer
+# `send: change` has no effect in a layer
 
 
 def test_send_change_has_no_part_in_the_layer(tmp_path: Path) -> None:
-    """With it and without it, a layer is the same; a controller is not."""
+    """A layer is the same with and without it; a controller is not."""
     path = written(
         tmp_path,
         LAMP.format("1 s").replace("type: none", "type: boolean, send: change").replace("on request to lamp", ""),
@@ -224,7 +227,7 @@ def test_send_change_has_no_part_in_the_layer(tmp_path: Path) -> None:
 
 
 def test_abs_min_max_are_written_out_by_cases_in_cif(tmp_path: Path) -> None:
-    """Of variables that the supervisor knows: nothing is left that CIF's synthesis does not take."""
+    """The CIF has no function of the supervisor's variables that CIF's synthesis does not support."""
     counter = """component Counter {
         outgoing message tick with type: integer(-3..3)
         incoming message ring with type: none
@@ -252,7 +255,7 @@ def test_abs_min_max_are_written_out_by_cases_in_cif(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("word", ["all", "any", "count", "never", "always", "reachable", "each", "after"])
 def test_a_word_that_is_read_as_a_name_shows_its_construct(tmp_path: Path, word: str) -> None:
-    """A word of this page in a place where it can't stand gets a hint that shows the construct meant."""
+    """A word of the page at a wrong place gets a hint with the intended construct."""
     path = written(
         tmp_path, "component Base { incoming message go with type: none }", f"requirement go needs {word} > 1"
     )

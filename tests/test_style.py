@@ -1,4 +1,4 @@
-"""The code is formatted, linted and typed, by the settings in pyproject.toml."""
+"""The code is formatted, linted and typed by the settings in pyproject.toml."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-// Builds the page into the Python package that serves it, with the licences of the packages that are in it.
+// Builds the page into the Python package that serves it, with the licenses of the bundled packages.
 import { build } from "esbuild";
 import { copyFile, mkdir, readdir, readFile, writeFile } from "node:fs/promises";
 import { resolve } from "node:path";
@@ -22,7 +22,7 @@ for (const name of ["index.html", "page.css", "icon.svg"]) {
 }
 await writeFile(`${target}LICENSES.txt`, await licences(Object.keys(metafile.inputs)));
 
-/** The packages whose files are in the build, each with its licence. Fails where one has none. */
+/** The bundled packages with their licenses. Throws an error if a package has none. */
 async function licences(inputs) {
   const folders = new Set(inputs.map((input) => resolve(input).match(/^.*\/node_modules\/(?:@[^/]+\/)?[^/]+/)?.[0]).filter(Boolean));
   const texts = ["The page of `robosc view` is a part of RoboSC, under the licence of RoboSC. It contains these packages, unchanged but for their layout.\n"];

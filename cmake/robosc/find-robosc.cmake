@@ -1,5 +1,5 @@
-# Finds the program robosc, which comes by pip, and what belongs to it for CMake, so that both are of one version.
-# -DROBOSC_EXECUTABLE names the program, or -DROBOSC_PYTHON the Python that has it. The three packages have this same text.
+# Finds the program robosc, which pip installs, and its CMake code, so that both have the same version.
+# -DROBOSC_EXECUTABLE sets the program, or -DROBOSC_PYTHON its Python. The three packages contain identical copies.
 find_program(ROBOSC_EXECUTABLE robosc DOC "The program robosc: pip install robosc")
 if(ROBOSC_PYTHON)
   set(ROBOSC_COMMAND "${ROBOSC_PYTHON}" -m robosc)

@@ -1,12 +1,12 @@
-# What the packages robosc, ament_cmake_robosc and catkin_robosc share: a model becomes code when CMake configures, since
-# what the code depends on follows from the model. It comes with the program that it calls, ROBOSC_COMMAND.
+# Common code of the packages robosc, ament_cmake_robosc and catkin_robosc. CMake generates code from a model when it
+# configures, because the dependencies of the code follow from the model. This file is a part of ROBOSC_COMMAND.
 include_guard()
 
 # robosc_generate(<variable> <target> <into> <model> [CONFIG <file>] [LIBRARY_PATH <folder>...]
 #                 [INTERFACE_PATH <folder>...] [LAYER] [TESTS])
 #
-# Generates a model for a target of `robosc transform` into a package, or into a target of CMake. The variable gets the
-# file to include. Files whose text stays the same are not touched: what is compiled from them is not compiled anew.
+# Generates a model for a target of `robosc transform` into a package, or into a CMake target. Sets the variable to the
+# file to include. Leaves unchanged files untouched, so that they are not compiled again.
 function(robosc_generate variable target into model)
   cmake_parse_arguments(PARSE_ARGV 4 arg "LAYER;TESTS" "CONFIG" "LIBRARY_PATH;INTERFACE_PATH")
   if(arg_UNPARSED_ARGUMENTS OR arg_KEYWORDS_MISSING_VALUES)
@@ -40,7 +40,7 @@ function(robosc_generate variable target into model)
     OUTPUT_VARIABLE findings
     ERROR_VARIABLE remarks
     RESULT_VARIABLE status)
-  # As they are: an error of CMake would be broken into other lines.
+  # Printed unchanged: CMake would wrap the lines of an error.
   string(STRIP "${findings}" findings)
   string(STRIP "${remarks}" remarks)
   if(findings)
@@ -69,11 +69,11 @@ endfunction()
 
 # robosc_require_declared([DEPENDS <package>...] [BUILD_DEPENDS ...] [EXEC_DEPENDS ...] [TEST_DEPENDS ...])
 #
-# Ends with an error where the package.xml of this project lacks one of them: without it, a workspace is built in the
-# wrong order now and then. After catkin_package_xml() or ament_package_xml().
+# Reports an error if the package.xml of this project lacks one of the packages. Without it, a workspace may be built in
+# the wrong order. Call it after catkin_package_xml() or ament_package_xml().
 function(robosc_require_declared)
   cmake_parse_arguments(PARSE_ARGV 0 needed "" "" "DEPENDS;BUILD_DEPENDS;EXEC_DEPENDS;TEST_DEPENDS")
-  # Of catkin these are called RUN_DEPENDS.
+  # catkin calls these RUN_DEPENDS.
   set(declared_EXEC ${PROJECT_NAME} ${${PROJECT_NAME}_EXEC_DEPENDS} ${${PROJECT_NAME}_RUN_DEPENDS})
   set(declared_BUILD ${PROJECT_NAME} ${${PROJECT_NAME}_BUILD_DEPENDS})
   set(declared_TEST ${${PROJECT_NAME}_TEST_DEPENDS} ${declared_BUILD} ${declared_EXEC})

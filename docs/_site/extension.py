@@ -1,4 +1,4 @@
-"""What the site needs beyond Sphinx's own: links to folders, Mermaid without a network, an entry at its root."""
+"""Extensions of the site: links to folders, Mermaid without a network, an entry page at its root."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
 REPOSITORY = "https://github.com/robosc/robosc/tree/main"
-#: The browser's part of Mermaid, as `npm ci` puts it into `web/`.
+#: The part of Mermaid for the browser, as `npm ci` installs it in `web/`.
 MERMAID = Path("web/node_modules/@mermaid-js/tiny/dist/mermaid.tiny.js")
 ENTRY = """<!doctype html>
 <html lang="en"><meta charset="utf-8"><title>RoboSC</title>
@@ -24,12 +24,12 @@ ENTRY = """<!doctype html>
 
 
 class Mermaid(SphinxDirective):
-    """A fence ```mermaid: the browser draws it; without the script it stays the text that it is."""
+    """A fence ```mermaid that the browser draws. Without the script it stays text."""
 
     has_content = True
 
     def run(self) -> list[nodes.Node]:
-        """The text, in a frame that the script looks for."""
+        """Return the text in a frame that the script searches for."""
         text = "\n".join(self.content)
         drawing = nodes.literal_block(text, text, classes=["mermaid-source"])
         drawing["language"] = "none"
@@ -37,7 +37,7 @@ class Mermaid(SphinxDirective):
 
 
 def link_folders(app: Sphinx, doctree: nodes.document) -> None:
-    """Links to a folder lead to the page in it, or, where it has none, to the folder in the repository."""
+    """Let a link to a folder lead to its page or, without a page, to the folder in the repository."""
     here = Path(app.env.doc2path(app.env.docname)).parent
     for link in list(doctree.findall(pending_xref)):
         target = (here / str(link["reftarget"])).resolve()
@@ -55,7 +55,7 @@ def link_folders(app: Sphinx, doctree: nodes.document) -> None:
 def add_script(
     app: Sphinx, _page: str, _template: str, _context: dict[str, Any], doctree: nodes.document | None
 ) -> None:
-    """The scripts that draw Mermaid (3 MB), where they are installed, in the pages that have something to draw."""
+    """Add the scripts that draw Mermaid (3 MB), if they are installed, to pages with drawings."""
     drawings = doctree.findall(nodes.container) if doctree is not None else ()
     if (app.srcdir / MERMAID).is_file() and any("mermaid-drawing" in drawing["classes"] for drawing in drawings):
         app.add_js_file("mermaid.tiny.js", loading_method="defer")
@@ -63,7 +63,7 @@ def add_script(
 
 
 def finish(app: Sphinx, exception: Exception | None) -> None:
-    """Puts the entry page and Mermaid's script beside what was built."""
+    """Write the entry page and Mermaid's script into the built site."""
     if exception is not None or app.builder.format != "html":
         return
     (Path(app.outdir) / "index.html").write_text(ENTRY, encoding="utf-8")
@@ -73,7 +73,7 @@ def finish(app: Sphinx, exception: Exception | None) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Called by Sphinx."""
+    """Connect the extensions. Sphinx calls this function."""
     app.add_directive("mermaid", Mermaid)
     app.add_lexer("cif", TextLexer)  # Pygments has none
     app.connect("doctree-read", link_folders)

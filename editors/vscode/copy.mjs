@@ -1,4 +1,4 @@
-// What the package takes from the rest of the project as it is there: the configuration's schema, the licence.
+// Copies files of the project into the package: the schema of the configuration, and the license.
 import { copyFileSync, mkdirSync } from "node:fs";
 
 mkdirSync("schemas", { recursive: true });

@@ -1,5 +1,5 @@
-"""Robots to run controllers against: one plane, seen from above, in which each of the scenarios takes place.
+"""Simulated robots for controllers: one plane, seen from above, in which each scenario takes place.
 
-Pure Python and deterministic: the same commands at the same times give the same world. Lengths are metres, angles
-radians counter-clockwise, times seconds; pixels are counted to the right of the image's centre.
+Pure Python and deterministic: the same commands at the same times result in the same world. Lengths are in meters,
+angles in radians counter-clockwise, times in seconds. Pixels count to the right of the image's center.
 """

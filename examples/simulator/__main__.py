@@ -1,9 +1,9 @@
-"""`python examples/simulator --scenario NAME`: the simulator as a program, wherever it is started."""
+"""The simulator as a program that you can start from any folder: `python examples/simulator --scenario NAME`."""
 
 import sys
 from pathlib import Path
 
-# What runs is a folder, not a package: its own folder gives way to the one above it.
+# Python runs this folder, not a package: its parent replaces it on the path.
 sys.path[0] = str(Path(__file__).resolve().parents[1])
 
 from simulator.command import main  # noqa: E402

@@ -1,4 +1,4 @@
-"""A camera, reduced to what the software behind it publishes: lines, balls, goals, signs, people."""
+"""A camera, reduced to the topics of its software: lines, balls, goals, signs, people."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from .devices import EMPTY, NUMBER, Device, header
 from .geometry import clear
 from .world import Sight
 
-#: Pixels of an image, and what it shows: the Raspberry Pi's camera.
+#: The pixels of an image and its angle of view: the Raspberry Pi's camera.
 WIDTH, HEIGHT, OPENING = 640, 480, math.radians(62.2)
 FOCAL = WIDTH / 2 / math.tan(OPENING / 2)
-#: How far before the robot's centre the camera is.
+#: The distance of the camera before the robot's center.
 MOUNT = 0.07
 
 
 def place(world, thing, walls, reach=math.inf):
-    """Where something is in the image: the pixels at which it begins and ends, cut off at the image's edges.
+    """Return the left and right pixel of a thing in the image, clipped at the image's edges.
 
-    None where its middle is not in the image, is further than `reach`, or is hidden by one of the walls.
+    None if its middle is outside the image, further than `reach`, or hidden by one of the walls.
     """
     eye = world.pose.ahead(MOUNT)
     ahead, left = world.pose.towards(thing.x, thing.y)
@@ -32,24 +32,24 @@ def place(world, thing, walls, reach=math.inf):
 
 
 def right_of_centre(seen):
-    """How many pixels right of the image's centre something is."""
+    """Return the distance of a thing to the right of the image's center in pixels."""
     return sum(seen) / 2 - WIDTH / 2
 
 
 class LineDetector(Device):
-    """Looks at the floor before the robot, and says how far right the middle of all that is yellow is."""
+    """A detector that measures how far right the middle of the yellow line before the robot is."""
 
     period = 0.06
     says = {"/correction": NUMBER, "/no_line": EMPTY}  # noqa: RUF012
-    #: The part of the floor that it sees: this far ahead, so far before and behind that, one metre wide.
+    #: The visible part of the floor: its distance, its depth to both sides, and its half width.
     ahead, depth, half_width = 0.2, 0.06, 0.5
 
     def __init__(self, noise):
-        """`noise` gives an error in pixels."""
+        """Create the detector. `noise` returns an error in pixels."""
         self._noise = noise
 
     def say(self, world):
-        """A correction, or that there is no line."""
+        """Return a correction, or a message that there is no line."""
         places = (world.pose.towards(*point) for point in world.line)
         seen = [left for ahead, left in places if self._sees(ahead, left)]
         if not seen or world.line_covered:
@@ -62,7 +62,7 @@ class LineDetector(Device):
 
 
 class BallDetector(Device):
-    """Says where something red is, whether it slips to a side, and when it is so large that it touches the robot."""
+    """A detector of a red ball: its place, whether it slips to a side, and whether it touches the robot."""
 
     says = {  # noqa: RUF012
         "/ball_correction": NUMBER,
@@ -71,15 +71,15 @@ class BallDetector(Device):
         "/no_adjustment": EMPTY,
         "/ball_front_check": EMPTY,
     }
-    #: Pixels off the centre from which on a ball is lost soon; the part of the image that a ball in front fills.
+    #: Pixels off the center at which a ball will soon be lost; the share of the image that a touching ball fills.
     aside, in_front = 90, 0.5
 
     def __init__(self, noise):
-        """`noise` gives an error in pixels."""
+        """Create the detector. `noise` returns an error in pixels."""
         self._noise = noise
 
     def say(self, world):
-        """What it sees of the ball."""
+        """Return the messages about the ball."""
         seen = place(world, world.ball, world.walls)
         if seen is None:
             return [("/no_ball", {})]
@@ -92,16 +92,16 @@ class BallDetector(Device):
 
 
 class GoalDetector(Device):
-    """Says where something green is: the goal's back wall."""
+    """A detector of something green: the goal's back wall."""
 
     says = {"/goal_correction": NUMBER, "/no_goal": EMPTY}  # noqa: RUF012
 
     def __init__(self, noise):
-        """`noise` gives an error in pixels."""
+        """Create the detector. `noise` returns an error in pixels."""
         self._noise = noise
 
     def say(self, world):
-        """What it sees of the goal."""
+        """Return the messages about the goal."""
         _, y1, x2, y2 = world.goal
         seen = place(world, Sight("goal", x2 - 0.01, (y1 + y2) / 2, y2 - y1), world.walls)
         if seen is None:
@@ -110,7 +110,7 @@ class GoalDetector(Device):
 
 
 class ObjectDetector(Device):
-    """Darknet: what it has a name for, the surest first; while it sees nothing it publishes no boxes."""
+    """Darknet: the things that it can name, the most certain first. Without any it publishes no boxes."""
 
     period = 0.2
     says = {  # noqa: RUF012
@@ -120,7 +120,7 @@ class ObjectDetector(Device):
     reach = 2.2
 
     def say(self, world):
-        """How many things it sees, and which."""
+        """Return the number of visible things, and their boxes."""
         boxes = []
         for visible in sorted(world.sights, key=lambda sight: -sight.certainty):
             seen = place(world, visible, world.walls, self.reach)
@@ -134,13 +134,13 @@ class ObjectDetector(Device):
 
 
 class PersonDetector(Device):
-    """YOLOX, set to find people: a list of boxes for each image, empty where nobody is seen."""
+    """YOLOX, configured for people: a list of boxes for each image, empty without a visible person."""
 
     says = {"/bounding_boxes": "bboxes_ex_msgs/BoundingBoxes"}  # noqa: RUF012
     reach = 4.0
 
     def say(self, world):
-        """Where the person is."""
+        """Return the box of the person."""
         person = world.person
         seen = place(world, person, [*world.walls, *world.pillars], self.reach)
         boxes = [] if seen is None else [{**box("person", 0.9, seen), "img_width": WIDTH, "img_height": HEIGHT}]
@@ -148,7 +148,7 @@ class PersonDetector(Device):
 
 
 def box(name, certainty, seen):
-    """A box around something; how high it is in the image nobody asks."""
+    """Return a box around a thing. Its height in the image is arbitrary, because no example uses it."""
     left, right = seen
     return {
         "class_id": name,

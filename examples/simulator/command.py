@@ -1,5 +1,5 @@
 """The command line of the simulator."""
-# ruff: noqa: PLC0415  # what is asked for is loaded: none of the middlewares, nor robosc, is there everywhere
+# ruff: noqa: PLC0415  # loads only the requested one of the middlewares and robosc, which may be missing
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .simulation import Simulation
 
 
 def main(arguments):
-    """Plays a scenario; the exit status is 0 where its goal was reached, 2 where there was nobody to play it with."""
+    """Play a scenario. Return the exit status: 0 if its goal was reached, 2 without a controller."""
     options = _parser().parse_args(arguments)
     if options.pictures:
         return _draw_all(Path(options.pictures))

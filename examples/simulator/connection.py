@@ -1,4 +1,4 @@
-"""A simulation on the topics of a middleware; `ros1` and `ros2` bring them."""
+"""A simulation on the topics of a middleware. `ros1` and `ros2` implement it."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from abc import ABC, abstractmethod
 
 from .simulation import Answer, GoalNews
 
-#: What the clocks of ROS show at the start: a clock that shows 0 counts as none.
+#: The initial time on the clocks of ROS: a clock at 0 counts as none.
 EPOCH = 1.0
 
 
 class Connection(ABC):
-    """Topics and actions of a simulation. What comes in waits until it is received: all happens in one thread.
+    """Topics and actions of a simulation. Incoming data waits until `receive`, so that one thread handles all of it.
 
-    `answered`: whether a controller ever sent something; `last_heard` is when, in the world's time, it last did.
+    `answered`: whether a controller has sent anything. `last_heard`: the time of its last data, in the world's time.
     """
 
     def __init__(self, simulation):
@@ -25,16 +25,16 @@ class Connection(ABC):
         self._inbox = queue.SimpleQueue()
         self._calls = []
         self._ended = False
-        #: How often what we have sent is still to come back to ourselves.
+        #: The number of own messages on each topic that will come back.
         self._echoes = dict.fromkeys(set(simulation.says) & set(simulation.hears), 0)
 
     def waits_for(self):
-        """Topics that nobody listens to yet, the simulation's own devices aside."""
+        """Return the topics without a listener, apart from the simulation's own devices."""
         needed = (say for say in self.simulation.says if say not in self.simulation.scenario.unheard)
         return [topic for topic in needed if self.listeners(topic) <= (topic in self._echoes)]
 
     def send(self, item):
-        """Sends a message, an answer or news of a goal."""
+        """Send a message, an answer or news of a goal."""
         if isinstance(item, Answer):
             item.call.put(item.data)
             return
@@ -46,11 +46,11 @@ class Connection(ABC):
         self.publish(item.topic, item.data)
 
     def heard(self, topic, data):
-        """Keeps a message that has come in; from any thread."""
+        """Queue a received message. Any thread may call this."""
         self._inbox.put(lambda: self._receive(topic, data))
 
     def asked(self, service, data):
-        """What the simulation answers to a call of a service; from any thread, which waits for it."""
+        """Call a service of the simulation and wait for its answer. Any thread may call this."""
         call = queue.SimpleQueue()
         self._calls.append(call)
         if self._ended:
@@ -59,21 +59,21 @@ class Connection(ABC):
         return call.get()
 
     def hang_up(self):
-        """Answers all calls with nothing: nobody else will."""
+        """Answer all calls with empty data, because no other answer will follow."""
         self._ended = True
         for call in self._calls:
             call.put({})
 
     def alive(self):
-        """Takes it that the controller is there; from any thread."""
+        """Record that the controller is running. Any thread may call this."""
         self.later(self._lives)
 
     def later(self, call):
-        """Keeps something to be done when things are received; from any thread."""
+        """Queue a function for `receive`. Any thread may call this."""
         self._inbox.put(call)
 
     def receive(self, seconds):
-        """Waits so long, in real time, and takes what has come in."""
+        """Wait this time, in real time, and handle incoming data."""
         until = time.monotonic() + seconds
         while True:
             self.spin(max(0.0, until - time.monotonic()))
@@ -95,31 +95,31 @@ class Connection(ABC):
 
     @abstractmethod
     def listeners(self, topic):
-        """How many listen to a topic."""
+        """Return the number of listeners of a topic."""
 
     @abstractmethod
     def clock(self, seconds):
-        """Tells everyone the time."""
+        """Publish the time."""
 
     @abstractmethod
     def publish(self, topic, data):
-        """Sends a message."""
+        """Send a message."""
 
     @abstractmethod
     def tell(self, news):
-        """Sends news of a goal to whoever set it."""
+        """Send news of a goal to its client."""
 
     @abstractmethod
     def spin(self, seconds):
-        """Lets the middleware work until something comes in, at most so long."""
+        """Let the middleware work until something arrives, at most this time."""
 
     @abstractmethod
     def close(self):
-        """Ends the connection."""
+        """End the connection."""
 
 
 class UnknownTypeError(Exception):
-    """A package of ROS types is not there."""
+    """A missing package of ROS types."""
 
     def __init__(self, kind):
         package = kind.split("/")[0]

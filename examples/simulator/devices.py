@@ -1,4 +1,4 @@
-"""What a device is: it hears commands, acts on the world, and says what it senses. And the plain ones of them."""
+"""Devices, which receive commands, act on the world and publish measurements. The simple ones are here."""
 
 from __future__ import annotations
 
@@ -14,60 +14,60 @@ STOP, GO_ON = "/emergency_stop", "/continue"
 
 
 class Device:
-    """Something with topics.
+    """A device with topics.
 
-    `says` and `hears` map its topics to ROS types, `answers` its services, `serves` its actions; data is a mapping from
-    fields to values. `say` is asked once a `period`. A device with services has `given`, a list that it fills with
-    answers, each (service, call, data).
+    `says` and `hears` map its topics to ROS types, `answers` its services, `serves` its actions. Data is a mapping from
+    fields to values. The simulation calls `say` once per `period`. A device with services has a list `given`, to which
+    it adds answers as (service, call, data).
     """
 
     period = 0.1
-    says: dict[str, str] = {}  # noqa: RUF012  # a table, never changed
+    says: dict[str, str] = {}  # noqa: RUF012  # a constant table
     hears: dict[str, str] = {}  # noqa: RUF012
     answers: dict[str, str] = {}  # noqa: RUF012
     serves: dict[str, str] = {}  # noqa: RUF012
 
     def ask(self, world, service, call):
-        """Takes a call of one of its services, to be answered later."""
+        """Accept a call of one of the device's services, to be answered later."""
 
     def hear(self, world, topic, data):
-        """Takes a message from one of the topics that it hears."""
+        """Handle a message on one of the device's subscribed topics."""
 
     def act(self, world):
-        """Moves what it moves, before each step of the world."""
+        """Move the device's parts, before each step of the world."""
 
     def say(self, world):
-        """What it sends now: topics with data."""
+        """Return the messages to send now: topics with data."""
         del world
         return []
 
     def news(self):
-        """What has happened to it since it was last asked, in words; for the picture."""
+        """Return descriptions of the events since the last call, for the picture."""
         return []
 
     def areas(self):
-        """The parts of the floor that it has changed; for the picture."""
+        """Return the areas of the floor that the device has changed, for the picture."""
         return ()
 
 
 def header(world, frame):
-    """A header with the world's time."""
+    """Return a header with the world's time."""
     return {"stamp": world.time, "frame_id": frame}
 
 
 class Wheels(Device):
-    """Drives at the velocity that it was last sent."""
+    """Wheels that drive at the last received velocity."""
 
     hears = {"/cmd_vel": TWIST}  # noqa: RUF012
 
     def hear(self, world, topic, data):
-        """Takes a velocity."""
+        """Set the velocity."""
         del topic
         world.drive.command(data["linear"]["x"], data["angular"]["z"])
 
 
 class Steps(Device):
-    """Drives at each velocity for a tenth of a second (thesis section 6.3.9)."""
+    """Wheels that drive at each velocity for a tenth of a second (thesis section 6.3.9)."""
 
     hears = {"/simple_movement": TWIST}  # noqa: RUF012
     length = 0.1
@@ -76,25 +76,25 @@ class Steps(Device):
         self._until = 0.0
 
     def hear(self, world, topic, data):
-        """Takes a step."""
+        """Begin a step."""
         del topic
         world.drive.command(data["linear"]["x"], data["angular"]["z"])
         self._until = world.time + self.length
 
     def act(self, world):
-        """Stands when the step is over."""
+        """Stop at the end of the step."""
         if world.time >= self._until - STEP / 2:
             world.drive.command(0.0, 0.0)
 
 
 class Odometry(Device):
-    """Says where the wheels' encoders say that the robot is."""
+    """The position of the robot according to the encoders of its wheels."""
 
     period = 0.1
     says = {"/odom": "nav_msgs/Odometry"}  # noqa: RUF012
 
     def say(self, world):
-        """A pose in the frame of the start, and the speed."""
+        """Return a pose in the frame of the start, and the speed."""
         pose, (linear, angular) = world.drive.odometry, world.drive.speed
         data = {
             "header": header(world, "odom"),
@@ -106,16 +106,16 @@ class Odometry(Device):
 
 
 class Lidar(Device):
-    """360 rays, one a degree, counter-clockwise from straight ahead; one that meets nothing is infinite (REP 117)."""
+    """360 rays, one per degree, counter-clockwise from straight ahead. A ray without a hit is infinite (REP 117)."""
 
     says = {"/scan": "sensor_msgs/LaserScan"}  # noqa: RUF012
 
     def __init__(self, noise):
-        """`noise` gives the error of each ray, in metres."""
+        """Create the lidar. `noise` returns the error of each ray in meters."""
         self._noise = noise
 
     def say(self, world):
-        """A scan."""
+        """Return a scan."""
         seen = cast(world.pose, world.seen_by_lidar, RAYS, RANGE_MAX)
         data = {
             "header": header(world, "base_scan"),
@@ -132,7 +132,7 @@ class Lidar(Device):
 
 
 class Button(Device):
-    """An emergency stop, and beside it a button to go on: the first repeats whether it is pressed, or is `silent`."""
+    """An emergency stop that repeats whether it is pressed, or is `silent`, and a button to continue."""
 
     says = {STOP: BOOLEAN, GO_ON: EMPTY}  # noqa: RUF012
 
@@ -140,16 +140,16 @@ class Button(Device):
         self.pressed = self.silent = False
 
     def say(self, world):
-        """Whether it is pressed."""
+        """Return whether the emergency stop is pressed."""
         del world
         return [] if self.silent else [(STOP, {"data": self.pressed})]
 
 
 class Rotator(Device):
-    """Turns the robot by a number of degrees when asked to and says when it has (thesis section 6.3.5).
+    """A device that turns the robot by a number of degrees on request and reports the end (thesis section 6.3.5).
 
-    A turn ends where the encoders say so. It gives up, and reports nothing, while the emergency stop is pressed or has
-    been silent for `patience` seconds. `by` are the degrees of a turn whose message holds none.
+    The encoders determine the end of a turn. The device interrupts a turn, without a report, while the emergency stop
+    is pressed or has been silent for `patience` seconds. `by` is the number of degrees for messages without a number.
     """
 
     period = STEP
@@ -166,11 +166,11 @@ class Rotator(Device):
 
     @property
     def turning(self):
-        """Whether a turn is under way."""
+        """Whether the device is turning."""
         return self._target is not None
 
     def hear(self, world, topic, data):
-        """Begins a turn, or gives up."""
+        """Begin a turn, or interrupt it."""
         if topic == STOP:
             self._button_heard = world.time
             if data["data"]:
@@ -182,7 +182,7 @@ class Rotator(Device):
         self._news.append("turns left" if left else "turns right")
 
     def act(self, world):
-        """Turns on, the slower the nearer the end."""
+        """Continue the turn, more slowly towards its end."""
         if world.time - self._button_heard > self.patience:
             self._give_up(world)
         if self._target is None:
@@ -201,19 +201,19 @@ class Rotator(Device):
             self._news.append("a turn is given up")
 
     def say(self, world):
-        """That it is done."""
+        """Return the report of a finished turn."""
         del world
         done, self._done = self._done, False
         return [("/rotate_done", {})] if done else []
 
     def news(self):
-        """Turns."""
+        """Return descriptions of turns."""
         news, self._news = self._news, []
         return news
 
 
 def as_pose(pose):
-    """A pose as ROS has it."""
+    """Return a pose in the form of ROS."""
     return {
         "position": {"x": pose.x, "y": pose.y},
         "orientation": {"z": math.sin(pose.heading / 2), "w": math.cos(pose.heading / 2)},

@@ -1,4 +1,4 @@
-"""Two driven wheels, and what their encoders say: a TurtleBot3 Waffle Pi, where nothing else is said."""
+"""Two driven wheels with encoders, by default those of a TurtleBot3 Waffle Pi."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from .geometry import Pose
 
 MAX_LINEAR, MAX_ANGULAR = 0.26, 1.82
 TRACK, WHEEL_RADIUS = 0.287, 0.033
-#: How fast a wheel's speed changes, in m/s².
+#: The acceleration of a wheel in m/s².
 ACCELERATION = 2.0
 ENCODER_STEPS = 4096
 
@@ -16,8 +16,8 @@ ENCODER_STEPS = 4096
 class Drive:
     """Wheels that follow commanded speeds as fast as they can, and count their turns.
 
-    `pose` is where the robot is, `odometry` where the encoders say it is, from where it started. They differ by what
-    an encoder can't see: less than one of its steps, and wheels that turn while the robot is held.
+    `pose` is the robot's real pose, `odometry` its pose according to the encoders, relative to the start. They differ
+    because encoders cannot measure less than one of their steps, nor that the robot is held while its wheels turn.
     """
 
     def __init__(self, pose, fastest=MAX_LINEAR, acceleration=ACCELERATION):
@@ -31,18 +31,18 @@ class Drive:
 
     @property
     def speed(self):
-        """The linear and the angular speed at which it moves now."""
+        """The current linear and angular speed."""
         left, right = self._speeds
         return (left + right) / 2, (right - left) / TRACK
 
     def command(self, linear, angular):
-        """The speeds to hold from now on, within what the motors can; what is no number is no command."""
+        """Set the speeds from now on, within the limits of the motors. Ignore commands that are not finite."""
         if math.isfinite(linear) and math.isfinite(angular):
             self.linear = max(-self._fastest, min(self._fastest, linear))
             self.angular = max(-MAX_ANGULAR, min(MAX_ANGULAR, angular))
 
     def step(self, seconds):
-        """Turns the wheels for so long; the pose that they lead to. Whoever finds it free assigns it to `pose`."""
+        """Turn the wheels for this time. Return the resulting pose; the caller assigns it to `pose` if it is free."""
         ways = []
         for wheel, side in enumerate((-1, 1)):
             wanted = self.linear + side * self.angular * TRACK / 2
@@ -64,9 +64,9 @@ class Drive:
 
 
 def rolled(pose, left, right):
-    """Where a robot is after its wheels have rolled so far: an arc, exactly."""
+    """Return the pose of a robot after its wheels have rolled these distances, exactly along an arc."""
     way, turn = (left + right) / 2, (right - left) / TRACK
-    # The chord of the arc: sin(a)/a without a division by nothing.
+    # The chord of the arc: sin(a)/a, without a division by zero.
     chord = way * (math.sin(turn / 2) / (turn / 2) if abs(turn) > 1e-9 else 1.0)
     middle = pose.heading + turn / 2
     return Pose(pose.x + chord * math.cos(middle), pose.y + chord * math.sin(middle), pose.heading + turn)

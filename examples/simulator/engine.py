@@ -1,6 +1,6 @@
-"""A scenario without any middleware: the controller, as `robosc run` runs it, and the world in one process.
+"""A scenario without middleware: the world and the controller, as of `robosc run`, in one process.
 
-Needs robosc. All that is sent arrives at once, so that every run of a scenario is the same.
+Needs robosc. All messages arrive at once, so that all runs of a scenario are identical.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from .simulation import Answer, GoalNews
 EXAMPLES = Path(__file__).resolve().parents[1]
 OUTCOMES = {"succeeded": Outcome.SUCCEEDED, "canceled": Outcome.CANCELED, "aborted": Outcome.ABORTED}
 ZERO = {"x": 0.0, "y": 0.0, "z": 0.0}
-#: Fields that are there also if nobody sets them.
+#: Fields with defaults.
 POSE = {"header": {"frame_id": ""}, "pose": {"position": ZERO, "orientation": {**ZERO, "w": 1.0}}}
 DEFAULTS = {
     "Twist": {"linear": ZERO, "angular": ZERO},
@@ -38,9 +38,9 @@ DEFAULTS = {
 
 
 def play(simulation, until, models=None, kind=Controller, quiet=False):
-    """Lets a scenario take place until `until()` holds; what the controller has logged.
+    """Play a scenario until `until()` holds. Return the controller's log.
 
-    `models` take the place of the scenario's own, `kind` that of the controller.
+    `models` replace the scenario's own models, `kind` replaces the class of the controller.
     """
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "events.jsonl"
@@ -57,12 +57,12 @@ def play(simulation, until, models=None, kind=Controller, quiet=False):
 
 
 def model_of(scenario):
-    """The file with a scenario's model."""
+    """Return the file with a scenario's model."""
     return EXAMPLES / scenario.name / f"{scenario.name}.rscd"
 
 
 def load(path):
-    """All models of the robot in a file, with its supervisor."""
+    """Return all models of the robot in a file, with its supervisor."""
     robot = robosc.load(path)
     plants = robosc.to_sct(robot)
     robosc.synthesize(plants)
@@ -70,7 +70,7 @@ def load(path):
 
 
 def connected(simulation, models, log, kind=Controller):
-    """What stands between the world's sensors and its wheels: a controller, or one behind its layer."""
+    """Return the controller of the world, with its layer if the scenario has one."""
     scenario = simulation.scenario
     if scenario.controller is None:
         return Node(simulation, models, config_beside(model_of(scenario)), log, kind)
@@ -78,12 +78,12 @@ def connected(simulation, models, log, kind=Controller):
 
 
 def config_beside(model):
-    """The configuration of a model."""
+    """Return the configuration of a model."""
     return config.read(model.parent / config.FILE_NAME)
 
 
 class Node:
-    """A controller that is connected to a simulation and to nothing else."""
+    """A controller that is connected only to a simulation."""
 
     def __init__(self, simulation, models, configuration, log, kind=Controller):
         graph = models.rosgraph
@@ -98,7 +98,7 @@ class Node:
         self._controller.start()
 
     def take(self, item):
-        """Takes a message, an answer or news of a goal."""
+        """Handle a message, an answer or news of a goal."""
         if isinstance(item, (Answer, GoalNews)):
             self._port.take(item)
         elif item.topic in self._subscriptions:
@@ -106,17 +106,17 @@ class Node:
             self._event_loop.post(lambda: self._controller.receive(subscription, message))
 
     def work(self):
-        """Does all that is due now."""
+        """Run all functions that are due now."""
         while self._event_loop.run_pending() == 0.0:
             pass
 
     def flush(self):
-        """Waits until all that has happened is in the log."""
+        """Wait until the log contains all events."""
         self._controller.flush_log()
 
 
 class SupervisedNode:
-    """A controller that reaches the world, and is reached by it, through its supervisory layer only."""
+    """A controller that is connected to the world only through its supervisory layer."""
 
     def __init__(self, simulation, models, log):
         scenario, graph = simulation.scenario, models.rosgraph
@@ -141,28 +141,28 @@ class SupervisedNode:
         return self._world.time
 
     def take(self, item):
-        """Takes a message: first to the layer, then to the controller."""
+        """Deliver a message first to the layer, then to the controller."""
         if item.topic in self._subscriptions:
             self._layer.receive(self._subscriptions[item.topic], Received(item.data))
             self._controller.take(item)
 
     def receive(self, topic, data):
-        """Takes what the controller sends, and lets it pass to the world or not."""
+        """Handle a command of the controller, and forward it to the world if the layer permits it."""
         if self._layer.passes(self._sendings[topic]):
             self._world.receive(topic, data)
 
     def work(self):
-        """Does all that is due now."""
+        """Run all functions that are due now."""
         self._event_loop.run_pending()
         self._controller.work()
 
     def flush(self):
-        """Waits until all that has happened is in the log."""
+        """Wait until the log contains all events."""
         self._layer.flush_log()
 
 
 class WorldPort:
-    """What a controller asks of its middleware, answered by the simulation."""
+    """The middleware of a controller, implemented by the simulation."""
 
     def __init__(self, simulation):
         self._simulation = simulation
@@ -170,43 +170,43 @@ class WorldPort:
         self._goals = {}
 
     def now(self):
-        """The world's time."""
+        """Return the world's time."""
         return self._simulation.time
 
     def hear(self):
-        """Nothing waits: all that is sent has arrived."""
+        """Do nothing: all messages have arrived."""
 
     def create(self, interface, part):
-        """Data to be filled."""
+        """Return data to be filled."""
         del part
         return Sent(json.loads(json.dumps(DEFAULTS.get(interface.type, {}))))
 
     def unset(self, interface, part, path):
-        """An object of which nothing is known yet."""
+        """Return an object without any known fields."""
         del path
         return self.create(interface, part)
 
     def stamp(self, message, frame):
-        """Headers need no time here."""
+        """Do nothing: headers need no time here."""
 
     def wire_types(self, message):
-        """The types of a message's fields, as their values are; of those that are not there yet doubles."""
+        """Return the types of a message's fields, derived from their values. Missing fields are doubles."""
         return _Types(message)
 
     def publish(self, publisher, message):
-        """Sends a message to the world."""
+        """Send a message to the world."""
         self._simulation.receive(publisher.topic, _plain(message))
 
     def is_served(self, client):
-        """Whether the world has such a server."""
+        """Return whether the world has this server."""
         return client.identifier in self._simulation.serves or client.identifier in self._simulation.answers
 
     def call(self, client, request, handlers):
-        """Calls a service of the world."""
+        """Call a service of the world."""
         self._simulation.ask(client.identifier, handlers, _plain(request))
 
     def send_goal(self, client, goal, handlers):
-        """Sends a goal to the world."""
+        """Send a goal to the world."""
         number = next(self._numbers)
         self._goals[number] = handlers
         if self._simulation.start(client.identifier, number, _plain(goal)):
@@ -216,7 +216,7 @@ class WorldPort:
         return Goal(self._simulation, client.identifier, number, handlers)
 
     def take(self, news):
-        """Hands on an answer or news of a goal."""
+        """Deliver an answer or news of a goal."""
         if isinstance(news, Answer):
             news.call.answered(Received(news.data))
             return
@@ -227,22 +227,22 @@ class WorldPort:
             handlers.ended(OUTCOMES[news.what], Received(news.data), "")
 
     def publish_report(self, name, text):
-        """Nobody listens."""
+        """Do nothing: there are no listeners."""
 
     def report_listeners(self, name):
-        """Nobody."""
+        """Return 0: there are no listeners."""
         del name
         return 0
 
     def publish_statuses(self, statuses):
-        """Nobody listens."""
+        """Do nothing: there are no listeners."""
 
     def status_listeners(self):
-        """Nobody."""
+        """Return 0: there are no listeners."""
         return 0
 
     def endpoints(self):
-        """All fits."""
+        """Return no endpoints: there are no mismatches."""
         return {}
 
     def serving_nodes(self, _client):
@@ -250,40 +250,40 @@ class WorldPort:
         return []
 
     def info(self, text):
-        """Nobody listens."""
+        """Do nothing: there are no listeners."""
 
     warn = error = info
 
 
 class Goal:
-    """A goal that the world has."""
+    """A goal that the world executes."""
 
     def __init__(self, simulation, action, number, handlers):
         self._simulation, self._action, self._number, self._handlers = simulation, action, number, handlers
 
     def cancel(self):
-        """Asks the world to end it; a goal that has ended can no longer be canceled."""
+        """Request the world to cancel the goal. A goal that has ended can no longer be canceled."""
         accepted = self._simulation.cancel(self._action, self._number)
         self._handlers.cancel_answered(CancelAnswer.ACCEPTED if accepted else CancelAnswer.TERMINATED)
 
     def is_canceling(self):
-        """A goal ends at once."""
+        """Return False: a canceled goal ends at once."""
         return False
 
     def is_gone(self):
-        """The world stays."""
+        """Return False: the world never leaves."""
         return False
 
 
 class Received:
-    """Data as ROS gives it: fields are attributes, and at their defaults where nobody has set them."""
+    """Data in the form of ROS: fields are attributes, with defaults for missing ones."""
 
     def __init__(self, data):
         self._data = data
 
     def __getattr__(self, name):
         if name.startswith("_"):
-            # Whoever copies an object asks for these before it has data.
+            # A copy of an object requests these attributes before it has data.
             raise AttributeError(name)
         return _received(self._data[name]) if name in self._data else BLANK
 
@@ -295,7 +295,7 @@ def _received(value):
 
 
 class Sent:
-    """Data to be filled as ROS fills it; a field of fields comes to be when it is asked for."""
+    """Data to be filled in the form of ROS. An access creates a missing nested field."""
 
     def __init__(self, data):
         self.__dict__["_data"] = data
@@ -309,14 +309,14 @@ class Sent:
 
 
 def _plain(value):
-    """Data as nested dicts: what is sent, with what was received and is handed on in it."""
+    """Return data as nested dicts, including received data that is forwarded in it."""
     if isinstance(value, (Sent, Received)):
-        return _plain(value._data)  # noqa: SLF001  # its own module
+        return _plain(value._data)  # noqa: SLF001  # a class of this module
     return {name: _plain(part) for name, part in value.items()} if isinstance(value, dict) else value
 
 
 class _Types(dict):
-    """The types of a message's fields: of whole numbers those of 16 bits."""
+    """The types of a message's fields. Whole numbers have 16 bits."""
 
     def __init__(self, message):
         super().__init__((name, _type(value)) for name, value in _plain(message).items())

@@ -1,4 +1,4 @@
-"""What is in a field: a satellite receiver, a radio, a tank, a stick, a boom with three sections, and a driver."""
+"""Devices in a field: a satellite receiver, a radio, a tank, a stick, a boom with three sections, and a driver."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from .world import STEP, Area
 
 ACTION = "/navigate_to_pose"
 SECTIONS = {"left": 1.0, "middle": 0.0, "right": -1.0}
-#: The map of what has been sprayed: squares of this size.
+#: The map of sprayed squares: the size of a square.
 CELL = 1.0
 
 
 class Receiver(Device):
-    """Says where the sprayer is in the field."""
+    """The position of the sprayer in the field."""
 
     says = {"/odom": "nav_msgs/Odometry"}  # noqa: RUF012
 
     def __init__(self, noise):
-        """`noise` gives an error in metres."""
+        """Create the receiver. `noise` returns an error in meters."""
         self._noise = noise
         self.in_view = True
 
     def say(self, world):
-        """A pose in the frame of the field, and the speed; nothing where no satellites are in view."""
+        """Return a pose in the frame of the field, and the speed. Return no message without satellites in view."""
         if not self.in_view:
             return []
         pose = as_pose(world.pose)
@@ -37,7 +37,7 @@ class Receiver(Device):
 
 
 class Radio(Device):
-    """Beats as long as it is in reach."""
+    """A radio that sends a heartbeat while it is in reach."""
 
     period = 0.2
     says = {"/radio/heartbeat": EMPTY}  # noqa: RUF012
@@ -46,23 +46,23 @@ class Radio(Device):
         self.in_reach = True
 
     def say(self, world):
-        """A beat."""
+        """Return a heartbeat."""
         del world
         return [("/radio/heartbeat", {})] if self.in_reach else []
 
 
 class Remote(Device):
-    """A switch between driving by hand and by itself, and a stick; a stick that is let go says nothing."""
+    """A switch between manual and automatic driving, and a stick. A released stick sends no messages."""
 
     says = {"/mode/automatic": BOOLEAN, "/stick": TWIST}  # noqa: RUF012
 
     def __init__(self):
         self.automatic = False
-        #: The velocity that the stick asks for: linear, angular; None: it is let go.
+        #: The requested velocity, linear and angular. None: the stick is released.
         self.stick = None
 
     def say(self, world):
-        """The switch, and the stick where it is held."""
+        """Return the messages of the switch, and of the stick while it is held."""
         del world
         said = [("/mode/automatic", {"data": self.automatic})]
         if self.stick is not None:
@@ -72,9 +72,9 @@ class Remote(Device):
 
 
 class Boom(Device):
-    """Three sections side by side, each with a valve, a tank for all of them, and a map of what has been sprayed.
+    """Three sections side by side, each with a valve, a tank for all of them, and a map of the sprayed ground.
 
-    A section asks the map about the ground a little ahead of it, so that its valve is right when it gets there.
+    A section reads the map a little ahead of its place, so that its valve has switched when it arrives there.
     """
 
     says = {  # noqa: RUF012
@@ -83,25 +83,25 @@ class Boom(Device):
     }
     hears = {f"/nozzles/{section}/valve": BOOLEAN for section in SECTIONS}  # noqa: RUF012
     ahead, behind = 0.3, -0.4
-    #: What an open section takes from the tank in a second.
+    #: The consumption of an open section per second.
     flow = 0.001
 
     def __init__(self):
         self.level = 0.5
         self.open = set()
         self.sprayed = set()
-        #: How often a square was sprayed that had been sprayed before.
+        #: The number of times that a sprayed square was sprayed again.
         self.twice = 0
         self._under = dict.fromkeys(SECTIONS)
 
     def hear(self, world, topic, data):
-        """Turns a valve."""
+        """Open or close a valve."""
         del world
         section = topic.split("/")[2]
         (self.open.add if data["data"] else self.open.discard)(section)
 
     def act(self, world):
-        """Sprays the ground below the open sections, while there is something in the tank."""
+        """Spray the ground below the open sections while the tank is not empty."""
         for section in SECTIONS:
             cell = self._cell(world, section, self.behind)
             if cell != self._under[section]:
@@ -112,7 +112,7 @@ class Boom(Device):
         self.level = max(0.0, self.level - self.flow * STEP * len(self.open))
 
     def say(self, world):
-        """What has been sprayed, and the level."""
+        """Return the map's answers and the level of the tank."""
         said = [
             (f"/nozzles/{section}/sprayed", {"data": self._cell(world, section, self.ahead) in self.sprayed})
             for section in SECTIONS
@@ -120,7 +120,7 @@ class Boom(Device):
         return [*said, ("/tank/level", {"data": self.level})]
 
     def areas(self):
-        """What has been sprayed: rows of squares."""
+        """Return the sprayed ground as rows of squares."""
         rows = {}
         for column, row in self.sprayed:
             rows.setdefault(row, set()).add(column)
@@ -138,9 +138,9 @@ class Boom(Device):
 
 
 class Driver(Device):
-    """Drives straight to a pose, whatever the way is like; `trouble`: it gets stuck, and gives up.
+    """A driver that drives straight to a pose regardless of the ground. With `trouble`, it gets stuck and gives up.
 
-    `events` is filled with what happens to goals, as that of `Navigation`.
+    It adds the events of goals to `events`, as `Navigation` does.
     """
 
     serves = {ACTION: "nav2_msgs/NavigateToPose"}  # noqa: RUF012
@@ -156,11 +156,11 @@ class Driver(Device):
 
     @property
     def under_way(self):
-        """Whether it has a goal."""
+        """Whether there is a goal."""
         return self._goal is not None
 
     def accept(self, world, goal, data):
-        """Sets off; a newer goal ends the old one."""
+        """Begin a journey. A newer goal ends the previous one."""
         if self._goal is not None:
             self._end(world, "aborted", "gives way to a newer goal")
         position = data["pose"]["pose"]["position"]
@@ -169,14 +169,14 @@ class Driver(Device):
         return True
 
     def cancel(self, world, goal):
-        """Ends a journey; whether it was under way."""
+        """End a journey. Return whether it was under way."""
         if goal != self._goal:
             return False
         self._end(world, "canceled", "the journey is cancelled")
         return True
 
     def act(self, world):
-        """Drives on."""
+        """Continue the journey."""
         if self._goal is None:
             return
         ahead, left = world.pose.towards(*self._destination)
@@ -193,7 +193,7 @@ class Driver(Device):
             world.drive.command(0.0 if abs(off) > 0.5 else min(self.speed, max(0.3, away)) * (1 - abs(off)), turn)
 
     def say(self, world):
-        """Tells how far it is, to whoever set the goal."""
+        """Add feedback on the progress of the goal."""
         if self._goal is not None:
             x, y = self._destination
             self.events.append(
@@ -202,7 +202,7 @@ class Driver(Device):
         return []
 
     def news(self):
-        """What became of journeys."""
+        """Return descriptions of the ends of journeys."""
         news, self._news = self._news, []
         return news
 

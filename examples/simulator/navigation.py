@@ -1,4 +1,4 @@
-"""What Nav2 does, in small: an action server that plans a way, drives it, and helps itself where it is stuck."""
+"""A small Nav2: an action server that plans a way, drives it, and recovers when it is stuck."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from .geometry import Pose, cast, turned
 from .planning import Grid
 
 ACTION = "/navigate_to_pose"
-#: As far as the robot's centre keeps away from anything; what it counts as arrived.
+#: The distance that the robot's center keeps from obstacles; the distance that counts as arrived.
 CLEARANCE, TOLERANCE = 0.28, 0.1
 SPEED, TURN_SPEED = 0.22, 1.0
-#: How far ahead on its way the robot steers; how often it plans anew; how long it backs up, and how often for one goal.
+#: The distance ahead to steer for; the times between plans and for backing up; the most recoveries for one goal.
 LOOK_AHEAD, REPLAN, BACK_UP, GIVE_UP = 0.3, 0.5, 1.5, 8
-#: The lidar's rays; how far what they meet is remembered; how many to each side look ahead; what is too near to drive.
+#: The lidar's rays; the range of remembered hits; the rays to each side that look ahead; the distance to recover at.
 RAYS, IN_SIGHT, AHEAD, TOO_NEAR = 120, 1.5, 8, 0.24
 
 
 class Navigation(Device):
-    """Drives to a pose. It needs to have been told where the robot is, and rejects goals before.
+    """A server that drives to a pose. It needs the robot's initial pose first, and rejects goals before.
 
-    `events` is filled with what happens to goals, each (goal, what, data): `feedback`, `succeeded`, `canceled`,
-    `aborted`. One goal at a time: a new one ends the old one.
+    It adds the events of goals to `events`, as (goal, what, data): `feedback`, `succeeded`, `canceled`, `aborted`.
+    There is one goal at a time: a new one ends the previous one.
     """
 
     serves = {ACTION: "nav2_msgs/NavigateToPose"}  # noqa: RUF012
@@ -31,7 +31,7 @@ class Navigation(Device):
     clearance = CLEARANCE
 
     def __init__(self, known_walls):
-        """`known_walls` are the map; what else stands there it has to see."""
+        """Create the server. `known_walls` is the map. It detects other obstacles by lidar."""
         self._map = Grid(self.clearance)
         for wall in known_walls:
             self._map.block_wall(wall)
@@ -42,7 +42,7 @@ class Navigation(Device):
         self._way = None
         self._planned = -math.inf
         self._backing_until = None
-        #: Squares in which the lidar has met something.
+        #: Squares in which the lidar has hit something.
         self._seen = set()
         self.recoveries = 0
         self.arrived = 0
@@ -50,7 +50,7 @@ class Navigation(Device):
         self._news = []
 
     def hear(self, world, topic, data):
-        """Takes the initial pose: where the robot is on the map, as far as a person can see."""
+        """Set the initial pose: the robot's pose on the map, as a person sees it."""
         del topic
         pose = data["pose"]["pose"]
         orientation = pose["orientation"]
@@ -59,7 +59,7 @@ class Navigation(Device):
         self._odometry_then = world.drive.odometry
 
     def accept(self, world, goal, data):
-        """Begins a journey; whether it can."""
+        """Begin a journey. Return whether that is possible."""
         if self._origin is None or data["pose"]["header"]["frame_id"] != "map":
             self._news.append("a goal is rejected")
             return False
@@ -73,14 +73,14 @@ class Navigation(Device):
         return True
 
     def cancel(self, world, goal):
-        """Ends a journey; whether it was under way."""
+        """End a journey. Return whether it was under way."""
         if goal != self._goal:
             return False
         self._end(world, "canceled", "the journey is cancelled")
         return True
 
     def act(self, world):
-        """Drives on."""
+        """Continue the journey."""
         if self._goal is None:
             return
         pose = self._pose(world)
@@ -99,7 +99,7 @@ class Navigation(Device):
                 self._steer(world, pose)
 
     def say(self, world):
-        """Tells how it gets on, to whoever set the goal."""
+        """Add feedback on the progress of the goal."""
         if self._goal is not None:
             pose = self._pose(world)
             stamped = {"header": header(world, "map"), "pose": as_pose(pose)}
@@ -109,18 +109,18 @@ class Navigation(Device):
         return []
 
     def news(self):
-        """What became of journeys."""
+        """Return descriptions of the ends of journeys."""
         news, self._news = self._news, []
         return news
 
     def _pose(self, world):
-        """Where the robot is on the map: the initial pose, and on from there by odometry."""
+        """Return the robot's pose on the map: the initial pose, continued by odometry."""
         then, now = self._odometry_then, world.drive.odometry
         x, y = self._origin.ahead(*then.towards(now.x, now.y))
         return Pose(x, y, self._origin.heading + now.heading - then.heading)
 
     def _look(self, world, pose):
-        """Remembers where the lidar meets something; whether that is right before the robot."""
+        """Record the hits of the lidar. Return whether one is right before the robot."""
         hits = cast(world.pose, world.seen_by_lidar, RAYS, RANGE_MAX)
         for ray, away in enumerate(hits):
             if away < IN_SIGHT:
@@ -152,7 +152,7 @@ class Navigation(Device):
         self._seen.clear()
 
     def _steer(self, world, pose):
-        """Towards the first point of the way that is far enough ahead; on the spot where that is not ahead."""
+        """Steer to the first point of the way that is far enough ahead. Turn on the spot if it is not ahead."""
         while len(self._way) > 1 and math.hypot(self._way[0][0] - pose.x, self._way[0][1] - pose.y) < LOOK_AHEAD:
             self._way.pop(0)
         x, y = self._way[0]
@@ -161,7 +161,7 @@ class Navigation(Device):
         world.drive.command(0.0 if abs(off) > 0.7 else self._speed(pose) * (1 - abs(off)), turn)
 
     def _speed(self, pose):
-        """How fast it drives straight ahead."""
+        """Return the speed for straight ahead."""
         del pose
         return SPEED
 

@@ -1,11 +1,11 @@
-"""A run as a drawing (SVG): walls, the line, the way of everything that moved, and what happened where."""
+"""A drawing (SVG) of a run: walls, the line, the paths of all moving things, and the places of events."""
 
 from __future__ import annotations
 
 import math
 from xml.sax.saxutils import escape
 
-#: Pixels around all of it; of a line of text.
+#: Pixels: the margin around the drawing; the height of a line of text.
 MARGIN, LINE = 24, 18
 WAYS = {
     "robot": "stroke='#1f5fa8' stroke-width='2.5'",
@@ -15,12 +15,12 @@ WAYS = {
 
 
 def picture(simulation):
-    """The drawing of a simulation as it is now, as text; the same for the same run."""
+    """Return the drawing of a simulation as it is now, as text. It is the same for the same run."""
     return "\n".join(_Drawing(simulation).elements()) + "\n"
 
 
 class _Drawing:
-    """Turns metres, y upwards, into pixels, y downwards."""
+    """Conversion of meters, with y upwards, into pixels, with y downwards."""
 
     def __init__(self, simulation):
         self.simulation = simulation
@@ -102,7 +102,7 @@ class _Drawing:
         yield f"<line x1='{x1:.1f}' y1='{y1:.1f}' x2='{x2:.1f}' y2='{y2:.1f}' stroke='#1f5fa8' stroke-width='2'/>"
 
     def _marks(self):
-        """Numbers where something happened; those of one place stand side by side."""
+        """Yield numbers at the places of events. Numbers at one place are side by side."""
         taken = []
         for number, happening in enumerate(self.simulation.happenings):
             x, y = self._at(happening.x, happening.y)
@@ -122,9 +122,9 @@ class _Drawing:
         return f"<circle cx='{x:.1f}' cy='{y:.1f}' r='{radius * self.scale:.1f}' {style}/>"
 
     def _way(self, points):
-        """Points for a polyline; of those that are drawn at the same place only the first."""
+        """Return the points of a polyline. Consecutive points at the same pixel are merged."""
         shown = [f"{x:.1f},{y:.1f}" for x, y in (self._at(*point) for point in points)]
-        kept = [image for before, image in zip([None, *shown], shown) if image != before]  # noqa: B905  # old Pythons, too
+        kept = [image for before, image in zip([None, *shown], shown) if image != before]  # noqa: B905  # old Pythons
         return " ".join(kept)
 
     def _at(self, x, y):

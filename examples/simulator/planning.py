@@ -1,4 +1,4 @@
-"""The shortest way over a grid, around what is in it."""
+"""The shortest way over a grid around obstacles."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ _NEIGHBOURS = [(dx, dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1) if dx or dy]
 
 
 class Grid:
-    """A plane in squares, those blocked into which the robot's centre can't go."""
+    """A plane of squares. A square is blocked if the robot's center can't enter it."""
 
     def __init__(self, clearance, blocked=()):
-        """`clearance` is the distance that the robot's centre keeps from all that is blocked from now on."""
+        """Create the grid. `clearance` is the distance that the robot's center keeps from obstacles added later."""
         self._clearance = clearance
         self._near = math.ceil(clearance / CELL)
         self.blocked = set(blocked)
 
     @staticmethod
     def cell(x, y):
-        """The square that a point is in."""
+        """Return the square that contains a point."""
         return math.floor(x / CELL), math.floor(y / CELL)
 
     @staticmethod
     def centre(cell):
-        """The middle of a square."""
+        """Return the middle of a square."""
         return (cell[0] + 0.5) * CELL, (cell[1] + 0.5) * CELL
 
     def block(self, x, y):
-        """Keeps the robot clear of a point."""
+        """Add a point as an obstacle."""
         column, row = self.cell(x, y)
         for dx in range(-self._near, self._near + 1):
             for dy in range(-self._near, self._near + 1):
@@ -39,7 +39,7 @@ class Grid:
                     self.blocked.add(cell)
 
     def block_wall(self, wall):
-        """Keeps the robot clear of a wall."""
+        """Add a wall as an obstacle."""
         length = math.hypot(wall.x2 - wall.x1, wall.y2 - wall.y1)
         pieces = max(1, math.ceil(length / (CELL / 2)))
         for piece in range(pieces + 1):
@@ -47,16 +47,16 @@ class Grid:
             self.block(wall.x1 + (wall.x2 - wall.x1) * share, wall.y1 + (wall.y2 - wall.y1) * share)
 
     def way(self, start, end, furthest=400):
-        """The points of the shortest way from one point to another; None where there is none within `furthest` squares.
+        """Return the points of the shortest way between two points. None if there is none within `furthest` squares.
 
-        Next to the start nothing is blocked: the robot is there, and has to get away.
+        Squares next to the start count as free: the robot is there, and has to get away.
         """
         first, last = self.cell(*start), self.cell(*end)
         if last in self.blocked:
             return None
         came_from, costs = {first: None}, {first: 0.0}
         queue = [(0.0, first)]
-        # Whether the end is shut in is looked at from there: from outside all squares within reach would be looked at.
+        # Check from the end whether the end is enclosed: from outside, the search would visit all squares within reach.
         around_end, pending = {last}, [last]
         while queue and (pending or first in around_end):
             if first not in around_end:
@@ -79,7 +79,7 @@ class Grid:
         return cell in self.blocked and max(abs(cell[0] - first[0]), abs(cell[1] - first[1])) > 1
 
     def _around(self, cell, first, known):
-        """The squares next to one that are not known yet, which they are from now on."""
+        """Return the neighbors of a square that are not known yet, and add them to the known ones."""
         squares = ((cell[0] + dx, cell[1] + dy) for dx, dy in _NEIGHBOURS)
         new = [square for square in squares if square not in known and not self._is_blocked(square, first)]
         known.update(new)

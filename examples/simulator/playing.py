@@ -1,4 +1,4 @@
-"""Plays a simulation over a middleware: in real time, or faster with the world's own clock."""
+"""Simulation over a middleware: in real time, or faster with the world's own clock."""
 
 from __future__ import annotations
 
@@ -7,27 +7,27 @@ import time
 
 from .world import STEP
 
-#: How long the world runs on without a command that is due, in its own time; how long it waits then, in real time.
+#: The longest time, in the world's time, to run on without a due command; then the longest wait in real time.
 ANSWER_WITHIN, PATIENCE = 0.25, 120.0
-#: As long may the first answer take: a controller hears of the clock late, and counts its period from then.
+#: The same for the first answer: a controller receives the clock late, and counts its period from then.
 FIRST_ANSWER_WITHIN = 2.0
-#: How long it waits, in real time, for a controller that may have nothing to tell, before it takes a step; how many
-#: seconds of its own it does so.
+#: The wait, in real time, for a controller that may have nothing to report, before the next step; the longest duration
+#: of such steps, in the world's time.
 NUDGE, GIVEN_UP = 1.0, 3.0
 SILENT = "the controller sends nothing any longer"
-#: How long the time at the start is told, in real time, before the world goes on.
+#: The duration, in real time, of publishing the start time before the world runs.
 INTRODUCTION = 0.5
 
 
 class NoControllerError(Exception):
-    """Nobody listens, or nobody answers any longer."""
+    """A controller that is missing or no longer answers."""
 
 
 def play(simulation, connection, speed, until):
-    """Lets the world take place until `until()` holds.
+    """Run the world until `until()` holds.
 
-    With another speed than 1 it runs as many times as fast, on `/clock`, and waits for a controller that falls behind.
-    Raises NoControllerError.
+    At a speed other than 1, the world runs that many times as fast, on `/clock`, and waits for a controller that falls
+    behind. Raises NoControllerError.
     """
     said("waiting for the controller on " + ", ".join(connection.waits_for()) + " ...")
     _wait(connection, lambda: not connection.waits_for(), "no controller listens to {}: is it started?")
@@ -48,28 +48,28 @@ def play(simulation, connection, speed, until):
 
 
 def over(simulation, until="end"):
-    """A condition: that a run is over. It ends at the `goal`, the `end` of what happens, or after so many seconds."""
+    """Return a condition for the end of a run: at the `goal`, the `end` of the script, or after a number of seconds."""
     most = simulation.scenario.patience if until in ("goal", "end") else until
     return lambda: simulation.time >= most or simulation.ended or (until == "goal" and simulation.reached)
 
 
 def tell(simulation, told):
-    """Prints what has happened since so many happenings; how many that are now."""
+    """Print the events after the first `told` ones. Return the number of events."""
     for happening in simulation.happenings[told:]:
         said(f"{happening.time:6.1f} s  {happening.words}")
     return len(simulation.happenings)
 
 
 def said(text, stream=None):
-    """Prints a line at once, also where the output is not a terminal."""
+    """Print a line at once, even if the output is not a terminal."""
     print(text, file=stream or sys.stdout, flush=True)
 
 
 def _keep_step(simulation, connection):
-    """Waits for a controller that has fallen behind.
+    """Wait for a controller that has fallen behind.
 
-    One that tells its state does so where something has happened before its tick. What the world has said may come
-    after that tick, and the next one comes with the time: so the world takes a step now and then.
+    A controller that reports its state does so if something happened before its tick. The world's last messages may
+    arrive after that tick, and the next tick needs a later time. So the world makes a step now and then.
     """
     if simulation.scenario.alive is None:
         _wait(connection, lambda: _in_step(simulation, connection), SILENT)
@@ -87,7 +87,7 @@ def _in_step(simulation, connection):
 
 
 def _introduce(connection):
-    """Tells the time at the start until everyone can have heard it."""
+    """Publish the start time until all nodes can have received it."""
     until = time.monotonic() + INTRODUCTION
     while time.monotonic() < until:
         connection.clock(connection.simulation.time)
@@ -95,7 +95,7 @@ def _introduce(connection):
 
 
 def _wait(connection, condition, otherwise):
-    """Waits for something to hold; the time, where it was not heard, is told again."""
+    """Wait for a condition. Publish the time repeatedly, because nodes may have missed it."""
     started = time.monotonic()
     while not condition():
         if time.monotonic() > started + PATIENCE:

@@ -13,7 +13,7 @@ from .connection import EPOCH, Connection, UnknownTypeError
 
 
 class Ros1(Connection):
-    """Topics of ROS 1, received in threads of rospy's own, and actions."""
+    """Topics of ROS 1, received in threads of rospy, and actions."""
 
     def __init__(self, simulation):
         super().__init__(simulation)
@@ -44,21 +44,21 @@ class Ros1(Connection):
             self._feedback[action] = _class(kind + "Feedback")
 
     def listeners(self, topic):
-        """How many listen to a topic."""
+        """Return the number of listeners of a topic."""
         return self._publishers[topic].get_num_connections() if topic in self._publishers else 0
 
     def clock(self, seconds):
-        """Tells everyone the time."""
+        """Publish the time."""
         self._clock.publish(Clock(clock=rospy.Time.from_sec(EPOCH + seconds)))
 
     def publish(self, topic, data):
-        """Sends a message."""
+        """Send a message."""
         if topic in self._publishers:
             publisher = self._publishers[topic]
             publisher.publish(_filled(publisher.data_class(), data))
 
     def tell(self, news):
-        """Sends news of a goal."""
+        """Send news of a goal."""
         handle = self._goals[news.goal]
         if news.what == "feedback":
             handle.publish_feedback(_filled(self._feedback[news.action](), news.data))
@@ -70,11 +70,11 @@ class Ros1(Connection):
             handle.set_aborted()
 
     def spin(self, seconds):
-        """Waits; rospy's threads do the work."""
+        """Wait while the threads of rospy work."""
         rospy.rostime.wallsleep(seconds)
 
     def close(self):
-        """Ends the connection."""
+        """End the connection."""
         self.hang_up()
         rospy.signal_shutdown("the scenario has ended")
 
@@ -100,7 +100,7 @@ class Ros1(Connection):
 
 
 def _class(kind, folder="msg"):
-    """The Python class of a type."""
+    """Return the Python class of a type."""
     package, name = kind.split("/")
     try:
         return getattr(importlib.import_module(f"{package}.{folder}"), name)
@@ -109,8 +109,8 @@ def _class(kind, folder="msg"):
 
 
 def _filled(message, data):
-    """Sets fields of a message."""
-    types = dict(zip(message.__slots__, message._slot_types))  # noqa: B905, SLF001  # as rospy offers them
+    """Set fields of a message."""
+    types = dict(zip(message.__slots__, message._slot_types))  # noqa: B905, SLF001  # an interface of rospy
     for name, value in data.items():
         if types[name] == "time":
             value = rospy.Time.from_sec(EPOCH + value)  # noqa: PLW2901
@@ -123,7 +123,7 @@ def _filled(message, data):
 
 
 def _plain(message):
-    """A message as nested dicts."""
+    """Return a message as nested dicts."""
     if hasattr(message, "_slot_types"):
         return {name: _plain(getattr(message, name)) for name in message.__slots__}
     return message

@@ -19,7 +19,7 @@ from .connection import EPOCH, Connection, UnknownTypeError
 
 
 class Ros2(Connection):
-    """Topics and actions of ROS 2, received while we wait; lidars are best effort, as they mostly are."""
+    """Topics and actions of ROS 2, received during waits. Lidars are best effort, as in most drivers."""
 
     def __init__(self, simulation):
         super().__init__(simulation)
@@ -45,34 +45,34 @@ class Ros2(Connection):
         self._answerers = _Answerers(self, simulation.answers) if simulation.answers else None
 
     def listeners(self, topic):
-        """How many listen to a topic."""
+        """Return the number of listeners of a topic."""
         return self._publishers[topic].get_subscription_count() if topic in self._publishers else 0
 
     def clock(self, seconds):
-        """Tells everyone the time."""
+        """Publish the time."""
         self._clock.publish(Clock(clock=_time(seconds)))
 
     def publish(self, topic, data):
-        """Sends a message."""
+        """Send a message."""
         if topic in self._publishers:
             publisher = self._publishers[topic]
             publisher.publish(_filled(publisher.msg_type(), data))
 
     def tell(self, news):
-        """Sends news of a goal."""
+        """Send news of a goal."""
         goal = self._goals[news.goal]
         if news.what == "feedback":
             goal.handle.publish_feedback(_filled(goal.kind.Feedback(), news.data))
         else:
-            # Only now, as rclpy would wait for the end of a goal busily, before all else.
+            # Not earlier: rclpy would wait for the end of a goal in a busy loop, before all other work.
             goal.handle.execute(lambda _: goal.ended(news.what))
 
     def spin(self, seconds):
-        """Lets rclpy work on one thing."""
+        """Let rclpy handle one item."""
         self._executor.spin_once(timeout_sec=seconds)
 
     def close(self):
-        """Ends the connection."""
+        """End the connection."""
         self.hang_up()
         for server in self._servers:
             server.destroy()
@@ -88,7 +88,7 @@ class Ros2(Connection):
         kind = _class(name, "action")
 
         def ask(request):
-            # A goal is asked about before it has a handle.
+            # This request comes before the goal has a handle.
             accepted = self.simulation.start(action, len(self._goals), _plain(request))
             return GoalResponse.ACCEPT if accepted else GoalResponse.REJECT
 
@@ -111,7 +111,7 @@ class Ros2(Connection):
 
 
 class _Answerers:
-    """The services, at a node of their own: a thread waits for each answer, as rclpy sends none later."""
+    """The services, in a separate node. A thread waits for each answer, because rclpy cannot send an answer later."""
 
     def __init__(self, connection, services):
         self._connection = connection
@@ -125,7 +125,7 @@ class _Answerers:
         self._thread.start()
 
     def join(self):
-        """Waits until nobody is at work any longer, after rclpy was shut down."""
+        """Wait until all threads have ended, after the shutdown of rclpy."""
         self._thread.join()
 
     def _spin(self):
@@ -137,20 +137,20 @@ class _Answerers:
 
 
 class _Goal:
-    """A goal that was accepted."""
+    """An accepted goal."""
 
     def __init__(self, handle, kind):
         self.handle = handle
         self.kind = kind
 
     def ended(self, how):
-        """Ends it; its result."""
+        """End the goal and return its result."""
         {"succeeded": self.handle.succeed, "canceled": self.handle.canceled, "aborted": self.handle.abort}[how]()
         return self.kind.Result()
 
 
 def _class(kind, folder="msg"):
-    """The Python class of a type."""
+    """Return the Python class of a type."""
     package, name = kind.split("/")
     try:
         return getattr(importlib.import_module(f"{package}.{folder}"), name)
@@ -164,7 +164,7 @@ def _time(seconds):
 
 
 def _filled(message, data):
-    """Sets fields of a message."""
+    """Set fields of a message."""
     types = message.get_fields_and_field_types()
     for name, value in data.items():
         if types[name] == "builtin_interfaces/Time":
@@ -179,7 +179,7 @@ def _filled(message, data):
 
 
 def _plain(message):
-    """A message as nested dicts."""
+    """Return a message as nested dicts."""
     if hasattr(message, "get_fields_and_field_types"):
         return {name: _plain(getattr(message, name)) for name in message.get_fields_and_field_types()}
     return message

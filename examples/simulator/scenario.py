@@ -1,6 +1,6 @@
-"""What a scenario is: a place, what is in it, what happens, and a goal.
+"""Scenarios: a place, its contents, a script and a goal.
 
-What happens is a script: a generator that yields for how many seconds, or until what, it waits before it goes on.
+A script is a generator. It yields a number of seconds, or a condition, to wait for before it continues.
 """
 
 from __future__ import annotations
@@ -12,58 +12,58 @@ REACTION = 0.5
 
 
 class Scenario:
-    """A place, its devices, a script and a goal; the base of all."""
+    """A place, its devices, a script and a goal: the base class of all scenarios."""
 
-    #: The example's, too.
+    #: The name of the scenario and of its example.
     name = ""
-    #: The model of the controller behind the supervisory layer, where there is one, in the example's folder.
+    #: The model of the controller behind the supervisory layer, if there is one, in the example's folder.
     controller: str | None = None
-    #: What people send beside pressing buttons: topics and types.
-    people: dict[str, str] = {}  # noqa: RUF012  # a table, never changed
-    #: A topic on which the controller shows at each of its ticks that it is alive, where its commands do not.
+    #: Topics on which people send messages, apart from buttons, with their types.
+    people: dict[str, str] = {}  # noqa: RUF012  # a constant table
+    #: A topic on which the controller reports at each tick that it is alive, if its commands do not show that.
     alive: str | None = None
-    #: Pixels of a metre in the picture.
+    #: Pixels per meter in the picture.
     scale = 110
-    #: Topics that a controller need not listen to.
+    #: Topics that a controller need not subscribe to.
     unheard: tuple[str, ...] = ("/odom",)
-    #: Seconds after which nobody hopes any longer.
+    #: The longest run in seconds.
     patience = 150.0
 
     def world(self):
-        """The place, as it is at the start."""
+        """Return the place in its initial state."""
         raise NotImplementedError
 
     def sensors(self, noise):
-        """What every robot has: a lidar and encoders."""
+        """Return the sensors of each robot: a lidar and encoders."""
         return [Lidar(noise.up_to(0.005)), Odometry()]
 
     def devices(self, world, noise):
-        """What is there beside these."""
+        """Return the other devices."""
         raise NotImplementedError
 
     def script(self, simulation):
-        """What people do, and what befalls the robot."""
+        """Yield the actions of people, and the incidents of the robot."""
         raise NotImplementedError
 
     def reached(self, simulation):
-        """Whether the goal is reached."""
+        """Return whether the goal is reached."""
         raise NotImplementedError
 
     def pose(self, world):
-        """Where the robot is, and what else is of interest about it, for the record."""
-        # JSON knows nothing infinite.
+        """Return the robot's pose and related data, for the record."""
+        # JSON has no infinity.
         gap = min(world.gap, RANGE_MAX)
         return {"x": world.pose.x, "y": world.pose.y, "heading": world.pose.heading, "gap": gap}
 
 
 def set_going(simulation):
-    """Someone sets the robot going, which begins stopped."""
+    """Start the robot, which begins stopped."""
     yield REACTION
     simulation.go_on("the robot is set going")
 
 
 def stop_and_continue(simulation, seconds):
-    """Someone presses stop, releases it after a while, and then presses continue."""
+    """Press stop, release it after a while, and then press continue."""
     simulation.press()
     yield seconds
     simulation.release()

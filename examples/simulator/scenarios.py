@@ -1,4 +1,4 @@
-"""The eight scenarios of the thesis (section 6.2) and two larger ones: where they are, what happens, and the goal."""
+"""The eight scenarios of the thesis (section 6.2) and two larger ones: places, scripts and goals."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ LINE_PIXELS, VIEW_PIXELS = 1.0, 2.0
 
 
 class LineFollower(Scenario):
-    """A yellow line with bends, followed to its end; an obstacle on it, a stop button, a cloth over it."""
+    """A robot follows a yellow line with bends to its end, past an obstacle, a stop button and a cloth on the line."""
 
     name = "line_follower"
-    #: How long the line is: straight, round to the left, straight, round to the right, straight.
+    #: The parts of the line: straight, a bend to the left, straight, a bend to the right, straight.
     bends = ((1.5, 0), (0.8, 90), (0.4, 0), (0.8, -90), (1.2, 0))
 
     def world(self):
-        """The robot stands beside the line's start and looks along it."""
+        """Return the place. The robot stands beside the line's start and faces along it."""
         return World(Pose(0.0, 0.06), line=_line(Pose(-0.1, 0.0), self.bends))
 
     def devices(self, world, noise):
-        """A platform and a detector."""
+        """Return a platform and a detector."""
         del world
         return [Wheels(), LineDetector(noise.up_to(LINE_PIXELS))]
 
     def script(self, simulation):
-        """As the robot gets along."""
+        """Place the incidents along the robot's progress."""
         world = simulation.world
         yield lambda: world.travelled > 1.0
         world.pillars.append(Disc(*self._on_line(world, 1.0), 0.12))
@@ -54,11 +54,11 @@ class LineFollower(Scenario):
         yield lambda: self.reached(simulation)
 
     def reached(self, simulation):
-        """At the line's end, with the robot at rest."""
+        """Return whether the robot is at rest at the line's end."""
         return self._at_end(simulation.world) and abs(simulation.world.drive.speed[0]) < 0.01
 
     def pose(self, world):
-        """With the distance from the line."""
+        """Return the pose with the distance to the line."""
         return {**super().pose(world), "off_line": world.off_line, "travelled": world.travelled}
 
     @staticmethod
@@ -68,27 +68,27 @@ class LineFollower(Scenario):
 
     @staticmethod
     def _on_line(world, ahead):
-        """The point of the line so far ahead of the robot."""
+        """Return the point of the line at a distance ahead of the robot."""
         near = min(range(len(world.line)), key=lambda at: math.dist(world.line[at], (world.pose.x, world.pose.y)))
         return world.line[near + round(ahead / LINE_STEP)]
 
 
 class SupervisedLineFollower(LineFollower):
-    """The same line for a robot that drives in steps, and for a controller that knows no danger."""
+    """The same line for a robot that drives in steps, and for a controller that ignores dangers."""
 
     name = "supervised_line_follower"
     controller = "controller/line_stepper.rscd"
-    #: A step that is blocked never gets here.
+    #: Blocked steps never arrive here.
     alive = "/supervised_line_follower_layer/state"
 
     def devices(self, world, noise):
-        """A platform that takes steps, and a detector."""
+        """Return a platform that drives in steps, and a detector."""
         del world
         return [Steps(), LineDetector(noise.up_to(LINE_PIXELS))]
 
 
 class SimpleNavigation(Scenario):
-    """An empty room with a map; two points to drive to: a stop on the way to one, a change of mind on the other."""
+    """An empty room with a map and two destinations: a stop on the first way, a change of plan on the second."""
 
     name = "simple_navigation"
     people = {  # noqa: RUF012
@@ -102,20 +102,20 @@ class SimpleNavigation(Scenario):
     first, second, third = (2.6, 0.8), (0.8, 2.4), (3.2, 2.3)
 
     def world(self):
-        """The robot stands in a corner."""
+        """Return the place. The robot stands in a corner."""
         return World(self.start, walls=self.walls())
 
     def walls(self):
-        """What is on the map."""
+        """Return the walls on the map."""
         return box(*self.room)
 
     def devices(self, world, noise):
-        """Nav2."""
+        """Return Nav2."""
         del world, noise
         return [Navigation(self.walls())]
 
     def script(self, simulation):
-        """Clicks on a map, as in RViz."""
+        """Click on a map, as in RViz."""
         nav = simulation.device(Navigation)
         yield 0.6
         self.click(simulation, *self.first)
@@ -136,11 +136,11 @@ class SimpleNavigation(Scenario):
         yield 1.0
 
     def reached(self, simulation):
-        """At both points at which the journeys were not cancelled, and now at the last."""
+        """Return whether the robot was at both destinations that were not canceled, and is now at the last one."""
         return simulation.device(Navigation).arrived == 2 and self._at(simulation.world, self.third)
 
     def locate(self, simulation):
-        """Someone tells where the robot is."""
+        """Set the robot's position on the map."""
         pose = simulation.world.pose
         orientation = {"x": 0.0, "y": 0.0, "z": math.sin(pose.heading / 2), "w": math.cos(pose.heading / 2)}
         position = {"x": pose.x, "y": pose.y, "z": 0.0}
@@ -150,7 +150,7 @@ class SimpleNavigation(Scenario):
         simulation.say("/initialpose", data)
 
     def click(self, simulation, x, y):
-        """Someone clicks a point."""
+        """Click a point."""
         simulation.happens("a point is clicked")
         header = {"stamp": simulation.time, "frame_id": "map"}
         simulation.say("/clicked_point", {"header": header, "point": {"x": x, "y": y, "z": 0.0}})
@@ -161,7 +161,7 @@ class SimpleNavigation(Scenario):
 
 
 class ObstacleNavigation(SimpleNavigation):
-    """A room with pillars that are on no map; somebody puts one right before the robot."""
+    """A room with pillars that no map contains. A person moves a chair right before the robot."""
 
     name = "obstacle_navigation"
     alive = "/obstacle_navigation_controller/state"
@@ -170,12 +170,12 @@ class ObstacleNavigation(SimpleNavigation):
     first, second = (3.9, 1.5), (0.6, 0.6)
 
     def world(self):
-        """The robot stands at one side, pillars are on its way to the other."""
+        """Return the place. The robot stands at one side, and pillars are on its way to the other."""
         pillars = [Disc(x, y, 0.15) for x, y in ((1.5, 1.5), (2.6, 1.0), (2.6, 2.0), (1.5, 0.5), (1.5, 2.5))]
         return World(self.start, walls=self.walls(), pillars=pillars)
 
     def script(self, simulation):
-        """Clicks on a map, and a chair that is moved."""
+        """Click on a map, and move a chair."""
         world, nav = simulation.world, simulation.device(Navigation)
         yield 0.6
         self.locate(simulation)
@@ -192,7 +192,7 @@ class ObstacleNavigation(SimpleNavigation):
         yield 1.0
 
     def reached(self, simulation):
-        """At the point, after it got stuck on the way."""
+        """Return whether the robot is at the point, after it got stuck on the way."""
         nav = simulation.device(Navigation)
         return nav.arrived == 1 and nav.recoveries > 0 and self._at(simulation.world, self.first)
 
@@ -204,7 +204,7 @@ class ObjectFinder(Scenario):
     alive = "/object_finder_controller/state"
 
     def world(self):
-        """The robot looks into a dead end."""
+        """Return the place. The robot faces a dead end."""
         walls = path((0, 0), (4, 0), (4, 3), (6.5, 3), (6.5, 4), (3, 4), (3, 1), (0, 1), (0, 0))
         sights = [
             Sight("stop sign", 6.45, 3.5, 0.3, 0.8),
@@ -214,26 +214,26 @@ class ObjectFinder(Scenario):
         return World(Pose(1.2, 0.5, math.pi), walls=walls, sights=sights)
 
     def devices(self, world, noise):
-        """A platform, a rotator and Darknet."""
+        """Return a platform, a rotator and Darknet."""
         del world, noise
         return [Wheels(), Rotator(EMPTY), ObjectDetector()]
 
     def script(self, simulation):
-        """Stop is pressed once while the robot drives."""
+        """Press stop once while the robot drives."""
         yield lambda: simulation.world.pose.x > 2.0
         yield from stop_and_continue(simulation, 1.5)
         yield lambda: self.reached(simulation)
         yield 1.0
 
     def reached(self, simulation):
-        """At rest, with the sign in sight."""
+        """Return whether the robot is at rest, with the sign in sight."""
         world = simulation.world
         near = math.hypot(world.pose.x - 6.45, world.pose.y - 3.5) < ObjectDetector.reach + 0.1
         return near and max(map(abs, world.drive.speed)) < 0.01
 
 
 class MazeSolver(Scenario):
-    """A maze of squares, one metre each."""
+    """A maze of squares with sides of one meter."""
 
     name = "maze_solver"
     alive = "/maze_solver_controller/state"
@@ -246,22 +246,22 @@ class MazeSolver(Scenario):
     )
 
     def world(self):
-        """The robot stands in the middle and looks at a wall."""
+        """Return the place. The robot stands in the middle and faces a wall."""
         return World(Pose(1.6, 1.5, math.pi), walls=walls_of(self.plan))
 
     def devices(self, world, noise):
-        """A platform and a rotator."""
+        """Return a platform and a rotator."""
         del world, noise
         return [Wheels(), Rotator("std_msgs/Int16")]
 
     def script(self, simulation):
-        """Stop is pressed once while the robot drives."""
+        """Press stop once while the robot drives."""
         yield lambda: simulation.world.travelled > 1.0
         yield from stop_and_continue(simulation, 1.5)
         yield lambda: self.reached(simulation)
 
     def reached(self, simulation):
-        """Outside."""
+        """Return whether the robot is outside."""
         pose = simulation.world.pose
         return not (-0.2 < pose.x < (len(self.plan[0]) - 1) / 2 + 0.2 and -0.2 < pose.y < len(self.plan) - 0.8)
 
@@ -272,51 +272,51 @@ class PushBall(Scenario):
     name = "push_ball"
 
     def world(self):
-        """The robot looks away from the ball."""
+        """Return the place. The robot faces away from the ball."""
         goal = (3.6, -0.5, 4.1, 0.5)
         walls = [*box(-1.5, -2.0, 4.6, 2.0), *path((3.6, -0.5), (4.1, -0.5), (4.1, 0.5), (3.6, 0.5))]
         return World(Pose(0.0, 0.0, 2.2), walls=walls, ball=Ball(1.3, 0.18, 0.1), goal=goal)
 
     def devices(self, world, noise):
-        """A platform and two detectors."""
+        """Return a platform and two detectors."""
         del world
         pixels = noise.up_to(VIEW_PIXELS)
         return [Wheels(), BallDetector(pixels), GoalDetector(pixels)]
 
     def script(self, simulation):
-        """Stop is pressed once while the robot pushes."""
+        """Press stop once while the robot pushes the ball."""
         yield lambda: simulation.world.ball.x > 1.6
         yield from stop_and_continue(simulation, 1.5)
         yield lambda: self.reached(simulation)
         yield 1.0
 
     def reached(self, simulation):
-        """The ball is in the goal, the robot at rest."""
+        """Return whether the ball is in the goal and the robot at rest."""
         world = simulation.world
         return world.ball_in_goal and max(map(abs, world.drive.speed)) < 0.01
 
     def pose(self, world):
-        """With the ball's place."""
+        """Return the pose with the ball's place."""
         return {**super().pose(world), "ball": [world.ball.x, world.ball.y]}
 
 
 class PersonFollower(Scenario):
-    """A person who walks about, and disappears for a while."""
+    """A person who walks around, and disappears for a while."""
 
     name = "person_follower"
     last = (3.2, 2.6)
 
     def world(self):
-        """The person stands a little aside."""
+        """Return the place. The person stands a little aside."""
         return World(Pose(0.0, 0.0), person=Person(1.9, 0.6, 0.15), walls=box(-1.5, -2.0, 6.0, 4.5))
 
     def devices(self, world, noise):
-        """A platform and a detector."""
+        """Return a platform and a detector."""
         del world, noise
         return [Wheels(), PersonDetector()]
 
     def script(self, simulation):
-        """The person walks; stop is pressed; a curtain hides the person."""
+        """Let the person walk, press stop, and hide the person behind a curtain."""
         person, world = simulation.world.person, simulation.world
         yield 3.0
         person.walk(0.18, (2.6, 0.4), (3.6, 0.6), (4.0, 1.4))
@@ -336,7 +336,7 @@ class PersonFollower(Scenario):
         yield 1.0
 
     def reached(self, simulation):
-        """The person stands at the last place, the robot near by and turned to it."""
+        """Return whether the person stands at the last place, with the robot near and turned to the person."""
         world = simulation.world
         ahead, left = world.pose.towards(*self.last)
         there = math.dist(self.last, (world.person.x, world.person.y)) < 0.01
@@ -344,7 +344,7 @@ class PersonFollower(Scenario):
         return there and near and abs(world.drive.speed[0]) < 0.01
 
     def pose(self, world):
-        """With the distance from the person."""
+        """Return the pose with the distance to the person."""
         away = math.dist((world.person.x, world.person.y), (world.pose.x, world.pose.y))
         return {**super().pose(world), "person": away}
 
@@ -365,7 +365,7 @@ class WarehouseRobot(Scenario):
     shelf = (7.5, 2.4)
 
     def world(self):
-        """The robot stands in its dock, a person beside its way."""
+        """Return the place. The robot stands in its dock, a person beside its way."""
         areas = [
             Area("dock", -1.1, -0.4, -0.3, 0.4, "#dfe6ee"),
             Area("aisle", 1.0, -1.5, 6.3, 4.0, "#fbf1d8"),
@@ -375,22 +375,22 @@ class WarehouseRobot(Scenario):
         return World(self.start, walls=self.walls(), person=person, areas=areas, fastest=1.0, acceleration=5.0)
 
     def walls(self):
-        """What is on the map."""
+        """Return the walls on the map."""
         return box(-1.6, -1.5, 9.0, 4.0)
 
     def sensors(self, noise):
-        """Two lidars, and encoders, which only Nav2 reads."""
+        """Return two lidars, and encoders, which only Nav2 reads."""
         return [SafetyLidars(noise.up_to(0.005)), Odometry()]
 
     def devices(self, world, noise):
-        """All that a warehouse has."""
+        """Return all devices of a warehouse."""
         del world, noise
         docking = Docking(self.start.x)
         navigation = WarehouseNavigation(self.walls(), self.start)
         return [Bumpers(), Battery(docking, 0.15), Lift(), AisleManager(), docking, navigation]
 
     def script(self, simulation):
-        """Two orders; the second ends half way, as the battery is used up."""
+        """Send two orders. The second ends half way because the battery is low."""
         docking, battery = simulation.device(Docking), simulation.device(Battery)
         docking.refusals = 2
         yield from self.to_the_shelf(simulation)
@@ -405,7 +405,7 @@ class WarehouseRobot(Scenario):
         yield 1.0
 
     def to_the_shelf(self, simulation):
-        """People fill the aisle, one of them gets in the way; stop is pressed."""
+        """Let people fill the aisle and one of them block the way, and press stop."""
         world, aisle = simulation.world, simulation.device(AisleManager)
         navigation = simulation.device(WarehouseNavigation)
         yield 1.0
@@ -430,7 +430,7 @@ class WarehouseRobot(Scenario):
 
     @staticmethod
     def at_the_shelf(simulation):
-        """Stop is pressed before the lift moves; it jams once on its way down."""
+        """Press stop before the lift moves. The lift jams once on its way down."""
         lift, aisle = simulation.device(Lift), simulation.device(AisleManager)
         lift.jams = 1
         yield lambda: not aisle.let_in
@@ -442,7 +442,7 @@ class WarehouseRobot(Scenario):
 
     @staticmethod
     def home(simulation):
-        """A lidar is cut off, a bumper touched."""
+        """Disconnect a lidar and touch a bumper."""
         world, navigation = simulation.world, simulation.device(WarehouseNavigation)
         lidars, bumpers = simulation.device(SafetyLidars), simulation.device(Bumpers)
         yield lambda: navigation.under_way and world.pose.x < 5.6
@@ -460,13 +460,13 @@ class WarehouseRobot(Scenario):
         yield lambda: navigation.arrived == 2
 
     def reached(self, simulation):
-        """A shelf was served, and the robot has come home twice."""
+        """Return whether a shelf was served and the robot has returned twice."""
         docking, lift = simulation.device(Docking), simulation.device(Lift)
         served = simulation.device(WarehouseNavigation).arrived == 3 and lift.height == 0.0
         return served and docking.docked and max(map(abs, simulation.world.drive.speed)) < 0.01
 
     def order(self, simulation):
-        """Somebody orders the shelf."""
+        """Order the shelf."""
         simulation.happens("the shelf is ordered")
         x, y = self.shelf
         pose = {"position": {"x": x, "y": y}, "orientation": {"z": 0.0, "w": 1.0}}
@@ -475,7 +475,7 @@ class WarehouseRobot(Scenario):
 
 
 class Sprayer(Scenario):
-    """The corner of a field: two rows, the second beyond its end; and a way across what has been sprayed."""
+    """The corner of a field: two rows, the second past the field's end, and a way across sprayed ground."""
 
     name = "sprayer"
     people = {"/route": "nav_msgs/Path"}  # noqa: RUF012
@@ -486,21 +486,21 @@ class Sprayer(Scenario):
     second = ((97.5, 30.5), (91.5, 30.5), (91.5, 38.5))
 
     def world(self):
-        """The sprayer stands beside the field and looks there."""
+        """Return the place. The sprayer stands beside the field and faces it."""
         field = Area("field", 84.0, 27.0, 100.0, 40.0, "#f3ecd9")
         return World(Pose(102.0, 36.5, math.pi), areas=[field], fastest=1.5, acceleration=5.0)
 
     def sensors(self, noise):
-        """A receiver for satellites."""
+        """Return a satellite receiver."""
         return [Receiver(noise.up_to(0.03))]
 
     def devices(self, world, noise):
-        """All that a sprayer has."""
+        """Return all devices of a sprayer."""
         del world, noise
         return [Wheels(), Radio(), Remote(), Boom(), Driver()]
 
     def script(self, simulation):
-        """By hand into the field, along a route that leads out of it, back by hand, and along another."""
+        """Drive by hand into the field, along a route that leads out of it, back by hand, and along another route."""
         yield 1.0
         self.plan(simulation, self.first)
         yield 0.5
@@ -518,7 +518,7 @@ class Sprayer(Scenario):
 
     @staticmethod
     def first_row(simulation):
-        """The radio, the tank, the satellites."""
+        """Lose the radio, empty the tank, and lose the satellites."""
         pose, boom = (lambda: simulation.world.pose), simulation.device(Boom)
         radio, receiver = simulation.device(Radio), simulation.device(Receiver)
         yield lambda: pose().x < 94.0
@@ -541,7 +541,7 @@ class Sprayer(Scenario):
         simulation.happens("satellites are in view")
 
     def second_row(self, simulation):
-        """Stop; the mode is switched while the stick is held; mud; the field's end."""
+        """Press stop, switch the mode while the stick is held, drive through mud, and reach the field's end."""
         driver, pose = simulation.device(Driver), lambda: simulation.world.pose
         remote = simulation.device(Remote)
         yield lambda: driver.arrived == 2 and pose().x > 88.0
@@ -566,7 +566,7 @@ class Sprayer(Scenario):
 
     @staticmethod
     def steer(simulation, speed, there):
-        """Somebody steers straight on until the sprayer is there, by its x."""
+        """Steer straight ahead until the x of the sprayer reaches `there`."""
         remote = simulation.device(Remote)
         remote.stick = (speed, 0.0)
         simulation.happens("the stick is pushed")
@@ -576,13 +576,13 @@ class Sprayer(Scenario):
 
     @staticmethod
     def switch(simulation, automatic):
-        """Somebody switches the mode."""
+        """Switch the mode."""
         simulation.device(Remote).automatic = automatic
         simulation.happens("switched to automatic" if automatic else "switched to manual")
 
     @staticmethod
     def plan(simulation, points):
-        """Somebody sends a route."""
+        """Send a route."""
         simulation.happens("a route is sent")
         stamped = {"stamp": simulation.time, "frame_id": "field"}
         poses = [
@@ -592,7 +592,7 @@ class Sprayer(Scenario):
         simulation.say("/route", {"header": stamped, "poses": poses})
 
     def reached(self, simulation):
-        """At the end of the second route, at rest, as much of the field sprayed as lay on the way."""
+        """Return whether the sprayer rests at the end of the second route and has sprayed the field along its way."""
         driver, boom = simulation.device(Driver), simulation.device(Boom)
         resting = max(map(abs, simulation.world.drive.speed)) < 0.01
         return driver.arrived == 5 and resting and len(boom.sprayed) > 60
@@ -600,7 +600,7 @@ class Sprayer(Scenario):
 
 LINE_STEP = 0.01
 
-#: All scenarios, by name.
+#: All scenarios by name.
 SCENARIOS = {
     scenario.name: scenario
     for scenario in (
@@ -619,7 +619,7 @@ SCENARIOS = {
 
 
 def _line(pose, bends):
-    """Points on a line that begins at a pose: for (length, 0) straight on, for (radius, degrees) around a bend."""
+    """Return points on a line from a pose: (length, 0) goes straight ahead, (radius, degrees) around a bend."""
     points = []
     for size, degrees in bends:
         length = abs(math.radians(degrees)) * size if degrees else size
@@ -638,7 +638,7 @@ def _line(pose, bends):
 
 
 def walls_of(plan):
-    """The walls of a maze: `_` is the lower edge of a square, `|` stands between two squares."""
+    """Return the walls of a maze: `_` is the lower edge of a square, `|` stands between two squares."""
     rows = len(plan) - 1
     walls = []
     for row, text in enumerate(plan):

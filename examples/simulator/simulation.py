@@ -1,4 +1,4 @@
-"""A scenario that takes place: time passes, devices act and sense, people press buttons, and all of it is recorded."""
+"""A running scenario: time passes, devices act and sense, people press buttons, and all of it is recorded."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ POSE_PERIOD = 0.1
 
 @dataclass(frozen=True)
 class Message:
-    """What is sent to a topic, as a mapping from fields to values."""
+    """A message on a topic, as a mapping from fields to values."""
 
     topic: str
     data: dict
@@ -24,7 +24,7 @@ class Message:
 
 @dataclass(frozen=True)
 class GoalNews:
-    """What an action server says to whoever set a goal: feedback, succeeded, canceled, aborted."""
+    """A message of an action server to the client of a goal: feedback, succeeded, canceled, aborted."""
 
     action: str
     goal: object
@@ -34,7 +34,7 @@ class GoalNews:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a service answers to a call, known by what it was given as."""
+    """The answer of a service to a call. `call` identifies the call."""
 
     service: str
     call: object
@@ -43,7 +43,7 @@ class Answer:
 
 @dataclass(frozen=True)
 class Happening:
-    """Something that a picture shows: when, where the robot was, and what."""
+    """An event for the picture: its time, the robot's place, and a description."""
 
     time: float
     x: float
@@ -52,21 +52,21 @@ class Happening:
 
 
 class Noise:
-    """Errors of sensors, from a seed: the same on every machine, up to so much, small ones more often."""
+    """Errors of sensors from a seed: the same on each machine, bounded, with small errors more often."""
 
     def __init__(self, seed, name):
-        self._random = random.Random(f"{seed}/{name}")  # noqa: S311  # no secret
+        self._random = random.Random(f"{seed}/{name}")  # noqa: S311  # not used for security
 
     def up_to(self, most):
-        """A source of errors."""
+        """Return a source of errors of at most `most`."""
         return lambda: (self._random.random() + self._random.random() - 1) * most
 
 
 class Simulation:
     """A scenario from its start.
 
-    `advance` lets one step of time pass and gives what is sent; `receive`, `ask`, `start` and `cancel` take what comes
-    in meanwhile. `ended` says that the script is over, `reached` that the scenario's goal has been.
+    `advance` runs one step of time and returns the messages that are sent. `receive`, `ask`, `start` and `cancel`
+    handle input between the steps. `ended` is true after the script, `reached` once the scenario's goal was reached.
     """
 
     def __init__(self, scenario, seed=0):
@@ -75,7 +75,7 @@ class Simulation:
         noise = Noise(seed, scenario.name)
         self.button = Button()
         self.devices = [self.button, *scenario.sensors(noise), *scenario.devices(self.world, noise)]
-        #: Topics that anything is sent to, and that anything is heard on, with their types; also services and actions.
+        #: Publications and subscriptions, services and actions, with their types.
         self.says = {topic: kind for device in self.devices for topic, kind in device.says.items()}
         self.says.update(scenario.people)
         self.hears = {topic: kind for device in self.devices for topic, kind in device.hears.items()}
@@ -84,11 +84,11 @@ class Simulation:
         self.ended = False
         self.reached_at = None
         self.happenings = []
-        #: What crossed the topics, and where the robot was, for whoever judges the run.
+        #: Data on the topics, and poses of the robot, to evaluate the run.
         self.record = []
-        #: The ways of the robot, the ball and the person.
+        #: The paths of the robot, the ball and the person.
         self.ways = {"robot": [], "ball": [], "person": []}
-        #: Every pillar that stood somewhere, also for a while.
+        #: All pillars, including temporary ones.
         self.pillars = []
         self._said = []
         self._script = chain(set_going(self), scenario.script(self))
@@ -107,16 +107,16 @@ class Simulation:
         return self.reached_at is not None
 
     def device(self, kind):
-        """The device of that class."""
+        """Return the device of a class."""
         return next(device for device in self.devices if isinstance(device, kind))
 
     @property
     def areas(self):
-        """The parts of the floor that mean something now."""
+        """The marked areas of the floor at this time."""
         return [*self.world.areas, *(area for device in self.devices for area in device.areas())]
 
     def advance(self):
-        """One step of time; the messages, the answers and the news of goals that are sent after it."""
+        """Run one step of time. Return the messages, answers and news of goals that are sent after it."""
         for device in self.devices:
             device.act(self.world)
         self.world.step()
@@ -133,7 +133,7 @@ class Simulation:
         return [*_taken(self._said), *news]
 
     def _sense(self):
-        """Lets the devices speak whose turn it is; their answers and the news of goals."""
+        """Let the devices send whose period has passed. Return their answers and the news of goals."""
         for device in self.devices:
             if self._due(device.period):
                 for topic, data in device.say(self.world):
@@ -153,49 +153,49 @@ class Simulation:
         return [*answers, *news]
 
     def receive(self, topic, data):
-        """Takes a command from a controller, or a button that somebody else presses."""
+        """Handle a command of a controller, or a button that another node presses."""
         self._note(topic, data)
         self._deliver(topic, data)
 
     def ask(self, service, call, data):
-        """Takes a call of a service, known by `call`; the answer comes later."""
+        """Accept a call of a service. The answer with the same `call` comes later."""
         self._note(service, data)
         next(device for device in self.devices if service in device.answers).ask(self.world, service, call)
 
     def start(self, action, goal, data):
-        """Takes a goal, known by `goal` from now on; whether it is accepted."""
+        """Accept or reject a goal, which `goal` identifies from now on. Return whether it is accepted."""
         self._note(action, data)
         return self._server(action).accept(self.world, goal, data)
 
     def cancel(self, action, goal):
-        """Asks to end a goal; whether it will."""
+        """Request the end of a goal. Return whether it will end."""
         self._note(action, "cancel")
         return self._server(action).cancel(self.world, goal)
 
     def say(self, topic, data):
-        """Sends a message, which the world's own devices hear, too."""
+        """Send a message, also to the world's own devices."""
         self._said.append(Message(topic, data))
         self._note(topic, data)
         if topic in self.hears:
             self._deliver(topic, data)
 
     def press(self):
-        """Someone presses the emergency stop."""
+        """Press the emergency stop."""
         self.button.pressed = True
         self.happens("stop is pressed")
 
     def release(self):
-        """Someone releases the emergency stop, which sets nobody going."""
+        """Release the emergency stop, which does not start the robot."""
         self.button.pressed = False
         self.happens("stop is released")
 
     def go_on(self, words):
-        """Someone presses continue."""
+        """Press continue."""
         self.happens(words)
         self.say(GO_ON, {})
 
     def happens(self, words):
-        """Keeps for the picture what happens now."""
+        """Record an event for the picture."""
         self.happenings.append(Happening(self.time, self.world.pose.x, self.world.pose.y, words))
         self._note("happening", words)
 
@@ -211,7 +211,7 @@ class Simulation:
         return self.world.steps % round(period / STEP) == 0
 
     def _play(self):
-        """Goes on with the script where what it waits for has come."""
+        """Continue the script while its condition holds."""
         while not self.ended and self._waiting():
             try:
                 self._wait_until(next(self._script))
@@ -219,7 +219,7 @@ class Simulation:
                 self.ended = True
 
     def _wait_until(self, wanted):
-        """A script waits for so many seconds, or until something holds."""
+        """Set the condition of the script: a number of seconds, or a function."""
         if callable(wanted):
             self._waiting = wanted
         else:
@@ -237,7 +237,7 @@ class Simulation:
 
     def _note(self, topic, data):
         if topic.endswith("/scan"):
-            # How near the nearest thing ahead is, which is what controllers ask for; None where there is nothing.
+            # The distance of the nearest thing ahead, which controllers use. None without one.
             ranges = data["ranges"]
             nearest = min(ranges[:21] + ranges[-20:] if topic == "/scan" else ranges)
             data = nearest if nearest < math.inf else None
@@ -246,6 +246,6 @@ class Simulation:
 
 
 def _taken(items):
-    """What is in a list, which is empty then."""
+    """Empty a list and return its elements."""
     taken, items[:] = list(items), []
     return taken

@@ -1,4 +1,4 @@
-"""What is in a warehouse: lidars before and behind, bumpers, a battery, a lift, a dock, an aisle, and Nav2."""
+"""Devices in a warehouse: lidars before and behind, bumpers, a battery, a lift, a dock, an aisle, and Nav2."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .world import STEP
 
 
 class Server(Device):
-    """Answers calls of services that take no data: each gets its answer when it is due, or when `act` gives it."""
+    """A server of services without data. A call gets its answer at its time, or when `act` sends it."""
 
     period = STEP
 
@@ -20,30 +20,30 @@ class Server(Device):
         self._news = []
 
     def answer(self, service, call, success, words):
-        """Answers a call; the words are for the picture, too."""
+        """Answer a call. The picture shows the words, too."""
         self.given.append((service, call, {"success": success, "message": words}))
         self._news.append(words)
 
     def news(self):
-        """What was answered, and what else has happened."""
+        """Return descriptions of answers and other events."""
         news, self._news = self._news, []
         return news
 
 
 class SafetyLidars(Device):
-    """One lidar looks ahead and one back, each over 60 degrees, a ray every other; `silent` are those cut off."""
+    """Two lidars, ahead and behind, each with rays every other degree over 60 degrees. `silent`: disconnected ones."""
 
     says = {"/front/scan": "sensor_msgs/LaserScan", "/rear/scan": "sensor_msgs/LaserScan"}  # noqa: RUF012
-    #: The rays, in degrees from the middle.
+    #: The rays in degrees from the middle.
     rays = range(-30, 31, 2)
 
     def __init__(self, noise):
-        """`noise` gives the error of each ray, in metres."""
+        """Create the lidars. `noise` returns the error of each ray in meters."""
         self._noise = noise
         self.silent = set()
 
     def say(self, world):
-        """Two scans, from the right to the left."""
+        """Return two scans from right to left."""
         seen = cast(world.pose, world.seen_by_lidar, 360, RANGE_MAX)
         fields = {"/front/scan": 0, "/rear/scan": 180}
         return [
@@ -65,7 +65,7 @@ class SafetyLidars(Device):
 
 
 class Bumpers(Device):
-    """Four switches around the robot; `pressed` are those that somebody touches."""
+    """Four switches around the robot. `pressed`: the touched ones."""
 
     says = {f"/{side}/bumper": BOOLEAN for side in ("front", "rear", "left", "right")}  # noqa: RUF012
 
@@ -73,13 +73,13 @@ class Bumpers(Device):
         self.pressed = set()
 
     def say(self, world):
-        """The state of each."""
+        """Return the state of each switch."""
         del world
         return [(topic, {"data": topic in self.pressed}) for topic in self.says]
 
 
 class Battery(Device):
-    """Is used up on the way, and charged in the dock; faster than real ones, for those who watch."""
+    """A battery, discharged on the way and charged in the dock. Faster than real ones, for short simulations."""
 
     period = 0.2
     says = {"/battery_state": "sensor_msgs/BatteryState"}  # noqa: RUF012
@@ -91,19 +91,19 @@ class Battery(Device):
         self.charge = charge
 
     def act(self, world):
-        """Charges or is used."""
+        """Charge or discharge."""
         self.charge -= (world.travelled - self._travelled) * self.per_metre
         self._travelled = world.travelled
         if self._docking.docked:
             self.charge = min(1.0, self.charge + self.per_second * STEP)
 
     def say(self, world):
-        """How much is left."""
+        """Return the remaining charge."""
         return [("/battery_state", {"header": header(world, "battery"), "percentage": self.charge})]
 
 
 class Lift(Server):
-    """Goes up and down below a shelf, each in a second and a half; `jams` is how often it will not come down."""
+    """A lift below a shelf that moves up or down in a second and a half. `jams`: how often it will not come down."""
 
     answers = {"/lift/raise": TRIGGER, "/lift/lower": TRIGGER}  # noqa: RUF012
     takes = 1.5
@@ -116,7 +116,7 @@ class Lift(Server):
         self._call = None
 
     def ask(self, world, service, call):
-        """Begins to move."""
+        """Begin to move."""
         del world
         if service == "/lift/lower" and self.jams:
             self.jams -= 1
@@ -125,7 +125,7 @@ class Lift(Server):
             self._call = service, call
 
     def act(self, world):
-        """Moves on."""
+        """Continue to move."""
         del world
         if self._call is None:
             return
@@ -139,7 +139,7 @@ class Lift(Server):
 
 
 class AisleManager(Server):
-    """Lets robots into the aisle while people leave room there."""
+    """A manager that lets robots into the aisle while people leave room there."""
 
     answers = {"/aisle/enter": TRIGGER, "/aisle/leave": TRIGGER}  # noqa: RUF012
     takes = 0.3
@@ -151,11 +151,11 @@ class AisleManager(Server):
         self._calls = []
 
     def ask(self, world, service, call):
-        """Thinks about it."""
+        """Queue a call, to be answered later."""
         self._calls.append((world.time + self.takes, service, call))
 
     def act(self, world):
-        """Answers what it has thought about."""
+        """Answer the calls that are due."""
         while self._calls and world.time >= self._calls[0][0]:
             _, service, call = self._calls.pop(0)
             entering = service == "/aisle/enter"
@@ -169,16 +169,16 @@ class AisleManager(Server):
 
 
 class Docking(Server):
-    """Drives the robot off its dock, and back into it from before it; `refusals` is how often it will not.
+    """Docking: drives the robot off its dock, and back into it from before it. `refusals`: how often it will not dock.
 
-    Both happen along the x axis: the robot stands before its dock at the map's origin.
+    Both movements follow the x axis: the robot stands before its dock at the map's origin.
     """
 
     answers = {"/dock": TRIGGER, "/undock": TRIGGER}  # noqa: RUF012
     speed, turn_speed, precision = 0.3, 1.0, math.radians(1)
 
     def __init__(self, place):
-        """`place` is where the dock is on the x axis."""
+        """Create the server. `place` is the dock's position on the x axis."""
         super().__init__()
         self.docked = True
         self.refusals = 0
@@ -186,7 +186,7 @@ class Docking(Server):
         self._call = None
 
     def ask(self, world, service, call):
-        """Sets off."""
+        """Begin a movement."""
         del world
         if service == "/dock" and self.refusals:
             self.refusals -= 1
@@ -196,7 +196,7 @@ class Docking(Server):
             self.docked = False
 
     def act(self, world):
-        """Drives on."""
+        """Continue the movement."""
         if self._call is None:
             return
         service, call = self._call
@@ -214,26 +214,26 @@ class Docking(Server):
 
 
 class WarehouseNavigation(Navigation):
-    """Nav2 that knows where the robot starts, keeps further away from everything, and keeps to a limit of its speed."""
+    """Nav2 that knows the robot's start, keeps more distance from obstacles, and obeys a speed limit."""
 
     hears = {"/speed_limit": "nav2_msgs/SpeedLimit"}  # noqa: RUF012
     clearance = 0.65
-    #: Without a limit it creeps; near the goal, too.
+    #: The creeping speed without a limit, and near the goal.
     creep = 0.2
 
     def __init__(self, known_walls, start):
-        """`start` is where the robot is at the beginning."""
+        """Create the server. `start` is the robot's initial position."""
         super().__init__(known_walls)
         self._origin, self._odometry_then = start, Pose()
         self._limit = self.creep
 
     @property
     def under_way(self):
-        """Whether it has a goal."""
+        """Whether there is a goal."""
         return self._goal is not None
 
     def hear(self, world, topic, data):
-        """Takes a limit, in metres a second; percentages are not taken."""
+        """Set a limit in meters per second. Ignore percentages."""
         del world, topic
         if not data["percentage"]:
             self._limit = data["speed_limit"]

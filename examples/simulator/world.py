@@ -1,4 +1,4 @@
-"""The plane and everything on it; one step of time moves all of it."""
+"""The plane and its contents. One step of time moves all of it."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from .geometry import Disc, Pose, Segment
 
 STEP = 0.02
 ROBOT_RADIUS = 0.14
-#: The robot's flat front, as wide as the robot: it holds a ball that it pushes.
+#: The robot's flat front, as wide as the robot. It holds a ball that it pushes.
 FRONT = 0.14
-#: How fast a rolling ball gets slower, in m/s².
+#: The deceleration of a rolling ball in m/s².
 ROLLING = 0.4
 
 
 @dataclass
 class Ball(Disc):
-    """A ball: lower than the lidar, it rolls when pushed and on for a little while."""
+    """A ball below the lidar's height. It rolls when pushed, and a little further."""
 
     vx: float = 0.0
     vy: float = 0.0
@@ -26,19 +26,19 @@ class Ball(Disc):
 
 @dataclass
 class Person(Disc):
-    """Somebody who walks from point to point."""
+    """A person who walks from point to point."""
 
     speed: float = 0.0
     way: list = field(default_factory=list)
 
     def walk(self, speed, *points):
-        """Sets off: to each of the points, one after the other."""
+        """Walk to each of the points, one after the other."""
         self.speed, self.way = speed, list(points)
 
 
 @dataclass
 class Sight:
-    """Something that a camera's software has a name for, and how sure it is."""
+    """A thing that a camera's software can name, and its certainty."""
 
     name: str
     x: float
@@ -49,7 +49,7 @@ class Sight:
 
 @dataclass
 class Area:
-    """A part of the floor that means something: the corners of a rectangle, its name, its colour in a picture."""
+    """A marked area of the floor: the corners of a rectangle, its name, its color in a picture."""
 
     name: str
     x1: float
@@ -61,25 +61,25 @@ class Area:
 
 @dataclass
 class World:
-    """Walls, pillars, a line on the floor, a ball and its goal, a person, things to be seen, and the robot.
+    """Walls, pillars, a line on the floor, a ball and its goal, a person, visible things, and the robot.
 
-    Walls (segments) and pillars (discs) are solid, and the lidar sees them; so is the person. The ball is solid but
-    below the lidar. `touched` counts the steps in which the robot was held by something solid.
+    Walls (segments), pillars (discs) and the person are solid, and visible to the lidar. The ball is solid but below
+    the lidar. `touched` counts the steps in which a solid thing held the robot.
     """
 
     start: Pose
     walls: list[Segment] = field(default_factory=list)
     pillars: list[Disc] = field(default_factory=list)
-    #: Points of the yellow line, close together, in the order in which they are followed.
+    #: Points of the yellow line, close together, in the driving direction.
     line: list[tuple[float, float]] = field(default_factory=list)
     line_covered: bool = False
     ball: Ball | None = None
-    #: Where the goal is: x from, y from, x to, y to. Its back wall is at the last x.
+    #: The goal's ranges: x from, y from, x to, y to. Its back wall is at the last x.
     goal: tuple[float, float, float, float] | None = None
     person: Person | None = None
     sights: list[Sight] = field(default_factory=list)
     areas: list[Area] = field(default_factory=list)
-    #: How fast the robot's wheels may roll, and how fast that changes.
+    #: The greatest speed and acceleration of the robot's wheels.
     fastest: float = MAX_LINEAR
     acceleration: float = ACCELERATION
     steps: int = 0
@@ -96,24 +96,24 @@ class World:
 
     @property
     def pose(self):
-        """Where the robot is."""
+        """The robot's pose."""
         return self.drive.pose
 
     @property
     def seen_by_lidar(self):
-        """Everything as high as the lidar."""
+        """All things as high as the lidar."""
         return [*self.walls, *self.pillars, *([self.person] if self.person else [])]
 
     @property
     def gap(self):
-        """The free distance between the robot and the nearest thing as high as the lidar; infinite without one."""
+        """The free distance between the robot and the nearest thing as high as the lidar. Infinite without one."""
         return min((shape.distance(self.pose.x, self.pose.y) for shape in self.seen_by_lidar), default=math.inf) - (
             ROBOT_RADIUS
         )
 
     @property
     def off_line(self):
-        """How far the robot is from the line."""
+        """The robot's distance to the line."""
         return min(math.hypot(x - self.pose.x, y - self.pose.y) for x, y in self.line)
 
     @property
@@ -124,7 +124,7 @@ class World:
         return x1 + radius <= self.ball.x <= x2 and y1 + radius <= self.ball.y <= y2 - radius
 
     def step(self):
-        """Lets time pass. The robot does not enter what is solid: it stands there, whatever its wheels do."""
+        """Advance the time. The robot does not enter solid things: it stands there, even if its wheels turn."""
         self.steps += 1
         before, after = self.pose, self.drive.step(STEP)
         if self._free(before, after):
@@ -138,7 +138,7 @@ class World:
             self._walk(self.person)
 
     def _free(self, before, after):
-        """Whether the robot may go there: no nearer to what it already touches, and the ball gives way."""
+        """Return whether the robot may move there: no closer to a touched thing, and not against a blocked ball."""
         for shape in self.seen_by_lidar:
             there = shape.distance(after.x, after.y)
             if there < ROBOT_RADIUS and there < shape.distance(before.x, before.y):
@@ -157,7 +157,7 @@ class World:
         ball.x, ball.y = x, y
 
     def _pushed(self, pose, x, y):
-        """Where the ball is when the robot is at a pose and the ball was at (x, y): before its front, or beside it."""
+        """Return the place of a ball from (x, y) for a pose of the robot: before its front, or beside it."""
         touching = FRONT + self.ball.radius
         ahead, left = pose.towards(x, y)
         away = math.hypot(ahead, left)
@@ -169,7 +169,7 @@ class World:
         return x, y
 
     def _off_walls(self, x, y):
-        """Where the ball is that would be at (x, y): not inside a wall."""
+        """Return the place of a ball at (x, y) outside of walls."""
         for wall in self.walls:
             near_x, near_y = wall.nearest(x, y)
             gap = math.hypot(x - near_x, y - near_y)

@@ -7,7 +7,7 @@ from robosc.model import expression, sct
 from robosc.model.places import Place
 
 class EngineModel(expression.NamedElement):
-    """One robot's controller."""
+    """The controller of one robot."""
     model: sct.SupervisoryControlModel
     variables: MutableSequence[StateVariable]
     inputs: MutableSequence[Input]
@@ -31,7 +31,7 @@ class Storage:
     def __init__(self, *, bits: int | None = ..., signed: bool | None = ...) -> None: ...
 
 class Declaration(Storage):
-    """What holds a value. In memory all values are integers: false and true are 0 and 1, locations and literals their positions, from 0."""
+    """A variable or an input. In memory all values are integers: false is 0, true is 1. Locations and literals are their positions, from 0."""
     name: str
     type: expression.Type
     minimum: int
@@ -46,17 +46,17 @@ class StateVariable(Declaration):
     def __init__(self, *, plant: sct.Plant | None = ..., variable: sct.DiscreteVariable | None = ..., name: str | None = ..., type: expression.Type | None = ..., minimum: int | None = ..., maximum: int | None = ..., initial: int | None = ..., bits: int | None = ..., signed: bool | None = ...) -> None: ...
 
 class Input(Declaration):
-    """Data that comes with an event."""
+    """Data of an event."""
     input: sct.Input
     def __init__(self, *, input: sct.Input | None = ..., name: str | None = ..., type: expression.Type | None = ..., minimum: int | None = ..., maximum: int | None = ..., initial: int | None = ..., bits: int | None = ..., signed: bool | None = ...) -> None: ...
 
 class LocationType(expression.Type):
-    """The locations of a plant."""
+    """The type of a plant's location."""
     plant: sct.Plant
     def __init__(self, *, plant: sct.Plant | None = ..., source: Place | None = ...) -> None: ...
 
 class Source:
-    """What incoming events come from: a topic, a service or an action. Reactions are counted for each."""
+    """A source of incoming events: a topic, a service or an action. The controller counts the reactions to each source."""
     name: str
     batch: bool
     def eContainer(self) -> Any: ...
@@ -65,7 +65,7 @@ class Source:
     def __init__(self, *, name: str | None = ..., batch: bool | None = ...) -> None: ...
 
 class Timer:
-    """A time that runs, or does not. When it is up it runs no longer, and its event happens, if its guard holds."""
+    """A timer that runs or has stopped. On expiry it stops, and its event happens if the guard of the event holds."""
     event: Event
     milliseconds: int
     initial: bool
@@ -77,7 +77,7 @@ class Timer:
     def __init__(self, *, event: Event | None = ..., milliseconds: int | None = ..., initial: bool | None = ..., location: sct.Location | None = ..., duration: sct.Duration | None = ...) -> None: ...
 
 class Restart:
-    """What an event does with timers, if the condition holds before it."""
+    """A change of timers by an event, if the condition holds before the event."""
     condition: expression.Expression | None
     left: sct.Plant | None
     starts: MutableSequence[Timer]
@@ -87,7 +87,7 @@ class Restart:
     def __init__(self, *, condition: expression.Expression | None = ..., left: sct.Plant | None = ..., starts: Iterable[Timer] = ...) -> None: ...
 
 class Group:
-    """Events of which at most one happens in a while."""
+    """Mutually exclusive events: at most one of them happens in a span."""
     name: str
     span: Span
     def eContainer(self) -> Any: ...
@@ -96,13 +96,13 @@ class Group:
     def __init__(self, *, name: str | None = ..., span: Span | None = ...) -> None: ...
 
 class Span:
-    """round: one pass over the cancels and triggers, as after a batch or in a tick; tick: from the start of one tick to that of the next."""
+    """round: one pass over the cancels and triggers, as after a batch or in a tick; tick: from the start of one tick to the start of the next."""
     name: str
     round: ClassVar[Span]
     tick: ClassVar[Span]
 
 class Reader:
-    """What the state is read for: in an incremental control loop it is asked again after an event that writes what it reads. The features `readers` hold whom an event, or a condition that has changed, concerns, in the order of cancels, triggers, silent events, choices and conditions; they are empty where the control loop is not incremental."""
+    """A user of the state. An incremental control loop reevaluates a reader after an event that writes state which the reader reads. The features `readers` contain the readers of an event or of a changed condition. Their order is cancels, triggers, silent events, choices, conditions. They are empty if the control loop is not incremental."""
     name: str
     readers: MutableSequence[Reader]
     def eContainer(self) -> Any: ...
@@ -111,13 +111,13 @@ class Reader:
     def __init__(self, *, name: str | None = ..., readers: Iterable[Reader] = ...) -> None: ...
 
 class Condition(Reader):
-    """A condition that several guards have in common: a function, or a value that is computed once."""
+    """A condition shared by several guards: a function, or a value that is computed once."""
     value: expression.Expression
     events: MutableSequence[Event]
     def __init__(self, *, value: expression.Expression | None = ..., events: Iterable[Event] = ..., name: str | None = ..., readers: Iterable[Reader] = ...) -> None: ...
 
 class Event(Reader):
-    """Something that can happen. It may happen where its guard holds; then the effect is made."""
+    """An event of the controller. It may happen if its guard holds; then its effect changes the state."""
     event: sct.Event
     role: Role
     description: str
@@ -133,7 +133,7 @@ class Event(Reader):
     def __init__(self, *, event: sct.Event | None = ..., role: Role | None = ..., description: str | None = ..., remarks: Iterable[str] = ..., inputs: Iterable[Input] = ..., source: Source | None = ..., group: Group | None = ..., choice: Choice | None = ..., guard: Guard | None = ..., effect: Effect | None = ..., reasons: Iterable[Reason] = ..., restarts: Iterable[Restart] = ..., name: str | None = ..., readers: Iterable[Reader] = ...) -> None: ...
 
 class Reason:
-    """What can keep an event from happening, in the words of the robot's model. Where none with a condition applies and the guard does not hold, that of synthesis is the reason."""
+    """A cause that can prevent an event, in the words of the robot's model. If the guard is false and no cause with a condition applies, synthesis is the cause."""
     kind: Origin
     condition: expression.Expression | None
     text: str
@@ -145,7 +145,7 @@ class Reason:
     def __init__(self, *, kind: Origin | None = ..., condition: expression.Expression | None = ..., text: str | None = ..., location: StateVariable | None = ..., requirement: sct.Requirement | None = ...) -> None: ...
 
 class Role:
-    """cancel, trigger: what the controller sends, by the control loop, cancels first; silent: what the control loop performs by itself until none is enabled; data: chooses what a trigger sends; incoming: comes from the robot, the caller performs it; timeout: the time of a timer is up."""
+    """cancel, trigger: the control loop sends the event, cancels first; silent: the control loop performs silent events until none is enabled; data: selects the data of a trigger; incoming: the robot causes the event, and the caller performs it; timeout: a timer expires."""
     name: str
     cancel: ClassVar[Role]
     trigger: ClassVar[Role]
@@ -155,7 +155,7 @@ class Role:
     timeout: ClassVar[Role]
 
 class Guard:
-    """When an event can happen: where all terms hold. No term is decided before the robot runs, but that a guard which holds nowhere is the term `false`; no two terms are alike."""
+    """The conjunction of all terms, the condition of an event. No term is constant, except the single term `false` of a guard that never holds. No two terms are equal."""
     terms: MutableSequence[Term]
     plants: expression.Expression | None
     requirement: expression.Expression | None
@@ -166,7 +166,7 @@ class Guard:
     def __init__(self, *, terms: Iterable[Term] = ..., plants: expression.Expression | None = ..., requirement: expression.Expression | None = ..., synthesis: expression.Expression | None = ...) -> None: ...
 
 class Term:
-    """A part of a guard."""
+    """A conjunct of a guard."""
     condition: expression.Expression
     origins: MutableSequence[Origin]
     def eContainer(self) -> Any: ...
@@ -175,14 +175,14 @@ class Term:
     def __init__(self, *, condition: expression.Expression | None = ..., origins: Iterable[Origin] = ...) -> None: ...
 
 class Origin:
-    """plants: without it some plant has no edge for the event; requirement: the requirements; synthesis: what synthesis added."""
+    """plants: without the term a plant has no edge for the event; requirement: the requirements; synthesis: the restriction that synthesis added."""
     name: str
     plants: ClassVar[Origin]
     requirement: ClassVar[Origin]
     synthesis: ClassVar[Origin]
 
 class Effect:
-    """What an event changes: all at once, each value read in the state before. The steps are ordered so that they can be made one after the other: nothing is read after it was written, but what `copied` says, and references with `before` read these from a copy."""
+    """The changes of an event. They are simultaneous: each value is that before the event. A target can execute the steps in sequence, because no step reads a variable after its assignment. Exceptions are the variables in `copied`: references with `before` read a copy."""
     steps: MutableSequence[Step]
     copied: MutableSequence[StateVariable]
     def eContainer(self) -> Any: ...
@@ -198,13 +198,13 @@ class Step:
     def __init__(self) -> None: ...
 
 class Assignment(Step):
-    """Gives a variable a value."""
+    """An assignment to a variable."""
     variable: StateVariable
     value: expression.Expression
     def __init__(self, *, variable: StateVariable | None = ..., value: expression.Expression | None = ...) -> None: ...
 
 class Switch(Step):
-    """Assignments that depend on the location of a plant: those of the first case whose condition holds."""
+    """Assignments that depend on the location of a plant. The first case with a true condition applies."""
     cases: MutableSequence[Case]
     def __init__(self, *, cases: Iterable[Case] = ...) -> None: ...
 
@@ -218,14 +218,14 @@ class Case:
     def __init__(self, *, condition: expression.Expression | None = ..., assignments: Iterable[Assignment] = ...) -> None: ...
 
 class Choice(Reader):
-    """A choice of the data to send: the first alternative whose event is enabled. Chosen anew whenever the model settles, before each silent event and at the end."""
+    """The selection of the data to send: the first alternative with an enabled event. The controller selects again before each silent event and after the last."""
     plant: sct.Plant
     variable: StateVariable | None
     alternatives: MutableSequence[Alternative]
     def __init__(self, *, plant: sct.Plant | None = ..., variable: StateVariable | None = ..., alternatives: Iterable[Alternative] = ..., name: str | None = ..., readers: Iterable[Reader] = ...) -> None: ...
 
 class Alternative:
-    """One of the data to choose from."""
+    """An alternative of a choice."""
     event: Event
     chosen: expression.Expression | None
     def eContainer(self) -> Any: ...
@@ -234,7 +234,7 @@ class Alternative:
     def __init__(self, *, event: Event | None = ..., chosen: expression.Expression | None = ...) -> None: ...
 
 class VariableReference(expression.Expression):
-    """The value of a part of the state."""
+    """The value of a state variable."""
     variable: StateVariable
     before: bool
     def __init__(self, *, variable: StateVariable | None = ..., before: bool | None = ..., source: Place | None = ...) -> None: ...
@@ -250,22 +250,22 @@ class ConditionReference(expression.Expression):
     def __init__(self, *, condition: Condition | None = ..., source: Place | None = ...) -> None: ...
 
 class LocationLiteral(expression.Expression):
-    """A location of a plant, as a value."""
+    """A location of a plant as a value."""
     location: sct.Location
     def __init__(self, *, location: sct.Location | None = ..., source: Place | None = ...) -> None: ...
 
 class And(expression.Expression):
-    """Whether all operands hold. No operand is of the same class or decided, and no two are alike; side effects there are none, so that all or some may be computed."""
+    """The conjunction of the operands. No operand is an And or constant, and no two operands are equal. Operands have no side effects, so a target may evaluate all or some of them."""
     operands: MutableSequence[expression.Expression]
     def __init__(self, *, operands: Iterable[expression.Expression] = ..., source: Place | None = ...) -> None: ...
 
 class Or(expression.Expression):
-    """Whether an operand holds. No operand is of the same class or decided, and no two are alike; side effects there are none, so that all or some may be computed."""
+    """The disjunction of the operands. No operand is an Or or constant, and no two operands are equal. Operands have no side effects, so a target may evaluate all or some of them."""
     operands: MutableSequence[expression.Expression]
     def __init__(self, *, operands: Iterable[expression.Expression] = ..., source: Place | None = ...) -> None: ...
 
 class Remainder(expression.BinaryExpression):
-    """What is left when the left operand is divided by the right one, a positive constant: with the sign of the left operand, as `%` in C. A call of `mod` is one remainder, or where its value may be negative the remainder of one to which the divisor is added."""
+    """The remainder of the left operand divided by the right operand, a positive constant. It has the sign of the left operand, as `%` in C. A call of `mod` is one remainder. For a possibly negative value it is the remainder of a remainder plus the divisor."""
     def __init__(self, *, left: expression.Expression | None = ..., right: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class Saturation(expression.UnaryExpression):
@@ -276,6 +276,6 @@ class Saturation(expression.UnaryExpression):
     def __init__(self, *, minimum: int | None = ..., maximum: int | None = ..., bits: int | None = ..., operand: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class Conversion(expression.UnaryExpression, Storage):
-    """The same value in another storage, which holds it. Operators on integers compute in the storage that their operands have; a literal has that of what it meets. Comparisons with a literal need no conversion."""
+    """The same value in another storage that can hold it. Operators on integers compute in the storage of their operands. A literal has the storage of the other operand, and a comparison with a literal needs no conversion."""
     widens: bool
     def __init__(self, *, widens: bool | None = ..., operand: expression.Expression | None = ..., source: Place | None = ..., bits: int | None = ..., signed: bool | None = ...) -> None: ...

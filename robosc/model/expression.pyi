@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 from robosc.model.places import Place
 
 class Located:
-    """An element that remembers where it comes from."""
+    """An element with a place in a source text."""
     source: Place | None
     def eContainer(self) -> Any: ...
     @property
@@ -19,7 +19,7 @@ class NamedElement(Located):
     def __init__(self, *, name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Type(Located):
-    """The type of an input, of a variable or of a field. Used by the sct and rosgraph metamodels."""
+    """The type of an input, a variable or a field in sct and rosgraph models."""
     def __init__(self, *, source: Place | None = ...) -> None: ...
 
 class BooleanType(Type):
@@ -27,17 +27,17 @@ class BooleanType(Type):
     def __init__(self, *, source: Place | None = ...) -> None: ...
 
 class IntegerType(Type):
-    """Whole numbers, both bounds included. In an sct model both bounds are given; a value outside becomes the nearest bound."""
+    """Whole numbers, both bounds included. In an sct model both bounds are present, and a value outside becomes the nearest bound."""
     minimum: int | None
     maximum: int | None
     def __init__(self, *, minimum: int | None = ..., maximum: int | None = ..., source: Place | None = ...) -> None: ...
 
 class DoubleType(Type):
-    """IEEE 754 binary64. Never in an sct model."""
+    """IEEE 754 binary64. An sct model has no doubles."""
     def __init__(self, *, source: Place | None = ...) -> None: ...
 
 class StringType(Type):
-    """Text. Never in an sct model."""
+    """Text. An sct model has no strings."""
     def __init__(self, *, source: Place | None = ...) -> None: ...
 
 class EnumerationType(Type):
@@ -58,7 +58,7 @@ class EnumerationLiteral(NamedElement):
     def __init__(self, *, name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Expression(Located):
-    """Anything that has a value. The tree is the meaning: no parentheses are kept."""
+    """Anything that has a value. The tree holds the structure, so the model has no parentheses."""
     def __init__(self, *, source: Place | None = ...) -> None: ...
 
 class BinaryExpression(Expression):
@@ -133,18 +133,18 @@ class UnaryMinus(UnaryExpression):
     def __init__(self, *, operand: Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class DoubleConversion(UnaryExpression):
-    """An integer read as a double. Only the transformations make it: in sct and rosgraph models both operands of a binary operator have one type."""
+    """An integer as a double. Only transformations create this element: in sct and rosgraph models, both operands of a binary operator have one type."""
     def __init__(self, *, operand: Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class Conditional(Expression):
-    """`then` where the condition holds, else `otherwise`. Only the transformations make it."""
+    """`then` if the condition holds, else `otherwise`. Only transformations create this element."""
     condition: Expression
     then: Expression
     otherwise: Expression
     def __init__(self, *, condition: Expression | None = ..., then: Expression | None = ..., otherwise: Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class FunctionCall(Expression):
-    """A function of its arguments, such as `mod(a, b)`. What each function means stands in robosc/model/semantics/operators.py."""
+    """A function of its arguments, such as `mod(a, b)`. robosc/model/semantics/operators.py defines the functions."""
     function: str
     arguments: MutableSequence[Expression]
     def __init__(self, *, function: str | None = ..., arguments: Iterable[Expression] = ..., source: Place | None = ...) -> None: ...
@@ -165,7 +165,7 @@ class DoubleLiteral(Expression):
     def __init__(self, *, value: float | None = ..., source: Place | None = ...) -> None: ...
 
 class StringLiteral(Expression):
-    """Text, its escapes resolved."""
+    """Text with its escapes resolved."""
     value: str
     def __init__(self, *, value: str | None = ..., source: Place | None = ...) -> None: ...
 

@@ -7,7 +7,7 @@ from robosc.model import expression
 from robosc.model.places import Place
 
 class Base(expression.NamedElement):
-    """What one .rscd file holds (thesis figure 4.2)."""
+    """The content of one .rscd file (thesis figure 4.2)."""
     file: str | None
     definitions: MutableSequence[Definition]
     def __init__(self, *, file: str | None = ..., definitions: Iterable[Definition] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
@@ -17,15 +17,15 @@ class Robot(Base):
     def __init__(self, *, file: str | None = ..., definitions: Iterable[Definition] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Library(Base):
-    """Components, data types and interfaces to be used in robots."""
+    """Components, data types and interfaces for robots."""
     def __init__(self, *, file: str | None = ..., definitions: Iterable[Definition] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Definition(expression.Located):
-    """Anything directly inside a robot or a library. Requirements and provide statements stand in robots only."""
+    """An element directly inside a robot or a library. Only robots contain requirements and provide statements."""
     def __init__(self, *, source: Place | None = ...) -> None: ...
 
 class AccessibleItem(expression.NamedElement):
-    """What an expression can name: a component, a state, a variable, an enum value (thesis 4.2.4, the access model)."""
+    """An element that an expression can name: a component, a state, a variable, an enum value (thesis 4.2.4, the access model)."""
     def __init__(self, *, name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Interface(Definition, expression.NamedElement):
@@ -35,17 +35,17 @@ class Interface(Definition, expression.NamedElement):
     def __init__(self, *, type: str | None = ..., package: str | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
 class NamedExpression(Definition, ComponentDefinition, expression.NamedElement):
-    """A name for an expression, in a robot, a library or a component."""
+    """A name for an expression in a robot, a library or a component."""
     value: expression.Expression
     def __init__(self, *, value: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
 class Constant(NamedExpression, AccessibleItem):
-    """A name for a value, usable wherever a literal is; its value is a constant expression."""
+    """A name for a constant expression, usable in place of a literal."""
     type: DataType
     def __init__(self, *, type: DataType | None = ..., value: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
 class Parameter(NamedExpression, AccessibleItem):
-    """A value that is set on the robot: a ROS parameter of the node. Its own value is the one that it has where none is set. What the supervisor evaluates does not read it."""
+    """A ROS parameter of the node. Its default applies if the robot sets no value. The supervisor does not read parameters."""
     type: DataType
     lowest: expression.Expression | None
     highest: expression.Expression | None
@@ -57,13 +57,13 @@ class Condition(NamedExpression, AccessibleItem):
     def __init__(self, *, value: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
 class Function(NamedExpression):
-    """A name for an expression with parameters; it is written out where it is called."""
+    """A name for an expression with parameters. Each call is replaced by the expression."""
     parameters: MutableSequence[FormalParameter]
     type: DataType
     def __init__(self, *, parameters: Iterable[FormalParameter] = ..., type: DataType | None = ..., value: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
 class FormalParameter(AccessibleItem):
-    """What a function, a component or an enum gets from whoever uses it."""
+    """A parameter of a function, a component or an enum."""
     type: DataType
     default: expression.Expression | None
     def __init__(self, *, type: DataType | None = ..., default: expression.Expression | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
@@ -81,7 +81,7 @@ class Component(Definition, AccessibleItem):
     def __init__(self, *, parameters: Iterable[FormalParameter] = ..., type: ComponentType | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
 class ComponentType(expression.Located):
-    """How a component is defined."""
+    """The definition of a component."""
     def __init__(self, *, source: Place | None = ...) -> None: ...
 
 class LocalComponent(ComponentType):
@@ -90,13 +90,13 @@ class LocalComponent(ComponentType):
     def __init__(self, *, definitions: Iterable[ComponentDefinition] = ..., source: Place | None = ...) -> None: ...
 
 class InstantiatedComponent(ComponentType):
-    """A component made from a template of the same text."""
+    """An instance of a template in the same text."""
     definition: Component
     arguments: MutableSequence[Argument]
     def __init__(self, *, definition: Component | None = ..., arguments: Iterable[Argument] = ..., source: Place | None = ...) -> None: ...
 
 class ImportedComponent(ComponentType):
-    """An instance of a component of a library, with plants, variables and topics of its own."""
+    """An instance of a library's component with its own plants, variables and topics."""
     library: Library
     definition: Component
     remappings: MutableSequence[TopicRemapping]
@@ -104,14 +104,14 @@ class ImportedComponent(ComponentType):
     def __init__(self, *, library: Library | None = ..., definition: Component | None = ..., remappings: Iterable[TopicRemapping] = ..., arguments: Iterable[Argument] = ..., source: Place | None = ...) -> None: ...
 
 class TopicRemapping(expression.Located):
-    """Gives a communication of an imported component another topic."""
+    """A different topic for a communication of an imported component."""
     communicationType: CommunicationType
     identifier: str | None
     computedIdentifier: expression.Expression | None
     def __init__(self, *, communicationType: CommunicationType | None = ..., identifier: str | None = ..., computedIdentifier: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class ComponentDefinition(expression.Located):
-    """Anything directly inside a local component."""
+    """An element directly inside a local component."""
     def __init__(self, *, source: Place | None = ...) -> None: ...
 
 class ComponentBehaviour(ComponentDefinition):
@@ -134,26 +134,26 @@ class Message(CommunicationType):
     def __init__(self, *, direction: MessageDirection | None = ..., type: DataType | None = ..., onChange: bool | None = ..., identifier: str | None = ..., interface: Interface | None = ..., computedIdentifier: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
 class Service(CommunicationType):
-    """A request that is answered once."""
+    """A request with one response."""
     requestType: DataType
     responseType: DataType
     def __init__(self, *, requestType: DataType | None = ..., responseType: DataType | None = ..., identifier: str | None = ..., interface: Interface | None = ..., computedIdentifier: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
 class Action(CommunicationType):
-    """A longer task: goal, feedback, result, and it can be cancelled."""
+    """A longer task: goal, feedback, result. The controller can cancel it."""
     requestType: DataType
     responseType: DataType
     feedbackType: DataType
     def __init__(self, *, requestType: DataType | None = ..., responseType: DataType | None = ..., feedbackType: DataType | None = ..., identifier: str | None = ..., interface: Interface | None = ..., computedIdentifier: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
 class MessageDirection:
-    """incoming: the component receives it and the controller sends it; outgoing: the other way."""
+    """incoming: the controller sends the message and the component receives it; outgoing: the component sends it and the controller receives it."""
     name: str
     incoming: ClassVar[MessageDirection]
     outgoing: ClassVar[MessageDirection]
 
 class CommunicationReference(expression.Located):
-    """Names a communication, with its component where the bare name would not do."""
+    """A name of a communication, with its component if the name alone is ambiguous."""
     component: Component | None
     communicationType: CommunicationType
     def __init__(self, *, component: Component | None = ..., communicationType: CommunicationType | None = ..., source: Place | None = ...) -> None: ...
@@ -169,11 +169,11 @@ class Automaton(expression.Located):
     def __init__(self, *, definitions: Iterable[AutomatonDefinition] = ..., source: Place | None = ...) -> None: ...
 
 class AutomatonDefinition(expression.Located):
-    """A variable, a state, or a transition that every state has."""
+    """A variable, a state, or a transition of every state."""
     def __init__(self, *, source: Place | None = ...) -> None: ...
 
 class Variable(AutomatonDefinition, AccessibleItem):
-    """Data that a component remembers."""
+    """Stored data of a component."""
     type: DataType
     initial: expression.Expression | None
     def __init__(self, *, type: DataType | None = ..., initial: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
@@ -192,18 +192,18 @@ class Transition(AutomatonDefinition):
     def __init__(self, *, assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
 
 class GuardedTransition(Transition):
-    """A transition that is taken only where its guard holds."""
+    """A transition with a guard."""
     guard: expression.Expression | None
     def __init__(self, *, guard: expression.Expression | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
 
 class ResultTransition(GuardedTransition):
-    """Happens with communication."""
+    """A transition on an event of a communication."""
     resultType: ResultType
     communicationType: CommunicationReference
     def __init__(self, *, resultType: ResultType | None = ..., communicationType: CommunicationReference | None = ..., guard: expression.Expression | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
 
 class ResultType:
-    """The events of a communication that a component can react to (thesis table 5.1)."""
+    """The events of a communication on which a component can have transitions (thesis table 5.1)."""
     name: str
     request: ClassVar[ResultType]
     response: ClassVar[ResultType]
@@ -213,11 +213,11 @@ class ResultType:
     canceled: ClassVar[ResultType]
 
 class TauTransition(GuardedTransition):
-    """Happens silently, as soon as its guard holds."""
+    """A silent transition, taken as soon as its guard holds."""
     def __init__(self, *, guard: expression.Expression | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
 
 class TimedTransition(Transition):
-    """Happens when a time is up: since its state was entered, or since the last of some messages."""
+    """A transition after a time since the entry of its state, or since the last of some messages."""
     duration: expression.Expression
     unit: TimeUnit
     without: MutableSequence[CommunicationReference]
@@ -231,7 +231,7 @@ class TimeUnit:
     min: ClassVar[TimeUnit]
 
 class Assignment(expression.Located):
-    """Gives a variable a value."""
+    """An assignment to a variable."""
     item: Access
     value: expression.Expression
     def __init__(self, *, item: Access | None = ..., value: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
@@ -274,13 +274,13 @@ class Array(DataType):
     def __init__(self, *, type: DataType | None = ..., source: Place | None = ...) -> None: ...
 
 class ComplexDataTypeReference(DataType):
-    """Names an object or an enum."""
+    """A reference to an object or an enum."""
     type: ComplexDataType
     arguments: MutableSequence[Argument]
     def __init__(self, *, type: ComplexDataType | None = ..., arguments: Iterable[Argument] = ..., source: Place | None = ...) -> None: ...
 
 class InterfaceTypeReference(ComplexDataTypeReference):
-    """Names a ROS type in place of an object that the model would define. Linking makes the object, its `type`."""
+    """A reference to a ROS type, instead of an object in the model. Linking creates the object, its `type`."""
     package: str
     rosType: str
     definition: ObjectDataType | None
@@ -302,7 +302,7 @@ class ObjectProperty(expression.NamedElement):
     def __init__(self, *, type: DataType | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class EnumDataType(ComplexDataType):
-    """Turns data into one of finitely many values."""
+    """A conversion of data to one of finitely many values."""
     parameters: MutableSequence[FormalParameter]
     type: DataType
     rules: MutableSequence[EnumRule]
@@ -314,12 +314,12 @@ class EnumRule(expression.Located):
     def __init__(self, *, value: EnumValue | None = ..., source: Place | None = ...) -> None: ...
 
 class EnumTransformationRule(EnumRule):
-    """Gives its value where its condition holds."""
+    """A rule with a condition."""
     condition: expression.Expression
     def __init__(self, *, condition: expression.Expression | None = ..., value: EnumValue | None = ..., source: Place | None = ...) -> None: ...
 
 class EnumDefaultRule(EnumRule):
-    """Gives its value where no other rule does."""
+    """The rule for all other data."""
     def __init__(self, *, value: EnumValue | None = ..., source: Place | None = ...) -> None: ...
 
 class EnumValue(AccessibleItem):
@@ -327,7 +327,7 @@ class EnumValue(AccessibleItem):
     def __init__(self, *, name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Access(expression.Expression):
-    """Reads what a name stands for, or the data of the event (`value`)."""
+    """The value of a named element, or the data of the event (`value`)."""
     value: bool
     component: Component | None
     item: AccessibleItem | None
@@ -336,25 +336,25 @@ class Access(expression.Expression):
     def __init__(self, *, value: bool | None = ..., component: Component | None = ..., item: AccessibleItem | None = ..., segments: Iterable[AccessSegment] = ..., enumeration: EnumDataType | None = ..., source: Place | None = ...) -> None: ...
 
 class ErrorReason(expression.Expression):
-    """Why the service or action of an `error` has failed (`error`)."""
+    """The reason for the failure of the service or action in an `error` transition (`error`)."""
     enumeration: EnumDataType | None
     def __init__(self, *, enumeration: EnumDataType | None = ..., source: Place | None = ...) -> None: ...
 
 class Call(expression.Expression):
-    """The value of a function for some arguments."""
+    """A function with its arguments."""
     function: Function
     arguments: MutableSequence[expression.Expression]
     def __init__(self, *, function: Function | None = ..., arguments: Iterable[expression.Expression] = ..., source: Place | None = ...) -> None: ...
 
 class InstanceQuantifier(expression.Expression):
-    """A condition on the instances of a template or of a library's component, or how many of them it holds of."""
+    """A condition on the instances of a template or of a library's component, or the number of instances that fulfill it."""
     quantifier: Quantifier
     template: Component
     body: expression.Expression
     def __init__(self, *, quantifier: Quantifier | None = ..., template: Component | None = ..., body: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class ArrayQuantifier(expression.Expression):
-    """A condition on the elements of an array, from left to right and no further than needed, or how many of them it holds of."""
+    """A condition on the elements of an array, or the number of elements that fulfill it. Evaluation is from left to right and stops at the first decisive element."""
     quantifier: Quantifier
     element: ArrayElement
     array: Access
@@ -362,7 +362,7 @@ class ArrayQuantifier(expression.Expression):
     def __init__(self, *, quantifier: Quantifier | None = ..., element: ArrayElement | None = ..., array: Access | None = ..., body: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class ArrayElement(AccessibleItem):
-    """The name of an element of an array in the condition on it."""
+    """The name of an element in a condition on an array."""
     def __init__(self, *, name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class ArrayLiteral(expression.Expression):
@@ -371,7 +371,7 @@ class ArrayLiteral(expression.Expression):
     def __init__(self, *, elements: Iterable[expression.Expression] = ..., source: Place | None = ...) -> None: ...
 
 class Quantifier:
-    """How a condition on several things is put together."""
+    """The combination of a condition on several elements."""
     name: str
     all: ClassVar[Quantifier]
     any: ClassVar[Quantifier]
@@ -394,49 +394,49 @@ class IndexSegment(AccessSegment):
     def __init__(self, *, index: int | None = ..., first: expression.Expression | None = ..., last: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class StatedDefinition(Definition, ComponentDefinition):
-    """What the supervised robot is to be like, enforced or proven."""
+    """A requirement or a property of the supervised robot, enforced or proven."""
     name: str | None
     text: str | None
     def __init__(self, *, name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Requirement(StatedDefinition):
-    """What the supervised robot is to keep to (thesis figure 4.13)."""
+    """A requirement that the supervisor enforces (thesis figure 4.13)."""
     def __init__(self, *, name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class CommunicationRequirement(Requirement):
-    """Restricts when communication may start."""
+    """A restriction on the start of communication."""
     target: CommunicationTypeSet
     condition: expression.Expression
     def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class StateInvariant(Requirement):
-    """Restricts the states that the supervised robot may come to."""
+    """A restriction on the reachable states of the supervised robot."""
     kind: InvariantKind
     condition: expression.Expression
     def __init__(self, *, kind: InvariantKind | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class InvariantKind:
-    """never: the condition holds in no reachable state; always: it holds in each."""
+    """never: the condition holds in no reachable state; always: the condition holds in every reachable state."""
     name: str
     never: ClassVar[InvariantKind]
     always: ClassVar[InvariantKind]
 
 class OrderRequirement(Requirement):
-    """Events happen only after another one."""
+    """A restriction of events to after another event."""
     target: EventSet
     each: bool
     anchor: EventReference
     def __init__(self, *, target: EventSet | None = ..., each: bool | None = ..., anchor: EventReference | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class CountRequirement(Requirement):
-    """Events happen only so many times since another one, or since the start."""
+    """A bound on the number of events since another event, or since the start."""
     bound: expression.Expression
     target: EventSet
     anchor: EventReference
     def __init__(self, *, bound: expression.Expression | None = ..., target: EventSet | None = ..., anchor: EventReference | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class AutomatonRequirement(Requirement):
-    """The events that the transitions of an automaton are on happen only where it has one for them."""
+    """A restriction of events by an automaton. Each event on its transitions happens only if the automaton has a transition for it."""
     states: MutableSequence[RequirementState]
     def __init__(self, *, states: Iterable[RequirementState] = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
@@ -448,14 +448,14 @@ class RequirementState(AccessibleItem):
     def __init__(self, *, initial: bool | None = ..., marked: bool | None = ..., transitions: Iterable[RequirementTransition] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class RequirementTransition(expression.Located):
-    """An event that may happen in a state of a requirement automaton."""
+    """An event that a state of a requirement automaton permits."""
     event: EventReference
     guard: expression.Expression | None
     target: RequirementState | None
     def __init__(self, *, event: EventReference | None = ..., guard: expression.Expression | None = ..., target: RequirementState | None = ..., source: Place | None = ...) -> None: ...
 
 class EventSet(expression.Located):
-    """Events."""
+    """A set of events."""
     events: MutableSequence[EventReference]
     def __init__(self, *, events: Iterable[EventReference] = ..., source: Place | None = ...) -> None: ...
 
@@ -465,46 +465,46 @@ class EventReference(expression.Located):
     def __init__(self, *, communicationType: CommunicationReference | None = ..., source: Place | None = ...) -> None: ...
 
 class NamedEvent(EventReference):
-    """An event that is named as a transition names it."""
+    """An event with the keyword of a transition."""
     resultType: ResultType
     def __init__(self, *, resultType: ResultType | None = ..., communicationType: CommunicationReference | None = ..., source: Place | None = ...) -> None: ...
 
 class ImpliedEvent(EventReference):
-    """The request of a communication, or what an outgoing message brings."""
+    """The request of a communication, or the arrival of an outgoing message."""
     def __init__(self, *, communicationType: CommunicationReference | None = ..., source: Place | None = ...) -> None: ...
 
 class Property(StatedDefinition):
-    """What verification is to prove of the supervised robot; it is not enforced."""
+    """A claim about the supervised robot that verification proves. The supervisor does not enforce it."""
     condition: expression.Expression
     def __init__(self, *, condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class InvariantProperty(Property):
-    """A condition on all states that the supervised robot comes to."""
+    """A condition on all reachable states of the supervised robot."""
     kind: InvariantKind
     def __init__(self, *, kind: InvariantKind | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class ReachabilityProperty(Property):
-    """Where the supervised robot can get to."""
+    """A claim that the supervised robot can reach a state with the condition."""
     premise: expression.Expression | None
     def __init__(self, *, premise: expression.Expression | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class NeedsRequirement(CommunicationRequirement):
-    """The communication may start only where the condition holds."""
+    """The communication may start only if the condition holds."""
     def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class DisablesRequirement(CommunicationRequirement):
-    """The communication may not start where the condition holds."""
+    """The communication may not start if the condition holds."""
     def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class ProvideStatement(Definition, ComponentDefinition):
-    """The data that is sent along (thesis figure 4.12)."""
+    """The data of a command (thesis figure 4.12)."""
     communicationType: CommunicationReference
     data: expression.Expression
     condition: expression.Expression | None
     def __init__(self, *, communicationType: CommunicationReference | None = ..., data: expression.Expression | None = ..., condition: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class ObjectValue(expression.Expression):
-    """A value for an object; properties left out keep their ROS default. Only as provided data."""
+    """A value for an object in provided data. Omitted properties have their ROS default."""
     properties: MutableSequence[ObjectPropertyValue]
     def __init__(self, *, properties: Iterable[ObjectPropertyValue] = ..., source: Place | None = ...) -> None: ...
 

@@ -7,7 +7,7 @@ from robosc.model import expression, sct
 from robosc.model.places import Place
 
 class RosGraph(expression.NamedElement):
-    """The node of one robot's controller and everything it is connected to."""
+    """The ROS node of one robot's controller with its connections."""
     model: sct.SupervisoryControlModel
     interfaces: MutableSequence[Interface]
     enumerations: MutableSequence[expression.Enumeration]
@@ -45,7 +45,7 @@ class NodeVariable(expression.NamedElement):
     def __init__(self, *, component: str | None = ..., type: expression.Type | None = ..., initial: expression.Expression | None = ..., reception: Reception | None = ..., path: Iterable[str] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Parameter(NodeVariable):
-    """A value that is set on the robot, as a ROS parameter; its first value is the one that it has where none is set. Nothing is assigned to it."""
+    """A value of the robot, as a ROS parameter. The initial value applies if the robot sets none. No assignment changes a parameter."""
     description: str | None
     lowest: float | None
     highest: float | None
@@ -53,7 +53,7 @@ class Parameter(NodeVariable):
     def __init__(self, *, description: str | None = ..., lowest: float | None = ..., highest: float | None = ..., durations: Iterable[sct.Duration] = ..., component: str | None = ..., type: expression.Type | None = ..., initial: expression.Expression | None = ..., reception: Reception | None = ..., path: Iterable[str] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Conversion(expression.NamedElement):
-    """Turns data into a literal of an enumeration; the first rule that matches decides. A rule that reads past the end of an array does not match."""
+    """A conversion of data to a literal of an enumeration. The first matching rule decides. A rule that reads past the end of an array does not match."""
     enumeration: expression.Enumeration
     rules: MutableSequence[ConversionRule]
     default: expression.EnumerationLiteral
@@ -66,33 +66,33 @@ class ConversionRule(expression.Located):
     def __init__(self, *, condition: expression.Expression | None = ..., literal: expression.EnumerationLiteral | None = ..., source: Place | None = ...) -> None: ...
 
 class Subscription(expression.Located):
-    """A topic that the node listens to. All receptions of one ROS message are one batch: inputs are set and events performed in this order with nothing in between."""
+    """A topic that the node receives. All receptions of one ROS message are one batch: the node sets inputs and performs events in this order, without other events between them."""
     topic: str
     interface: Interface
     receptions: MutableSequence[Reception]
     def __init__(self, *, topic: str | None = ..., interface: Interface | None = ..., receptions: Iterable[Reception] = ..., source: Place | None = ...) -> None: ...
 
 class Reception(expression.NamedElement):
-    """Data that comes in with an event; its name is the communication's in the robot model."""
+    """Data that arrives with an event. It has the name of the communication in the robot model."""
     event: sct.Event
     inputs: MutableSequence[InputAssignment]
     def __init__(self, *, event: sct.Event | None = ..., inputs: Iterable[InputAssignment] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class InputAssignment(expression.Located):
-    """Sets an input before its event happens. An integer outside the input's range becomes the nearest bound. Where it reads past the end of an array and a transition that the event takes reads the input, the event does not happen."""
+    """An assignment to an input before its event. An integer outside the input's range becomes the nearest bound. If the value reads past the end of an array and a transition on the event reads the input, the event does not happen."""
     input: sct.Input
     value: expression.Expression
     def __init__(self, *, input: sct.Input | None = ..., value: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class Publisher(expression.Located):
-    """A topic that the node sends to."""
+    """A topic that the node sends."""
     topic: str
     interface: Interface
     sendings: MutableSequence[Sending]
     def __init__(self, *, topic: str | None = ..., interface: Interface | None = ..., sendings: Iterable[Sending] = ..., source: Place | None = ...) -> None: ...
 
 class Sending(expression.NamedElement):
-    """Data that goes out with an event; its name is the communication's in the robot model."""
+    """Data that the node sends with an event. It has the name of the communication in the robot model."""
     event: sct.Event
     alternatives: MutableSequence[ProvidedData]
     onChange: bool | None
@@ -105,7 +105,7 @@ class ProvidedData(expression.Located):
     def __init__(self, *, location: sct.Location | None = ..., fields: Iterable[FieldAssignment] = ..., source: Place | None = ...) -> None: ...
 
 class FieldAssignment(expression.Located):
-    """Sets a field of data that goes out."""
+    """An assignment to a field of data that the node sends."""
     path: MutableSequence[str]
     type: expression.Type
     value: expression.Expression
@@ -135,7 +135,7 @@ class ActionClient(expression.Located):
     def __init__(self, *, identifier: str | None = ..., interface: Interface | None = ..., request: Sending | None = ..., feedback: Reception | None = ..., response: Reception | None = ..., error: Reception | None = ..., cancel: sct.Event | None = ..., canceled: Reception | None = ..., reset: sct.Event | None = ..., source: Place | None = ...) -> None: ...
 
 class Reaction(expression.Located):
-    """What an event reads and changes in the node, when a component is in one of the locations and the guard holds. Values are read as they were before the event."""
+    """The reads and changes of an event in the node if a component is in one of the locations and the guard holds. Values are those before the event."""
     event: sct.Event
     locations: MutableSequence[sct.Location]
     guard: expression.Expression | None
@@ -144,7 +144,7 @@ class Reaction(expression.Located):
     def __init__(self, *, event: sct.Event | None = ..., locations: Iterable[sct.Location] = ..., guard: expression.Expression | None = ..., needs: Iterable[expression.Expression] = ..., assignments: Iterable[NodeAssignment] = ..., source: Place | None = ...) -> None: ...
 
 class NodeAssignment(expression.Located):
-    """Gives a variable of the node a value."""
+    """An assignment to a variable of the node."""
     variable: NodeVariable
     value: expression.Expression
     def __init__(self, *, variable: NodeVariable | None = ..., value: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
@@ -155,7 +155,7 @@ class NodeVariableReference(expression.Expression):
     def __init__(self, *, variable: NodeVariable | None = ..., source: Place | None = ...) -> None: ...
 
 class WireAccess(expression.Expression):
-    """Reads the data that came in with the event at hand, or, in a conversion's rule, the conversion's argument."""
+    """The data of the current event, or the argument of the conversion in its rules."""
     steps: MutableSequence[WireStep]
     type: expression.Type | None
     quantifier: ArrayQuantifier | None
@@ -167,55 +167,55 @@ class WireStep(expression.Located):
     def __init__(self, *, source: Place | None = ...) -> None: ...
 
 class FieldStep(WireStep):
-    """A field."""
+    """A step to a field."""
     name: str
     def __init__(self, *, name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class IndexStep(WireStep):
-    """An element of an array."""
+    """A step to an element of an array."""
     index: int | None
     position: expression.Expression | None
     def __init__(self, *, index: int | None = ..., position: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class SliceStep(WireStep):
-    """The elements of an array from one to another, both included; none where the last one is before the first."""
+    """The elements of an array from the first to the last index, both included. The slice is empty if the last index is less than the first."""
     first: expression.Expression
     last: expression.Expression
     def __init__(self, *, first: expression.Expression | None = ..., last: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class ConversionCall(expression.Expression):
-    """The literal that a conversion gives."""
+    """The literal that a conversion returns."""
     conversion: Conversion
     argument: WireAccess
     def __init__(self, *, conversion: Conversion | None = ..., argument: WireAccess | None = ..., source: Place | None = ...) -> None: ...
 
 class ErrorReason(expression.Expression):
-    """Why the service or action of an `error` has failed: the literal that is called like the node's reason."""
+    """The reason for the failure of the service or action in an `error` event: the literal with the name of the node's reason."""
     enumeration: expression.Enumeration
     def __init__(self, *, enumeration: expression.Enumeration | None = ..., source: Place | None = ...) -> None: ...
 
 class IfReadable(expression.Expression):
-    """A value that reads elements of arrays; another one where such an element is missing. It stands in reactions to events that happen in any case."""
+    """A value that reads elements of arrays, or an alternative if such an element is missing. It occurs in reactions to events that the node cannot refuse."""
     value: expression.Expression
     otherwise: expression.Expression
     def __init__(self, *, value: expression.Expression | None = ..., otherwise: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class ArrayQuantifier(expression.NamedElement, expression.Expression):
-    """A condition on the elements of an array, from left to right and no further than needed, or how many of them it holds of. Its name is that of an element."""
+    """A condition on the elements of an array, or the number of elements that fulfill it. Evaluation is from left to right and stops at the first decisive element. Its name is that of an element."""
     quantifier: Quantifier
     array: WireAccess
     body: expression.Expression
     def __init__(self, *, quantifier: Quantifier | None = ..., array: WireAccess | None = ..., body: expression.Expression | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Quantifier:
-    """How a condition on several things is put together."""
+    """The combination of a condition on several elements."""
     name: str
     all: ClassVar[Quantifier]
     any: ClassVar[Quantifier]
     count: ClassVar[Quantifier]
 
 class ArrayLiteral(expression.Expression):
-    """An array of these elements."""
+    """An array with its elements."""
     elements: MutableSequence[expression.Expression]
     def __init__(self, *, elements: Iterable[expression.Expression] = ..., source: Place | None = ...) -> None: ...
 
@@ -225,7 +225,7 @@ class ArrayType(expression.Type):
     def __init__(self, *, element: expression.Type | None = ..., source: Place | None = ...) -> None: ...
 
 class ObjectType(expression.Type):
-    """An object, as ROS has it."""
+    """A ROS object."""
     fields: MutableSequence[ObjectField]
     def __init__(self, *, fields: Iterable[ObjectField] = ..., source: Place | None = ...) -> None: ...
 

@@ -7,7 +7,7 @@ from robosc.model import expression
 from robosc.model.places import Place
 
 class SupervisoryControlModel(expression.NamedElement):
-    """Everything about one robot."""
+    """The plants, requirements and supervisor of one robot."""
     enumerations: MutableSequence[expression.Enumeration]
     plants: MutableSequence[Plant]
     requirements: MutableSequence[Requirement]
@@ -20,7 +20,7 @@ class SupervisoryControlModel(expression.NamedElement):
     def __init__(self, *, enumerations: Iterable[expression.Enumeration] = ..., plants: Iterable[Plant] = ..., requirements: Iterable[Requirement] = ..., invariants: Iterable[StateInvariant] = ..., properties: Iterable[Property] = ..., supervisor: Supervisor | None = ..., durations: Iterable[Duration] = ..., initialPredicates: Iterable[expression.Expression] = ..., markerPredicates: Iterable[expression.Expression] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Plant(expression.NamedElement):
-    """An automaton with variables. Of the edges of a location with one event, the guards exclude each other; those of an uncontrollable event of a model from CIF may overlap, and then any of them may be taken."""
+    """An automaton with variables. The guards of a location's edges with one event exclude each other. The guards of an uncontrollable event from CIF may overlap; then each enabled edge is possible."""
     kind: PlantKind
     origin: str | None
     topic: str | None
@@ -32,7 +32,7 @@ class Plant(expression.NamedElement):
     def __init__(self, *, kind: PlantKind | None = ..., origin: str | None = ..., topic: str | None = ..., events: Iterable[Event] = ..., inputs: Iterable[Input] = ..., variables: Iterable[DiscreteVariable] = ..., locations: Iterable[Location] = ..., edges: Iterable[Edge] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class PlantKind:
-    """message, service, action: communication (thesis listings 5.1 to 5.3); behaviour: a component's automaton; data: the provide statements of one communication (listing 5.4); requirement: an automaton that follows events and never blocks one. What a requirement automaton forbids stands in requirements on its locations, and no state of the plants is counted twice for its locations."""
+    """message, service, action: communication (thesis listings 5.1 to 5.3); behaviour: a component's automaton; data: the provide statements of one communication (listing 5.4); requirement: an automaton that observes events and never blocks one. The restrictions of a requirement automaton are requirements on its locations. The state count of the plants does not include its locations."""
     name: str
     message: ClassVar[PlantKind]
     service: ClassVar[PlantKind]
@@ -42,7 +42,7 @@ class PlantKind:
     requirement: ClassVar[PlantKind]
 
 class Event(expression.NamedElement):
-    """Something that happens, in all plants that have it in their alphabet at once."""
+    """An event of all plants that have it in their alphabets, simultaneous in all of them."""
     controllable: bool
     kind: EventKind
     inputs: MutableSequence[Input]
@@ -50,7 +50,7 @@ class Event(expression.NamedElement):
     def __init__(self, *, controllable: bool | None = ..., kind: EventKind | None = ..., inputs: Iterable[Input] = ..., timer: Timer | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class EventKind:
-    """trigger, cancel: sent by the controller; response, error, feedback, canceled: come from the robot; reset, tau: silent; data: which provided data goes out; timeout: a time is up; plain: an event of a model from CIF, which stands for no communication; input: the environment gives an input variable of CIF another value."""
+    """trigger, cancel: sent by the controller; response, error, feedback, canceled: caused by the robot; reset, tau: silent; data: selection of the provided data; timeout: expiry of a timer; plain: an event of a model from CIF without a communication; input: a change of a CIF input variable by the environment."""
     name: str
     trigger: ClassVar[EventKind]
     response: ClassVar[EventKind]
@@ -66,7 +66,7 @@ class EventKind:
     canceled: ClassVar[EventKind]
 
 class Timer(expression.Located):
-    """A time that runs while a component is in a location, or always, and what starts it anew. When it is up, its event happens once. To synthesis the event is possible at any time."""
+    """A timer that runs while a component is in a location, or always, with the events that restart it. On expiry, its event happens once. For synthesis, the event is possible at any time."""
     milliseconds: int | None
     duration: Duration | None
     location: Location | None
@@ -75,7 +75,7 @@ class Timer(expression.Located):
     def __init__(self, *, milliseconds: int | None = ..., duration: Duration | None = ..., location: Location | None = ..., entries: Iterable[Edge] = ..., without: Iterable[Event] = ..., source: Place | None = ...) -> None: ...
 
 class Duration(expression.Located):
-    """How long timers run, as a parameter of the robot says. It has no part in synthesis. A timer that runs keeps what it had when it started."""
+    """The time to expiry of timers, from a parameter of the robot. Synthesis does not use it. A running timer keeps the value from its start."""
     parameter: str
     milliseconds: int
     shortest: int
@@ -84,7 +84,7 @@ class Duration(expression.Located):
     def __init__(self, *, parameter: str | None = ..., milliseconds: int | None = ..., shortest: int | None = ..., longest: int | None = ..., unit: int | None = ..., source: Place | None = ...) -> None: ...
 
 class Input(expression.NamedElement):
-    """Data that comes with an event. Only guards and updates of edges of an event that names the input read it."""
+    """Data of an event. Only guards and updates of edges read it, and only on events that name the input."""
     type: expression.Type
     text: str | None
     def __init__(self, *, type: expression.Type | None = ..., text: str | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
@@ -111,19 +111,19 @@ class Edge(expression.Located):
     def __init__(self, *, event: Event | None = ..., guard: expression.Expression | None = ..., updates: Iterable[Update] = ..., target: Location | None = ..., source: Place | None = ...) -> None: ...
 
 class Update(expression.Located):
-    """Gives a variable a value. A value outside the range of an integer variable becomes the nearest bound."""
+    """An assignment to a variable. A value outside the range of an integer variable becomes the nearest bound."""
     variable: DiscreteVariable
     value: expression.Expression
     def __init__(self, *, variable: DiscreteVariable | None = ..., value: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class StatedRequirement(expression.Located):
-    """A requirement or a property as the robot model states it."""
+    """A requirement or a property as in the robot model."""
     name: str | None
     text: str | None
     def __init__(self, *, name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Requirement(StatedRequirement):
-    """Restricts a controllable event; with an automaton, or in a model from CIF, also an uncontrollable one, which synthesis then keeps from where it is forbidden."""
+    """A restriction of a controllable event. Requirement automata and models from CIF may also restrict an uncontrollable event. Synthesis then avoids the states in which the event is forbidden."""
     event: Event
     kind: RequirementKind
     condition: expression.Expression
@@ -132,7 +132,7 @@ class Requirement(StatedRequirement):
     def __init__(self, *, event: Event | None = ..., kind: RequirementKind | None = ..., condition: expression.Expression | None = ..., automaton: Plant | None = ..., ranges: Iterable[DiscreteVariable] = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class RequirementKind:
-    """needs: the event happens only where the condition holds; disables: only where it does not."""
+    """needs: the event happens only if the condition holds; disables: the event happens only if the condition does not hold."""
     name: str
     needs: ClassVar[RequirementKind]
     disables: ClassVar[RequirementKind]
@@ -143,7 +143,7 @@ class StateInvariant(StatedRequirement):
     def __init__(self, *, condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Property(StatedRequirement):
-    """What verification is to prove of the supervised system; synthesis does not see to it."""
+    """A claim about the supervised system that verification proves. Synthesis does not enforce it."""
     condition: expression.Expression
     def __init__(self, *, condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
@@ -152,7 +152,7 @@ class InvariantProperty(Property):
     def __init__(self, *, condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class ReachabilityProperty(Property):
-    """A state with the condition can be reached."""
+    """A claim that the system can reach a state with the condition."""
     premise: expression.Expression | None
     def __init__(self, *, premise: expression.Expression | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
@@ -167,7 +167,7 @@ class Supervisor(expression.Located):
     def __init__(self, *, uncontrolledStates: int | None = ..., controlledStates: int | None = ..., bddNodes: int | None = ..., settlingBound: int | None = ..., guards: Iterable[EventGuard] = ..., initial: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class EventGuard(expression.Located):
-    """When the supervisor allows an event: where both parts hold. What the plants forbid is not repeated."""
+    """The guard that the supervisor adds to an event: both parts must hold. It does not repeat the restrictions of the plants."""
     event: Event
     requirement: expression.Expression | None
     requirements: MutableSequence[Requirement]
@@ -177,7 +177,7 @@ class EventGuard(expression.Located):
     def __init__(self, *, event: Event | None = ..., requirement: expression.Expression | None = ..., requirements: Iterable[Requirement] = ..., synthesis: expression.Expression | None = ..., explanation: str | None = ..., everEnabled: bool | None = ..., source: Place | None = ...) -> None: ...
 
 class LocationReference(expression.Expression):
-    """True while its plant is in the location."""
+    """A boolean: true while the plant is in the location."""
     location: Location
     def __init__(self, *, location: Location | None = ..., source: Place | None = ...) -> None: ...
 
@@ -192,5 +192,5 @@ class InputReference(expression.Expression):
     def __init__(self, *, input: Input | None = ..., source: Place | None = ...) -> None: ...
 
 class Quotient(expression.BinaryExpression):
-    """How often a positive constant, the right operand, goes into the left one, which is never negative. Models from CIF alone have it."""
+    """The integer quotient of the left operand, which is never negative, by the right operand, a positive constant. Only models from CIF contain it."""
     def __init__(self, *, left: expression.Expression | None = ..., right: expression.Expression | None = ..., source: Place | None = ...) -> None: ...

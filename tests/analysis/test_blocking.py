@@ -1,4 +1,4 @@
-"""Why a supervisor is empty: the sentence, and a trace that the definition agrees with."""
+"""Explanations of empty supervisors: the sentence, and a trace that the definition confirms."""
 
 from collections.abc import Container, Sequence
 from itertools import product
@@ -20,7 +20,7 @@ from tests.synthesis.test_against_oracle import RANDOM_MODELS
 
 
 class Replay:
-    """Walks a trace through the oracle."""
+    """A trace that runs through the oracle."""
 
     def __init__(self, given_model: sct.SupervisoryControlModel, trace: Sequence[TraceStep]) -> None:
         self.oracle = Oracle(given_model)
@@ -28,7 +28,10 @@ class Replay:
         self.events = {event_name(event): event for event in self.oracle.events}
 
     def after(self, steps: int, *, requirements: bool) -> State:
-        """The state after the first steps of the trace; each is possible, whatever the inputs that it does not name."""
+        """Return the state after the first steps of the trace.
+
+        Each step is possible with all values of unnamed inputs.
+        """
         state = self.oracle.initial
         for step in self.trace[:steps]:
             event = self.events[step.event]
@@ -70,7 +73,7 @@ def python(value):
 
 
 def distance(oracle: Oracle, goal: State, within: Container[State] | None = None) -> int:
-    """How many events it takes at least to a state, under the requirements, through no states but some."""
+    """Return the minimum number of events to a state, under the requirements and within a set of states."""
     layer, seen, steps = {oracle.initial}, {oracle.initial}, 0
     while goal not in layer:
         layer = {
@@ -110,7 +113,10 @@ def test_the_trace_leads_to_the_fault(random_model):
 
 
 def check_requirement_at_fault(replay: Replay, reason: Reason) -> None:
-    """All is blocked from the start; the trace ends with what a requirement forbids on the way to a marked state."""
+    """Check that all is blocked from the start.
+
+    The trace ends with an event that a requirement forbids on the way to a marked state.
+    """
     oracle = replay.oracle
     assert is_blocked(oracle, oracle.initial)
     before = replay.after(len(reason.trace) - 1, requirements=True)
@@ -123,7 +129,7 @@ def check_requirement_at_fault(replay: Replay, reason: Reason) -> None:
 
 
 def check_uncontrollable_at_fault(replay: Replay, reason: Reason) -> None:
-    """The trace is a shortest one to its last event, which leads where no marked state can be reached any more."""
+    """Check that the trace is a shortest one to its last event, after which no marked state is reachable."""
     oracle = replay.oracle
     before, after = (replay.after(len(reason.trace) - last, requirements=True) for last in (1, 0))
     assert reason.trace[-1].event == event_name(reason.event)
@@ -197,7 +203,7 @@ def test_a_requirement_that_keeps_everything_from_being_marked_is_named():
     [([], "never in a marked state: `A` in `x`"), (["x"], "each component can be marked, but never all at once")],
 )
 def test_plants_that_reach_no_marked_state_are_named(marked, who, monkeypatch):
-    """No way is looked for where none leads: layer by layer, all states of a large robot take minutes."""
+    """No path is searched if none exists: layer by layer, all states of a large robot would take minutes."""
     monkeypatch.setattr(Layers, "_grow", lambda *_: pytest.fail("it looks for a way"))
     a = plant("A", {"x": [edge("u", to="y")], "y": [edge("v", to="x")]}, uncontrollable=["u", "v"], marked=marked)
     b = plant("B", {"x": [edge("u", to="y")], "y": [edge("v", to="x")]}, marked=["y"])
@@ -208,7 +214,7 @@ def test_plants_that_reach_no_marked_state_are_named(marked, who, monkeypatch):
 
 
 def test_a_fault_that_shows_only_after_a_round():
-    """The only way to the marked state leads past the fault: leaving it out blocks what comes before."""
+    """The only path to the marked state contains the faulty event: leaving it out blocks the states before it."""
     steps = plant(
         "P",
         {

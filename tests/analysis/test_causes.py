@@ -1,4 +1,4 @@
-"""Causes come before what follows from them, and hints name what to write and what to run."""
+"""Causes come before their consequences, and hints name the text to write and the command to run."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from robosc.analysis.explain import Renderer, emptiness, event_named, explored, 
 from robosc.analysis.supervise import EmptySupervisorError, supervise
 from robosc.base.diagnostics import Diagnostic, in_order
 
-#: A drill goes down between two feeds; its cover can be opened at any time, so it never may.
+#: A drill goes down between two feeds. Its cover can be opened at any time, so it never may go down.
 TURNS = """robot Drill {
   component Feed {
     incoming message left with type: none
@@ -39,7 +39,7 @@ TURNS = """robot Drill {
   requirement Safe: never Spindle.down and Cover.open
 }
 """
-#: A machine that publishes when it is done, followed by an automaton that allows it once.
+#: A machine that publishes when it is done, and an automaton that permits this once.
 BUFFER = """robot Factory {
   component Mill {
     incoming message start with type: none
@@ -59,7 +59,7 @@ BUFFER = """robot Factory {
   }
 }
 """
-#: The mains come back only while the crane is parked, and the crane needs mains to park.
+#: The mains return only while the crane is parked, and the crane needs mains to park.
 GUARDED = """robot Crane {
   component Boom {
     incoming message park with type: none

@@ -1,4 +1,4 @@
-"""Models draw the findings that their first line names, in the golden wording."""
+"""Models draw the findings that their first line names, with the golden messages."""
 
 import re
 from pathlib import Path
@@ -18,7 +18,7 @@ LISTINGS = Path(__file__).parents[4] / "shared" / "thesis" / "models"
 
 
 def findings(model: Path) -> tuple[list[Diagnostic], dict[str, str]]:
-    """What synthesis finds, with the paths that the command line shows."""
+    """Return the findings of synthesis with the paths that the command line shows."""
     reading = read(model)
     errors = [*reading.findings, *check(reading.base, reading.findings)]
     assert [error for error in errors if error.severity is Severity.ERROR] == []
@@ -52,7 +52,7 @@ def test_wording(golden) -> None:
         ("maze-solver", []),
         ("object-finder", []),
         ("obstacle-navigation", []),
-        # It may move while a person stands before it, and has to halt then: the printed requirements do not exclude it.
+        # It may move while a person is in front of it, and must halt then: the printed requirements permit both.
         ("person-follower", ["shared-topic-conflict"]),
         ("simple-navigation", []),
     ],

@@ -1,4 +1,4 @@
-"""`never` and `always`, and names of requirements, from the text to what people are told."""
+"""`never`, `always` and names of requirements, from the text to the output for users."""
 
 import re
 from pathlib import Path
@@ -90,7 +90,7 @@ def test_it_holds_in_every_reachable_state_of_the_supervised_system(tmp_path: Pa
 
 
 def test_synthesis_keeps_away_from_where_something_uncontrollable_leads_to_a_violation(tmp_path: Path) -> None:
-    """`never EmergencyStop.stopped and Base.driving` forbids driving for good, and the finding says why."""
+    """`never EmergencyStop.stopped and Base.driving` forbids driving altogether, and the finding explains why."""
     made = sct_of(
         tmp_path,
         STOP,
@@ -111,7 +111,10 @@ def test_synthesis_keeps_away_from_where_something_uncontrollable_leads_to_a_vio
 
 
 def test_what_could_happen_only_beyond_names_the_requirement(tmp_path: Path) -> None:
-    """An event that is kept out of reach: the requirement and the uncontrollable event, with a trace."""
+    """A finding about an event in unreachable states names its cause.
+
+    The cause is a requirement and an uncontrollable event, with a trace.
+    """
     horn = "component Horn { incoming message toot with type: none }"
     made = sct_of(
         tmp_path,
@@ -175,7 +178,7 @@ def test_an_empty_supervisor_names_the_requirement_and_the_shortest_way(
 
 
 def test_a_way_to_a_marked_state_through_a_violation(tmp_path: Path) -> None:
-    """The marked state is there, but what leads to it is forbidden."""
+    """The marked state exists, but the path to it is forbidden."""
     component = """component Base {
         incoming message go with type: none
         behaviour {
@@ -254,7 +257,7 @@ def test_a_guard_that_lets_the_robot_violate_it_is_refuted_with_a_shortest_trace
 
 
 def test_the_words_are_names_elsewhere(tmp_path: Path) -> None:
-    """No new reserved word: a communication or a state may be called `never` or `always`."""
+    """`never` and `always` are not reserved: a communication or a state may have these names."""
     component = """component always {
         incoming message never with type: none
         behaviour {

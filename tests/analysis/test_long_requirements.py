@@ -1,4 +1,4 @@
-"""Requirements of thousands of operators are analysed in a thread with a small stack, whichever way they are nested."""
+"""Requirements of thousands of operators are analyzed on a small stack, whichever way they are nested."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ OPERATORS = 3000
 
 
 def counter(kind: type[ex.BinaryExpression], *, left: bool) -> sct.SupervisoryControlModel:
-    """A counter whose step is restricted by a chain of operators, nested to the left or to the right."""
+    """Return a counter whose step is restricted by a chain of operators, nested to the left or to the right."""
     made = model(
         [
             plant(

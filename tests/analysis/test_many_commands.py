@@ -1,4 +1,4 @@
-"""Hundreds of commands to one topic cost in proportion to their number, and each has one finding at most."""
+"""Hundreds of commands to one topic cost time in proportion to their number and draw one finding each at most."""
 
 from typing import Any
 
@@ -19,7 +19,7 @@ COMMANDS = 60
 
 
 class Counter:
-    """Calls of a function that go on to it."""
+    """Count the calls of a function and pass them on."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, owner: Any, name: str) -> None:
         self.calls = 0
@@ -33,7 +33,7 @@ class Counter:
 
 
 class States(frozenset[int]):
-    """A set of states that counts what is asked of it."""
+    """A set of states that counts its operations."""
 
     operations = 0
 
@@ -75,7 +75,7 @@ def conflicts(text: str) -> list[Diagnostic]:
 def test_commands_that_meet_none_cost_one_operation_each() -> None:
     States.operations = 0
     assert meetings({n: States([n]) for n in range(COMMANDS)}) == []
-    assert States.operations == 2 * COMMANDS  # one to look, one to add
+    assert States.operations == 2 * COMMANDS  # one intersection and one union
 
 
 def test_each_command_is_named_with_those_before_it_that_it_meets() -> None:

@@ -1,4 +1,4 @@
-"""What synthesis observes over decision diagrams against the definitions, state by state, on random models."""
+"""Observations over decision diagrams against the definitions, state by state, on random models."""
 
 from collections.abc import Iterable
 from itertools import combinations
@@ -34,10 +34,10 @@ SILENT = (sct.EventKind.tau, sct.EventKind.reset)
 
 @st.composite
 def communicating_models(draw: st.DrawFn) -> sct.SupervisoryControlModel:
-    """Random models in which what is observed is not too rare.
+    """Draw models in which observations are frequent.
 
-    Plants with a trigger are communication on one topic, data plants belong to one of them, and some actions need that
-    they have not started.
+    Plants with a trigger communicate on one topic, and data plants belong to one of them. Some actions have the
+    requirement that they are not running.
     """
     made = draw(sct_models())
     triggers = [event for plant in made.plants for event in plant.events if event.kind == sct.EventKind.trigger]
@@ -59,7 +59,7 @@ def communicating_models(draw: st.DrawFn) -> sct.SupervisoryControlModel:
 
 
 class Definitions:
-    """The definitions of all observations, over the states that the oracle found."""
+    """The definitions of all observations, over the states of the oracle."""
 
     def __init__(self, oracle: Oracle) -> None:
         self.oracle = oracle
@@ -83,7 +83,7 @@ class Definitions:
         return [event for event in self.controllable if event.kind in kinds and not self.allowed(event)]
 
     def held_back(self, event: sct.Event) -> set[State]:
-        """The controlled states in which only synthesis forbids the event."""
+        """Return the controlled states in which only synthesis forbids the event."""
         return {
             state
             for state in self.oracle.controlled
@@ -180,7 +180,7 @@ def met(conflict: SharedTopicConflict) -> list[sct.Event]:
 
 
 def check_details(definitions: Definitions, observed: Observations) -> None:
-    """What is said beside the event is true, too."""
+    """Check the details of each observation."""
     oracle = definitions.oracle
     check_never_enabled(definitions, observed.never_enabled)
     for restricted in observed.silent_restricted:
@@ -206,7 +206,11 @@ def holds(oracle, requirement, state):
 
 
 def check_forbidding(oracle, event, told, states):
-    """Those told are all that alone hold in none of the states; else some that do not together, none too many."""
+    """Check the reported requirements.
+
+    They are those that each hold in none of the states. If there are none, they are a minimal set that never holds
+    together.
+    """
     own = [requirement for requirement in oracle.model.requirements if requirement.event is event]
     alone = [requirement for requirement in own if not any(holds(oracle, requirement, state) for state in states)]
     if alone:
@@ -222,7 +226,7 @@ def check_forbidding(oracle, event, told, states):
 
 
 def check_hindrances(definitions: Definitions, observed: UnreachableState) -> None:
-    """They are all transitions to the state, and what is said of each keeps it from ever being taken."""
+    """Check that the hindrances are all transitions to the state, and that each reason excludes its transition."""
     oracle, location = definitions.oracle, observed.location
     component = location.eContainer()
     assert {hindrance.edge for hindrance in observed.hindrances} == {
@@ -260,7 +264,7 @@ def check_hindrances(definitions: Definitions, observed: UnreachableState) -> No
 
 
 def check_example(definitions: Definitions, example: Example, states: set[State]) -> None:
-    """The example is one of the states, and settled if one of them is."""
+    """Check that the example is one of the states, and settled if one of them is."""
     oracle = definitions.oracle
     silent = [event for event in definitions.controllable if event.kind in SILENT]
     unsettled = {state for silent in silent for state in definitions.allowed(silent)}
@@ -275,7 +279,7 @@ def shown(oracle: Oracle, state: State):
 
 
 def check_never_enabled(definitions: Definitions, found: Iterable[NeverEnabled]) -> None:
-    """Who forbids each of them, and what is told of the way there."""
+    """Check who forbids each of the events, and the reported path."""
     oracle = definitions.oracle
     for never in found:
         enabled = [state for state in oracle.controlled if oracle.enabled(never.event, state)]
@@ -304,7 +308,7 @@ def check_never_enabled(definitions: Definitions, found: Iterable[NeverEnabled])
 
 
 def check_barrier(definitions: Definitions, never: NeverEnabled) -> None:
-    """What holds the robot up on its way to where only the plants would let the event happen."""
+    """Check the obstacle on the path to states in which only the plants permit the event."""
     oracle = definitions.oracle
     steps = never.counterexample.trace if never.counterexample is not None else never.trace
     replay = Replay(oracle.model, steps)
@@ -322,7 +326,10 @@ def check_barrier(definitions: Definitions, never: NeverEnabled) -> None:
 def check_counterexample(
     definitions: Definitions, held_back: sct.Event, counterexample: BlockingCounterexample
 ) -> None:
-    """The trace is a shortest one to where the event is held back, and goes on to where nothing is marked any more."""
+    """Check that the trace is a shortest one to a held-back event, and continues until a plant is lost.
+
+    After its end, some plants can never be marked again.
+    """
     oracle = definitions.oracle
     assert counterexample.trace[-1].event == event_name(held_back)
     steps = [*counterexample.trace, *counterexample.onwards]
@@ -345,7 +352,7 @@ def check_counterexample(
 
 
 def test_counterexample_that_comes_later_is_traced_to_its_end():
-    """The event leads to where the robot may slip, by itself, to where only a forbidden way goes on."""
+    """After the event, the robot may slip by itself to a state with forbidden exits only."""
     machine = plant(
         "M",
         {
@@ -371,7 +378,7 @@ def test_counterexample_that_comes_later_is_traced_to_its_end():
 
 
 def test_counterexample_leads_through_what_nothing_prevents():
-    """The shorter way to the ground is one that the supervisor could prevent by itself."""
+    """The shorter path to the ground has a controllable step, which the supervisor could prevent."""
     machine = plant(
         "M",
         {
@@ -419,7 +426,7 @@ def test_an_example_is_settled_where_that_is_possible(where, example, settled):
 
 
 def test_what_can_still_be_marked_after_a_counterexample():
-    """The lamp can, once its bulb is in; the gate opens at a machine at rest only."""
+    """The lamp can be marked, once its bulb is in; the gate opens only at a machine at rest."""
     machine = plant(
         "M",
         {"rest": [edge("c_tau1", to="slope")], "slope": [edge("u_fall", to="ground")], "ground": []},

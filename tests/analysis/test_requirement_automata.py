@@ -1,4 +1,4 @@
-"""Orders, counts and requirement automata, from the text to the engine and to what people are told."""
+"""Orders, counts and requirement automata, from the text to the engine and the output for users."""
 
 from pathlib import Path
 
@@ -46,7 +46,7 @@ def supervised(folder: Path, *definitions: str) -> sct.SupervisoryControlModel:
 
 
 def possible(made: sct.SupervisoryControlModel, *events: str) -> set[str]:
-    """What of `grip`, `place`, `drop` and `dock` can happen after these events."""
+    """Return those of `grip`, `place`, `drop` and `dock` that can happen after these events."""
     interpreter = Engine(made)
     for event in events:
         interpreter.perform(event)
@@ -138,7 +138,7 @@ def test_requirements_read_the_states_of_an_automaton(tmp_path: Path) -> None:
 
 
 def test_it_does_not_start_what_it_could_not_let_go_on(tmp_path: Path) -> None:
-    """An uncontrollable event that is forbidden makes the state bad: the answer may come when the service is called."""
+    """A forbidden uncontrollable event makes the state bad: after the service call its response may come."""
     made = supervised(tmp_path, "requirement O1: response from dock after home")
     assert possible(made) == {"grip", "place", "drop"}
     assert possible(made, HOME) == {*WORDS}
@@ -162,7 +162,7 @@ def test_an_empty_supervisor_names_the_requirement(tmp_path: Path) -> None:
 
 
 def test_marked_states_of_an_automaton_count(tmp_path: Path) -> None:
-    """With a marked state the robot must be able to come back to it."""
+    """If an automaton has a marked state, the robot must be able to return to it."""
     bound = "requirement T: automaton {{ initial {} state a {{ on request to grip goto b }} state b {{ }} }}"
     assert "grip" in possible(supervised(tmp_path, bound.format("")))
     assert "grip" not in possible(supervised(tmp_path, bound.format("marked")))
@@ -235,7 +235,7 @@ OUT_OF_REACH = "the supervisor lets the robot reach no state in which it could b
 @pytest.mark.parametrize(
     ("requirement", "name", "why"),
     [
-        (  # forbidden where it could happen
+        (  # forbidden in all states in which it could happen
             "requirement T: automaton { initial state a { on grip on response from home } state b { on place } }",
             "place",
             WHEREVER.format("T: automaton") + "after request to `Arm.grip`, then response from `Arm.home`",
@@ -245,19 +245,19 @@ OUT_OF_REACH = "the supervisor lets the robot reach no state in which it could b
             "grip",
             WHEREVER.format("{ grip, place } after drop") + "at the start",
         ),
-        (  # kept out of reach by what is required on the way there
+        (  # kept out of reach by a requirement on the path
             "requirement grip after drop",
             "place",
             OUT_OF_REACH + "the shortest way to one needs request to `Arm.grip`, where `requirement grip after drop` "
             "(line 15) forbids it",
         ),
-        (  # by an answer that can't be prevented
+        (  # by an uncontrollable response
             "requirement T: automaton { initial state a { on grip goto b on response from home } state b { on grip } }",
             "place",
             OUT_OF_REACH + "after request to `Arm.grip`, response from `Arm.home` can come, which `requirement T: "
             "automaton` forbids",
         ),
-        (  # by an automaton that could not get back to where it may rest
+        (  # by an automaton that could not return to its marked state
             "requirement T: automaton { initial marked state a { on grip goto b } state b { } }",
             "place",
             OUT_OF_REACH + "after request to `Arm.grip`, `T` can't get back to a marked state",
@@ -265,8 +265,10 @@ OUT_OF_REACH = "the supervisor lets the robot reach no state in which it could b
     ],
 )
 def test_never_enabled_says_why_with_a_trace(tmp_path: Path, requirement: str, name: str, why: str) -> None:
-    """Where one of these leaves an event never enabled, `never-enabled` names the requirement and the uncontrollable
-    event, with a trace."""
+    """If one of these requirements leaves an event never enabled, `never-enabled` explains why.
+
+    It names the requirement and the uncontrollable event, with a trace.
+    """
     findings, made = read_robot(tmp_path, GUIDE, requirement)
     assert findings == []
     found = [finding.message for finding in supervise(made).findings if finding.rule == "never-enabled"]
@@ -287,7 +289,7 @@ def test_verify_has_a_row_for_each_event_and_refutes_a_guard_that_forgets(tmp_pa
 
 
 def test_an_action_is_not_cancelled_for_an_order(tmp_path: Path) -> None:
-    """`drive after each grip` forbids another start while the action runs, and nothing is said to cancel itself."""
+    """`drive after each grip` forbids another start while the action runs. This draws no `self-cancelling`."""
     base = """component Base {
         action drive with request: none, response: none, feedback: none links go
     }
@@ -360,7 +362,7 @@ def test_what_is_wrong_is_found(tmp_path: Path, requirement: str, finding: str) 
 
 @pytest.mark.parametrize("inside", ["variable v: boolean", "on request to grip goto a", "transition goto a"])
 def test_states_and_transitions_on_events_only(tmp_path: Path, inside: str) -> None:
-    """No variables, no silent transitions, nothing at automaton level: `syntax`."""
+    """Variables, silent transitions and automaton-level transitions are not permitted: `syntax`."""
     found, _ = read_robot(tmp_path, f"requirement T: automaton {{ initial state a {{ }} {inside} }}")
     assert any(text.startswith("syntax") for text in found)
 
@@ -395,7 +397,7 @@ LIBRARY = """library Arms {
 
 
 def test_each_instance_of_a_component_of_a_library_has_its_own(tmp_path: Path) -> None:
-    """Requirements stand in components, also in libraries; `Left.O1` is that of the instance."""
+    """Requirements may be in components, also in libraries; `Left.O1` is that of the instance."""
     (tmp_path / "arms.rscd").write_text(LIBRARY, encoding="utf-8")
     left, right = (
         f'component {name} from Arms import Arm with {{ grip: "/{name}/grip", place: "/{name}/place" }}'

@@ -1,4 +1,4 @@
-"""Every rule that synthesis checks has a page, and the models on it are what the page says."""
+"""Every rule that synthesis checks has a page, and the models on it draw the findings that the page shows."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""A supervisor becomes the model's own, unless something of it is missing."""
+"""A supervisor is stored in the model, unless it is incomplete."""
 
 from pathlib import Path
 
@@ -34,7 +34,7 @@ robot Robot {
 
 
 def test_a_supervisor_without_all_its_guards_is_nobodys() -> None:
-    """Whoever generated a controller of it would let a robot do what synthesis forbids."""
+    """A controller with an incomplete supervisor would permit events that synthesis forbids."""
     whole, short = philosophers(5), philosophers(5)
     assert not has_errors(supervise(whole).findings)
     assert whole.supervisor is not None
@@ -45,7 +45,7 @@ def test_a_supervisor_without_all_its_guards_is_nobodys() -> None:
 
 
 def test_an_empty_supervisor_is_reported_in_the_robots_own_file(tmp_path: Path) -> None:
-    """The event at fault is that of a library: the finding stands at the requirement."""
+    """If the event at fault belongs to a library, the finding is at the requirement."""
     (tmp_path / "StopLibrary.rscd").write_text(LIBRARY)
     text = ROBOT.replace("REQUIREMENT", "requirement R: never Stop.pressed")
     robot = robosc.load(str(tmp_path / "robot.rscd"), text=text)

@@ -1,4 +1,4 @@
-"""`synthesize` says in how many states each requirement matters, and which never do."""
+"""`synthesize` reports the number of states in which each requirement matters, and those that never matter."""
 
 from pathlib import Path
 

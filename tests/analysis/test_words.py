@@ -1,4 +1,4 @@
-"""Events whose names say nothing of the text are told with their statement and its line."""
+"""Events with generated names are described by their statement and its line."""
 
 from pathlib import Path
 
@@ -61,7 +61,7 @@ def test_simulate_tells_it(tmp_path: Path) -> None:
 
 
 def test_generated_texts_tell_the_statement_and_no_line(tmp_path: Path) -> None:
-    """So a comment in the model changes nothing in them."""
+    """A comment in the model therefore changes nothing in them."""
     generators = (cif.generate, supervisor.generate)
     texts = [generate(models(tmp_path), Configuration()) for generate in generators]
     told = "\n".join(text for told_texts in texts for text in told_texts.values())

@@ -1,4 +1,4 @@
-"""The command that times models from CIF finds them by ESCET's scripts, and says where one has no answer."""
+"""The benchmark command for CIF models finds the models in ESCET's scripts and reports each tool without a result."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The robots of the benchmarks are valid, and have as many states as is said of them."""
+"""The robots of the benchmarks are valid and have the documented numbers of states."""
 
 import pytest
 from robosc_faudes.automata import faudes_states, plants, requirements
@@ -12,7 +12,7 @@ from tests.sct_models import edge, model, needs, plant
 from tests.synthesis.oracle import Oracle
 
 SMALL = [(name, number) for name in FAMILIES for number in (2, 3, 4)]
-#: The largest that can be explored state by state without patience.
+#: Largest sizes whose states the oracle enumerates quickly.
 SMALLEST = [("cells", 1), ("sensors", 2), ("line", 2), ("philosophers", 2), ("warehouse", 3), ("services", 3)]
 
 
@@ -22,7 +22,7 @@ def sct(tmp_path):
         path = tmp_path / "robot.rscd"
         path.write_text(FAMILIES[name].text(number))
         robot = robosc.load(path, (), [INTERFACES])
-        # Their robots are for counting: each error is an end.
+        # The families measure state counts: their models treat each error as the end of a call.
         assert {finding.rule for finding in robosc.check(robot, [INTERFACES])} <= {"unknown-end"}
         return robosc.to_sct(robot)
 

@@ -1,4 +1,4 @@
-"""The benchmark command runs, from the models to the page; the numbers are those of whoever asks for them."""
+"""The scaling benchmark runs from the models to the page; the tests do not depend on the measured times."""
 
 import json
 import subprocess

@@ -1,4 +1,4 @@
-"""No walk over a model takes a time that grows with the square of its length: counted in calls, never in seconds."""
+"""No walk over a model takes quadratic time. The tests count function calls, not seconds."""
 
 import gc
 import sys
@@ -22,27 +22,27 @@ pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
 SIZES = (25, 75)
-#: What grows with n·log n, and what is small beside what is done once, may lie a little above 1.
+#: Largest accepted exponent. Work of order n·log n and fixed costs raise it a little above 1.
 MOST = 1.3
-#: The same where what is done once is taken off.
+#: Largest accepted exponent after subtracting fixed costs.
 MOST_WITHOUT_ONCE = 1.1
 
 
 @pytest.fixture(autouse=True)
 def parsed_each_time(monkeypatch):
-    """Parsing is counted, too: `tests.conftest.remember_trees` does it once."""
+    """Parse in every measured call, in place of the cache of `tests.conftest.remember_trees`."""
     monkeypatch.setattr(recovery, "parse", grammar.parse)
 
 
 def calls(work, *arguments):
-    """How many functions and built-ins are called; and what came of the work."""
+    """Return the number of calls of functions and built-ins, and the result of the work."""
     count = 0
 
     def counting(_frame, event, _argument):
         nonlocal count
         count += event in ("call", "c_call")
 
-    # What is collected, and when, is no part of the work.
+    # The garbage collector calls finalizers at arbitrary moments, which would change the count.
     gc.disable()
     sys.setprofile(counting)
     try:
@@ -68,7 +68,7 @@ def reading(path):
 
 
 def memory(work, *arguments):
-    """The most bytes that Python had at a time."""
+    """Return the peak of the memory that Python allocates during the work, in bytes."""
     tracemalloc.start()
     work(*arguments)
     most = tracemalloc.get_traced_memory()[1]
@@ -82,7 +82,7 @@ def test_reading_and_checking(family, tmp_path):
     for number in SIZES:
         (tmp_path / str(number)).mkdir()
         path = write(family, number, tmp_path / str(number))
-        reading(path)  # What is loaded and built once is no part of it.
+        reading(path)  # The first call loads and builds everything that later calls reuse.
         counts.append(calls(reading, path)[0])
     assert exponent(*counts) < MOST, counts
 
@@ -104,7 +104,7 @@ def test_outlining(family, tmp_path):
 
 
 def test_findings_that_can_be_mended(tmp_path):
-    """Each has a place in the text, which is not sought from its start."""
+    """Each finding with an edit has a position; computing it does not scan the text from its start."""
     counts = []
     for number in (100, 200, 400):
         (tmp_path / str(number)).mkdir()
@@ -124,7 +124,7 @@ def test_an_offset_in_a_long_text_copies_nothing():
 
 
 class Copied(str):
-    """A text that tells how many characters are copied out of it."""
+    """A string that counts the characters copied out of it."""
 
     characters = 0
 
@@ -187,7 +187,7 @@ def test_generating_for_ros(family, ros, tmp_path):
         paths.append(write(family, number, tmp_path / str(number)))
     generating(paths[-1], *ros)
     few, more, many = (calls(generating, path, *ros)[0] for path in paths)
-    # What a package has once is in all three and would hide a square; without it nothing keeps this from 1.
+    # The differences cancel the fixed parts of a package, which would hide quadratic growth in the exponent.
     assert log2((many - more) / (more - few)) < MOST_WITHOUT_ONCE, (few, more, many)
 
 

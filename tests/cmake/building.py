@@ -1,4 +1,4 @@
-"""What docs/workspace.md says of building, what is seen of it by make, and files that change while one watches."""
+"""Blocks of docs/workspace.md about building, checks of the output of make, and temporary changes of files."""
 
 from __future__ import annotations
 
@@ -15,28 +15,29 @@ PAGE = (Path(__file__).parents[2] / "docs" / "workspace.md").read_text(encoding=
 
 
 def blocks(section: str, language: str) -> list[str]:
-    """The blocks of a language (`sh`, `cmake`) in a section of the page, as they stand there."""
+    """Return the blocks of a language (`sh`, `cmake`) in a section of the page, unchanged."""
     (text,) = re.findall(rf"^## {re.escape(section)}\n(.*?)(?=^## |\Z)", PAGE, re.MULTILINE | re.DOTALL)
     return re.findall(rf"^```{language}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
 
 
 def built_again(output: str) -> list[str]:
-    """The object files that make says it has built, without their folders."""
+    """Return the names of the object files that make reports as built."""
     return re.findall(r"Building \w+ object (?:\S*/)?(\S+)", output)
 
 
 def no_work_is_done(output: str) -> bool:
-    """Whether make says nothing but that all is built, and CMake at most that what is installed is as it was."""
+    """Whether make reports only finished targets, and CMake only unchanged installed files."""
     lines = [line for line in output.splitlines() if re.match(r"(\[ *\d+%|-- )", line)]
     idle = r"\[ *\d+%\] Built target |-- Install configuration|-- Up-to-date: "
-    # ament lists its environment anew each time, and rosidl installs some of what it makes of messages again.
+    # ament lists its environment in each build, and rosidl reinstalls some of the files that it generates from
+    # messages.
     again = r"-- Installing: .*/(package\.dsv|\w+__type_support\.c|[\w.-]+\.egg-info/\S+)$"
     return any("Built target" in line for line in lines) and all(re.match(f"{idle}|{again}", line) for line in lines)
 
 
 @contextmanager
 def touched_later(file: Path, text: str) -> Iterator[None]:
-    """A file with another text, and after the block with its own again; each later than whatever was built before."""
+    """Replace the text of a file for a block of code; both changes get a time later than all earlier builds."""
     before = file.read_text(encoding="utf-8")
     _write(file, text)
     try:
@@ -46,7 +47,7 @@ def touched_later(file: Path, text: str) -> Iterator[None]:
 
 
 def _write(file: Path, text: str) -> None:
-    """Where time passes in steps, what is written right after a build would be as old as that."""
+    """Write a file with a new modification time, even if the clock of the file system is coarse."""
     earlier = file.stat().st_mtime_ns
     file.write_text(text, encoding="utf-8")
     later = max(file.stat().st_mtime_ns, earlier + 1)

@@ -1,4 +1,4 @@
-"""A project of CMake without ROS, with a model in it: it is generated when it is built, and only then."""
+"""A CMake project without ROS generates its model when it is built, and only then."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ CMAKE = ROOT / "cmake"
 
 
 class Project:
-    """A copy of `plain`, and how it is built."""
+    """A copy of `plain`, with functions that configure and build it."""
 
     def __init__(self, folder: Path) -> None:
         self.source, self.build = folder / "gate", folder / "build"
@@ -96,7 +96,7 @@ def test_a_fault_stops_the_build_until_it_is_mended(configured: Project) -> None
             assert f"{model}:12:33: error: " in done.stderr
             assert "    requirement lift needs Sensor.cleer\n" + " " * 36 + "^^^^^\n" in done.stderr
             assert "did you mean `clear`?" in done.stderr
-            # An error of CMake breaks lines: there is little to break in it.
+            # CMake wraps the lines of an error. This error is short enough to stay on one line.
             assert "robosc generates nothing from gate.rscd: see above.\n" in done.stderr
     assert configured.make().returncode == 0
 
@@ -174,7 +174,7 @@ def test_the_tool_says_where_they_are() -> None:
     ],
 )
 def test_what_a_node_is_generated_with_reaches_the_program(tmp_path: Path, arguments: str, told: str) -> None:
-    """By the function behind `robosc_generate_controller` of both ROS, which hands on all that it is given."""
+    """The function behind `robosc_generate_controller` of both ROS versions passes all its arguments to the program."""
     project = Project(tmp_path)
     shutil.copy(HERE.parent / "run" / "runtime" / "guard.rscd", project.source)
     settings = project.source / "settings" / "own.json"

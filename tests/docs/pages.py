@@ -1,4 +1,4 @@
-"""The pages of the documentation, and the blocks in them."""
+"""Pages of the documentation and their code blocks."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _BLOCK = re.compile(
     r"(?:^<!-- (?P<marks>[^\n]*?) -->\n\n?)?^(?P<indent> *)```(?P<kind>[^\n`]*)\n(?P<text>.*?)^(?P=indent)```$",
     re.MULTILINE | re.DOTALL,
 )
-#: What a comment right before a block may say of it, as `<!-- in: examples/line_follower; status: 1 -->`.
+#: Marks in a comment directly before a block, as `<!-- in: examples/line_follower; status: 1 -->`.
 MARKS = {
     "not run": "why nothing runs it",
     "tested by": "the test that does, of the repository; it names the page",
@@ -31,7 +31,7 @@ _BETWEEN_MARKS = re.compile(rf"; (?=(?:{'|'.join(MARKS)}): )")
 
 @dataclass(frozen=True)
 class Block:
-    """A fenced block: what stands behind its fence, its text, its line, and what the comment right before it says."""
+    """A fenced block: its page, line, kind (the words after the fence), text, and marks from the comment before it."""
 
     page: Path
     line: int
@@ -41,12 +41,12 @@ class Block:
 
     @property
     def name(self) -> str:
-        """Page and line, for people."""
+        """Page and line in a readable form."""
         return f"{self.page.relative_to(ROOT).as_posix()}:{self.line}"
 
 
 def blocks(page: Path) -> list[Block]:
-    """All blocks of a page, in their order."""
+    """Return all blocks of a page in their order."""
     text = page.read_text(encoding="utf-8")
     found = []
     for match in _BLOCK.finditer(text):
@@ -59,5 +59,5 @@ def blocks(page: Path) -> list[Block]:
 
 
 def without_blocks(text: str) -> str:
-    """A page's text between its blocks."""
+    """Return the text of a page without its blocks."""
     return _BLOCK.sub("", text)

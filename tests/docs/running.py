@@ -1,4 +1,4 @@
-"""Runs the commands of a page in a copy of what it speaks of."""
+"""Execution of the commands of a page in a copy of the examples."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from tests.docs.pages import ROOT, Block
 if TYPE_CHECKING:
     from pathlib import Path
 
-#: Commands that do not end by themselves.
+#: Commands that run until they are interrupted.
 _LASTING = ("robosc run", "robosc view", "robosc lsp", "robosc dap")
-#: What the shell would do more with than hand it on.
+#: Characters with a meaning in the shell.
 _SHELL = re.compile(r"[|<>;&$`*~\\\n]")
 
 
 class Desk:
-    """A folder with the examples, as somebody has them who cloned the repository, and the programs that pages call."""
+    """A folder with the examples, as in a clone of the repository, and the programs that pages call."""
 
     def __init__(self, folder: Path) -> None:
         self.root = folder / "robosc"
@@ -42,13 +42,13 @@ class Desk:
             program.chmod(0o755)
 
     def place(self, block: Block) -> Path:
-        """The folder that a block runs in, or is written to."""
+        """Return the folder that a block runs in or is written to; create it if necessary."""
         folder = self.root / block.marks.get("in", "")
         folder.mkdir(parents=True, exist_ok=True)
         return folder
 
     def write(self, block: Block) -> None:
-        """Puts a block's text into the file that its mark names."""
+        """Write the text of a block into the file named in its mark."""
         path = self.place(block) / block.marks["file"]
         path.parent.mkdir(parents=True, exist_ok=True)
         text = block.text
@@ -57,7 +57,7 @@ class Desk:
         path.write_text(text, encoding="utf-8")
 
     def run(self, command: str, folder: Path) -> tuple[int, str]:
-        """Exit status and output of a command: in this process where it is a plain call of robosc, else by a shell."""
+        """Return exit status and output of a command. Plain calls of robosc run in this process, others in a shell."""
         bare = command.partition("  #")[0].strip()
         if bare.startswith("robosc ") and not bare.startswith(_LASTING) and not _SHELL.search(bare):
             with chdir(folder):
@@ -84,7 +84,7 @@ class Desk:
 
 
 def changed(text: str, diff: str) -> str:
-    """A text with one hunk of a diff applied, which has its place there once."""
+    """Apply one hunk of a diff to a text that contains its old lines exactly once."""
     old, new = (
         "".join(line[1:] for line in diff.splitlines(keepends=True) if line[0] in signs) for signs in ("- ", "+ ")
     )
@@ -93,7 +93,7 @@ def changed(text: str, diff: str) -> str:
 
 
 def commands(block: Block) -> list[tuple[str, str | None]]:
-    """The commands of a block, each with what the page shows that it prints, if it does."""
+    """Return the commands of a block, each with the output on the page, or None if the page shows none."""
     if block.kind == "console":
         parts = re.split(r"^\$ ", block.text, flags=re.MULTILINE)
         assert parts[0] == "", f"{block.name}: a console begins with a prompt"
@@ -104,7 +104,7 @@ def commands(block: Block) -> list[tuple[str, str | None]]:
 
 
 def matches(told: str, shown: str) -> bool:
-    """Whether a program told what a page shows; `...` there stands for anything, alone on a line for any lines."""
+    """Whether the output matches the page. `...` in the page matches any text; alone on a line, any lines."""
     if not shown.strip():
         return not told.strip()
     lines = [re.escape(line.rstrip()).replace(re.escape("..."), ".*") for line in shown.strip().splitlines()]

@@ -1,6 +1,6 @@
-"""Every command on a page is run, or the page says why not; every model in it is checked, and all other texts are read.
+"""Every command on a page runs or has a reason not to, every model passes its checks, and other texts parse.
 
-A comment before a block says what `tests.docs.pages.MARKS` lists.
+`tests.docs.pages.MARKS` lists the marks in the comment before a block.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-#: Pages all of whose blocks another test holds.
+#: Pages whose blocks other tests cover completely.
 HELD = {
     "docs/rules/*.md": "tests/language/checks/test_rule_pages.py",
     "docs/rules/xmi.md": "tests/model/validity/test_validity.py",
@@ -46,7 +46,7 @@ def is_held(page: Path) -> bool:
 
 
 def free(*kinds: str) -> list[Block]:
-    """The blocks of these kinds that no other test holds, and no mark excuses."""
+    """Return the blocks of these kinds that no other test covers and no mark excludes."""
     return [
         block
         for page, found in BLOCKS.items()
@@ -102,7 +102,7 @@ def test_the_commands_of_a_page_do_what_it_says(page: Path, tmp_path: Path) -> N
         found = commands(block)
         assert found, f"{block.name} holds no command"
         for number, (command, shown) in enumerate(found):
-            # Where the page does not say how many there were.
+            # Only pages that show a number of operations need the full effort.
             with nullcontext() if " operations" in (shown or "") else less_effort():
                 status, told = desk.run(command, desk.place(block))
             wanted = int(block.marks.get("status", 0)) if number == len(found) - 1 else 0
@@ -112,7 +112,7 @@ def test_the_commands_of_a_page_do_what_it_says(page: Path, tmp_path: Path) -> N
 
 
 def called(text: str) -> Iterator[list[str]]:
-    """The calls of robosc in commands, as words."""
+    """Yield the calls of robosc in commands, each as a list of words."""
     for command in re.findall(r"(?:^|[\s|/;])(?<!-[lm] )robosc ([a-z][^|<>;&#\n`]*)", text, flags=re.MULTILINE):
         try:
             yield shlex.split(command.replace("...", ""))
@@ -122,7 +122,7 @@ def called(text: str) -> Iterator[list[str]]:
 
 @pytest.mark.parametrize("page", PAGES, ids=[page.relative_to(ROOT).as_posix() for page in PAGES])
 def test_calls_of_robosc_are_right(page: Path) -> None:
-    """Each call on a page, run or not, also in the middle of a sentence, has a command and options that there are."""
+    """Each call on a page, run or not, in a block or in a sentence, uses an existing command and existing options."""
     text = page.read_text(encoding="utf-8")
     shells = "\n".join(block.text.replace("\\\n", " ") for block in BLOCKS[page] if block.kind in ("sh", "console"))
     inline = "\n".join(re.findall(r"`(robosc [a-z][^`\n]*)`", without_blocks(text)))
@@ -136,13 +136,13 @@ def test_calls_of_robosc_are_right(page: Path) -> None:
         if isinstance(command, click.Group):
             continue
         there = {spelling for option in options for spelling in (*option.opts, *option.secondary_opts)} | {"--help"}
-        # What follows goes to ROS.
+        # ROS interprets the words after this one.
         own = words[: words.index("--ros-args")] if "--ros-args" in words else words
         wrong += [words for word in own[1:] if re.match(r"--?[a-zA-Z]", word) and word.partition("=")[0] not in there]
     assert wrong == []
 
 
-#: What a part of a model may stand in, from the outside to the inside.
+#: Constructs that may contain a fragment of a model, from the outermost to the innermost.
 FRAMES = {
     "model": "{}",
     "robot": "robot R {{ {} }}",
@@ -165,7 +165,7 @@ MODELS = free("robosc")
 
 @named(MODELS)
 def test_models_are_right(block: Block, tmp_path: Path) -> None:
-    """A whole model draws no error; a part of one is right where it may stand."""
+    """A whole model has no error. A fragment has no syntax error in at least one permitted frame."""
     if not re.match(r"(\s|//.*\n)*robot ", block.text) or block.text.count("\nlibrary "):
         frames = [block.marks["fragment"]] if "fragment" in block.marks else list(FRAMES)
         faults = {frame: syntax_faults(FRAMES[frame].format(block.text + "\n")) for frame in frames}
@@ -185,7 +185,7 @@ def test_models_are_right(block: Block, tmp_path: Path) -> None:
 
 
 def read_json(text: str) -> None:
-    """One value, or one a line."""
+    """Read one JSON value, or one for each line."""
     try:
         json.loads(text)
     except json.JSONDecodeError:
@@ -193,7 +193,7 @@ def read_json(text: str) -> None:
             json.loads(line)
 
 
-#: Texts whose form is checked.
+#: Parsers for the languages whose syntax the test checks.
 READERS: dict[str, Callable[[str], object]] = {
     "json": read_json,
     "yaml": YAML(typ="safe").load,
@@ -201,7 +201,7 @@ READERS: dict[str, Callable[[str], object]] = {
     "xml": ET.fromstring,
     "python": lambda text: compile(text, "page", "exec"),
 }
-#: Texts in languages that nothing here reads.
+#: Languages without a parser here.
 UNREAD = {"lua", "elisp", "c", "cif", "cmake", "dockerfile", "{toctree}", "{eval-rst}", "{literalinclude}", "{include}"}
 TEXTS = free(*READERS)
 
@@ -212,7 +212,7 @@ def test_other_texts_can_be_read(block: Block) -> None:
 
 
 def test_a_page_that_is_wrong_is_found(tmp_path: Path) -> None:
-    """The tests above can fail."""
+    """The checks above fail for a wrong page."""
     page = tmp_path / "page.md"
     page.write_text(
         "<!-- in: x; status: 3 -->\n```console\n$ robosc rule type\nother\n```\n\n```robosc\nstate s { on }\n```\n"

@@ -1,4 +1,4 @@
-"""The documentation site is built without a warning, and what is built is whole, also without a network."""
+"""The documentation site builds without warnings, and the result is complete, also without a network."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MERMAID = ROOT / "web" / "node_modules" / "@mermaid-js" / "tiny"
 
 
 class Page(HTMLParser):
-    """What an HTML page refers to, and what can be referred to in it."""
+    """The links and the link targets of an HTML page."""
 
     def __init__(self, path: Path) -> None:
         super().__init__()
@@ -47,7 +47,7 @@ class Page(HTMLParser):
 
 
 class Site:
-    """A folder with the site."""
+    """The folder of a built site."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -57,7 +57,7 @@ class Site:
         return {path: Page(path) for path in sorted(self.folder.rglob("*.html"))}
 
     def broken(self, path: Path, target: str) -> bool:
-        """Whether a link leads to no file, or to no place in its page."""
+        """Whether a link leads to a missing file, or to a missing place in its page."""
         parts = urlsplit(target)
         if parts.scheme or parts.netloc:
             return False
@@ -139,7 +139,7 @@ def chromium() -> Iterator[Any]:
 
 
 class Opened:
-    """A page of the site in a browser without a network, and what went wrong in it."""
+    """A page of the site in a browser without a network, with the errors that occurred."""
 
     def __init__(self, chromium: Any, **options: Any) -> None:
         self.context = chromium.new_context(offline=True, **options)
@@ -179,7 +179,7 @@ def test_the_search_answers(site: Site, chromium: Any) -> None:
 
 
 def test_no_page_is_wider_than_a_phone(site: Site, chromium: Any) -> None:
-    """Wide tables and blocks scroll by themselves."""
+    """Wide tables and blocks have scroll bars of their own."""
     wide = []
     with Opened(chromium, viewport={"width": 390, "height": 800}) as opened:
         for path in site.pages:

@@ -1,4 +1,4 @@
-"""The pages are free of the misspellings that codespell knows."""
+"""The pages contain no misspelling that codespell knows."""
 
 from __future__ import annotations
 

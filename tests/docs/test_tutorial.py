@@ -1,4 +1,4 @@
-"""The robot of docs/tutorial.md drives over ROS 2 as the page says, in the room that stands there."""
+"""The robot of docs/tutorial.md drives over ROS 2 as the page describes, in the room of that page."""
 
 from __future__ import annotations
 

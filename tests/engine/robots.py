@@ -1,4 +1,4 @@
-"""Random models in the shape of robots: sensors, components, messages on shared topics, services, actions, data."""
+"""Random models of robots: sensors, components, messages on shared topics, services, actions, data."""
 
 from hypothesis import assume
 from hypothesis import strategies as st
@@ -12,7 +12,7 @@ _MOODS = {"Mood": ["calm", "alert", "lost"]}
 
 @st.composite
 def robots(draw: st.DrawFn) -> sct.SupervisoryControlModel:
-    """Robots with their supervisor; messages m0…, a service, an action, data plants for some of what is sent."""
+    """Draw robots with supervisors: messages m0…, a service, an action, and data plants for some commands."""
     timed = draw(st.booleans())
     components = [_component(draw, f"C{number}", timed=timed) for number in range(draw(st.integers(1, 2)))]
     places = [f"component_C{number}.{place}" for number in range(len(components)) for place in ("a", "b")]
@@ -67,7 +67,7 @@ def _condition(draw: st.DrawFn, places: list[str]) -> str:
 
 
 def _set_times(draw: st.DrawFn, made: sct.SupervisoryControlModel) -> None:
-    """Gives each timeout a short time, which others may have, too; the last of a plant runs in all its locations."""
+    """Give each timeout a short time, not necessarily unique; the last of a plant runs in all its locations."""
     messages = [event for plant in made.plants for event in plant.events if event.name == "u_response" and plant.topic]
     for automaton in made.plants:
         timeouts = [event for event in automaton.events if event.kind == sct.EventKind.timeout]
@@ -87,7 +87,7 @@ def _set_times(draw: st.DrawFn, made: sct.SupervisoryControlModel) -> None:
 
 
 def _component(draw: st.DrawFn, name: str, *, timed: bool):
-    """A sensor that says an integer and a mood, and the automaton that listens to it."""
+    """Draw a sensor that reports an integer and a mood, and the automaton that receives its messages."""
     limit, rests = draw(st.integers(0, 3)), draw(st.booleans())
     sensor = plant(
         f"message_sensor{name}",

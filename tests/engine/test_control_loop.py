@@ -7,7 +7,7 @@ from tests.sct_models import edge, model, plant
 
 
 class Recorded(ControlLoop):
-    """A loop that remembers what happened; `did` gives it since the last time. Events in `withheld` are withheld."""
+    """A loop that records events; `did` returns those since its last call. Events in `withheld` are withheld."""
 
     def __init__(self, made, **settings) -> None:
         self.happened: list[str] = []
@@ -49,7 +49,7 @@ def message(name, topic=None, **more):
 
 
 def switch(name="switch", states=("off", "on"), **more):
-    """Goes to a state when `u_feedback…` of its number happens."""
+    """Return a plant that goes to a state when the `u_response…` event with the state's number happens."""
     events = [f"u_response{number}" for number, _ in enumerate(states)]
     return plant(
         name, {state: [edge(event, to=to) for event, to in zip(events, states, strict=True)] for state in states},
@@ -171,7 +171,7 @@ def test_a_withheld_silent_event_is_asked_again_and_keeps_no_other_from_happenin
 
 
 def test_settling_alone_runs_cancels_and_no_triggers() -> None:
-    """What a supervisory layer asks for: the controller starts things, the layer stops them."""
+    """A supervisory layer needs this: the controller starts goals, the layer cancels them."""
     ride = plant(
         "ride",
         {"idle": [edge("c_trigger", to="running")], "running": [edge("c_cancel", to="idle")]},
@@ -292,7 +292,7 @@ def test_the_limit_of_reactions_holds_between_ticks() -> None:
 
 
 def lidar_and_button(**settings):
-    """A robot that drives while its lidar sees nothing and its button is not pressed, and stops else."""
+    """Return a robot that drives while its lidar sees no obstacle and its button is released, and otherwise stops."""
     lidar, button = switch("lidar", ("free", "blocked")), switch("button", ("released", "pressed"))
     made = model(
         [lidar, button, message("move", "/cmd"), message("halt", "/cmd")],
@@ -320,7 +320,7 @@ def test_a_stop_that_the_flicker_has_made_possible_in_vain_does_not_wait_either(
     loop = lidar_and_button(reactions_per_tick=2)
     for event in (BLOCKED, FREE, BLOCKED):
         loop.batch(event)
-    assert loop.enabled("halt.c_trigger")  # and not sent: the lidar's count is used up
+    assert loop.enabled("halt.c_trigger")  # not sent: the lidar's count is used up
     assert loop.batch(RELEASED) == [], "a message that changes nothing uses up no count"
     assert loop.batch(PRESSED) == ["halt.c_trigger"]
     assert loop.batch(BLOCKED) == []

@@ -1,4 +1,4 @@
-"""What the control loop promises, whatever the robot and whatever happens to it."""
+"""Properties of the control loop that hold for all robots and all sequences of events."""
 
 from collections import Counter
 from itertools import combinations
@@ -25,7 +25,7 @@ _SETTINGS = st.builds(
 
 
 class Observed:
-    """A loop under random data; remembers each operation with what happened in it and what was enabled after each."""
+    """A loop under random data. Records each operation, its events, and the events enabled after each of them."""
 
     def __init__(self, model: sct.SupervisoryControlModel, chosen: Settings, seed: int) -> None:
         self.loop = ControlLoop(model, chosen, Hooks(after=self._after, livelock=self._livelock))
@@ -35,7 +35,7 @@ class Observed:
         self.silent = {event_name(event) for event in self.roles.silent}
         self.data = {event_name(event) for events in self.roles.data for event in events}
         self.operations: list[tuple[str, list[str]]] = []
-        #: Of each moment: the operation, what happened, and which cancels and triggers are enabled then.
+        #: At each moment: the operation, its event, and the enabled cancels and triggers.
         self.moments = [(0, "", {event for event in self.queued if self.loop.enabled(event)})]
         self.performed: list[str] = []
         random = Random(seed)  # noqa: S311
@@ -82,13 +82,16 @@ class Observed:
         return random.random() < 0.5
 
     def source(self, number: int) -> int:
-        """What the batch comes from that an operation ends: the topic, service or action of its last event, or 0."""
+        """Return the source of the batch that an operation ends, or 0.
+
+        A source is the topic, service or action of the last event.
+        """
         _, performed = self.operations[number - 1]
         sources = {event_name(event): place for place, group in enumerate(self.roles.sources, 1) for event in group}
         return sources[performed[-1]] if performed else 0
 
     def rounds(self, *kinds: str) -> list[list[str]]:
-        """The cancels and triggers of each operation of these kinds."""
+        """Return the cancels and triggers of each operation of these kinds."""
         return [
             [event for event in happened if event in self.queued] for kind, happened in self.operations if kind in kinds
         ]
@@ -144,9 +147,10 @@ def test_reactions(seen: Observed) -> None:
 @_some
 @given(_observed)
 def test_what_a_batch_makes_possible_waits_for_no_other_topic(seen: Observed) -> None:
-    """It runs at the end of the batch, whatever others did, unless what the batch comes from has used up its own count.
+    """A command that a batch enables is sent at the end of the batch.
 
-    Of what shares a topic one is sent, and a service or action starts once between two ticks.
+    The only exception is a batch whose source has used up its own count; other sources do not matter. One message per
+    shared topic is sent. A service or action starts once between two ticks.
     """
     shared = {event_name(event): number for number, group in enumerate(seen.roles.shared_topics) for event in group}
     once = {event_name(event) for event in seen.roles.once_per_tick}
@@ -198,10 +202,10 @@ def test_data_rests_at_the_first_statement_whose_condition_holds(seen: Observed)
 @_some
 @given(_observed)
 def test_no_enabled_event_waits_while_another_runs_in_two_ticks(seen: Observed) -> None:
-    """Queues are fair: what stays enabled runs before anything else of its kind runs a second time, tick by tick.
+    """Queues are fair: in ticks, no event runs twice while another of its kind stays enabled and waits.
 
-    Of messages on one topic this holds among themselves: they share its turn in each round. Reactions are no rounds:
-    there an event waits for the tick unless the batch concerns it.
+    Messages on one topic are fair among themselves: they share the topic's turn in each round. Reactions are not
+    rounds: there, an event waits for the tick unless the batch concerns it.
     """
     ticks = {number for number, (kind, _) in enumerate(seen.operations, 1) if kind == "tick"}
     shared = {event_name(event): number for number, group in enumerate(seen.roles.shared_topics) for event in group}

@@ -5,7 +5,7 @@ from tests.sct_models import edge, model, needs, plant
 
 
 def machine(guards=None, **changes):
-    """A counter that a button drives, and a lamp that follows it."""
+    """Return a counter that a button drives and a lamp that follows it."""
     arguments = {
         "plants": [
             plant(

@@ -1,4 +1,4 @@
-"""A control loop goes back to what it was, and another one of the model goes there, too."""
+"""A control loop restores a saved state, and so does another loop of the same model."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def played(loop: ControlLoop, seed: int) -> list[object]:
-    """What a loop goes through in twenty random batches, each with a tick."""
+    """Return the behavior of a loop in twenty random batches, each with a tick."""
     random = Random(seed)  # noqa: S311
     incoming = [event.name for event in loop.engine.executed.events if event.role == Role.incoming]
     seen: list[object] = []

@@ -1,4 +1,4 @@
-"""Times: each test holds a sentence of the language's page on transitions, "after"."""
+"""Timers: each test checks one statement about "after" on the language's page on transitions."""
 
 from pathlib import Path
 
@@ -24,7 +24,7 @@ robot R {{
 
 
 class Robot:
-    """A robot with this behaviour; `heard` has what happened, with its time."""
+    """A robot with this behavior; `heard` has its events with their times."""
 
     def __init__(self, folder: Path, behaviour: str, rest: str = "requirement move needs Base.times > 9") -> None:
         path = folder / "robot.rscd"
@@ -40,7 +40,7 @@ class Robot:
         self.heard.append((self.loop.timers.now, event.removeprefix("component_Base.").removeprefix("message_")))
 
     def wait(self, milliseconds: int) -> None:
-        """Lets time go by, asking whenever the robot wants to be asked."""
+        """Advance the clock and call the loop at each time that the robot requests."""
         timers = self.loop.timers
         end = timers.now + milliseconds
         while timers.wait is not None and timers.now + timers.wait <= end:
@@ -58,7 +58,7 @@ class Robot:
 
 
 def test_time_since_the_state_was_entered(tmp_path: Path) -> None:
-    """`after 3.0 s goto rotating` in a state: time since it was entered."""
+    """`after 3.0 s goto rotating` in a state counts from the entry of the state."""
     robot = Robot(
         tmp_path,
         "initial marked state idle { on response from pressed goto driving } state driving { after 3.0 s goto idle }",
@@ -77,7 +77,10 @@ def test_time_since_the_state_was_entered(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("target", "up"), [("goto idle", 1_500), ("", 1_000), ("do times := 1 goto idle", 1_500)])
 def test_entering_again_starts_anew_and_staying_does_not(tmp_path: Path, target: str, up: int) -> None:
-    """Entering again, also by `goto` to the same state, starts anew; a transition without `goto` does not."""
+    """Entering a state again, also by `goto` to the same state, restarts its timer.
+
+    A transition without `goto` does not.
+    """
     robot = Robot(
         tmp_path,
         f"initial marked state idle {{ after 1 s goto other on response from pressed {target} }}"
@@ -91,7 +94,7 @@ def test_entering_again_starts_anew_and_staying_does_not(tmp_path: Path, target:
 
 @pytest.mark.parametrize(("target", "times"), [("", [1000]), ("goto idle", [1000, 2000, 3000])])
 def test_each_fires_once_for_each_entry(tmp_path: Path, target: str, times: list[int]) -> None:
-    """Each fires once for each entry or silence: its own `goto` to the same state is an entry."""
+    """A timer fires once per entry or silence. Its own `goto` to the same state is an entry."""
     robot = Robot(tmp_path, f"initial marked state idle {{ after 1 s do times := times + 1 {target} }}")
     robot.wait(3_500)
     assert [at for at, _ in robot.timeouts()] == times
@@ -99,7 +102,10 @@ def test_each_fires_once_for_each_entry(tmp_path: Path, target: str, times: list
 
 
 def test_the_initial_state_is_entered_when_the_node_starts(tmp_path: Path) -> None:
-    """The initial state is entered when the node starts (managed nodes: is activated, which starts times anew)."""
+    """The initial state is entered when the node starts.
+
+    A managed node enters it when it is activated, which restarts timers.
+    """
     robot = Robot(tmp_path, "initial marked state idle { after 1 s goto idle }")
     robot.loop.timers.at(600)
     robot.loop.timers.restart()
@@ -110,7 +116,10 @@ def test_the_initial_state_is_entered_when_the_node_starts(tmp_path: Path) -> No
 
 
 def test_a_silence_in_a_state(tmp_path: Path) -> None:
-    """In a state the time runs from its entry or the last such message, whichever is later; once for each silence."""
+    """In a state, a silence counts from the entry or the last message, whichever is later.
+
+    It fires once per silence.
+    """
     robot = Robot(
         tmp_path,
         "initial marked state idle { on response from pressed goto seeing }"
@@ -131,7 +140,7 @@ def test_a_silence_in_a_state(tmp_path: Path) -> None:
 
 
 def test_a_silence_at_automaton_level(tmp_path: Path) -> None:
-    """At automaton level from the last such message (before the first: the node's start), whatever the state."""
+    """At automaton level, a silence counts from the last message or from the node's start, in every state."""
     robot = Robot(
         tmp_path,
         "after 500 ms without scan goto blind"
@@ -150,20 +159,20 @@ def test_a_silence_at_automaton_level(tmp_path: Path) -> None:
 
 
 def test_what_arrived_before_a_time_was_up_is_handled_before(tmp_path: Path) -> None:
-    """What arrived before a time was up is handled before it: the caller hands both over in that order."""
+    """A message that arrives before a timer expires is handled first: the caller delivers both in that order."""
     robot = Robot(
         tmp_path,
         "initial marked state idle { after 1 s goto late on response from pressed goto early }"
         " marked state early { } marked state late { }",
     )
-    robot.loop.timers.at(5_000)  # nobody asked meanwhile
+    robot.loop.timers.at(5_000)  # the loop was not called meanwhile
     robot.hear("pressed")
     assert robot.loop.expire() is None
     assert robot.loop.state["component_Base"] == "early"
 
 
 def test_times_that_are_up_together(tmp_path: Path) -> None:
-    """They go in the order in which they were up, ties in text order, each after the other has settled."""
+    """Expired timers fire in the order of their expiry, ties in text order. Each settles before the next."""
     robot = Robot(
         tmp_path,
         "variable over: boolean = false"
@@ -179,7 +188,7 @@ def test_times_that_are_up_together(tmp_path: Path) -> None:
 
 
 def test_a_state_that_is_left_has_no_time(tmp_path: Path) -> None:
-    """Possible while its state lasts: of two that are up together the first leaves the state of the second."""
+    """A timer lasts as long as its state: if two expire together, the first may leave the state of the second."""
     robot = Robot(
         tmp_path,
         "initial marked state idle { after 10 ms goto over after 10 ms do times := 1 } marked state over { }",
@@ -190,7 +199,7 @@ def test_a_state_that_is_left_has_no_time(tmp_path: Path) -> None:
 
 
 def test_a_time_that_goes_back_starts_all_anew(tmp_path: Path) -> None:
-    """A time that goes back starts all times anew."""
+    """A clock that goes backward restarts all timers."""
     robot = Robot(
         tmp_path,
         "after 3 s without scan do times := 1"
@@ -203,7 +212,7 @@ def test_a_time_that_goes_back_starts_all_anew(tmp_path: Path) -> None:
 
 
 def test_it_is_handled_as_incoming_data_is(tmp_path: Path) -> None:
-    """It is handled as incoming data is: event, settle, react."""
+    """A timeout is handled like incoming data: event, settle, react."""
     robot = Robot(
         tmp_path,
         "initial marked state idle { after 1 s goto waiting } marked state waiting { transition if times = 0 goto go }"
@@ -216,7 +225,7 @@ def test_it_is_handled_as_incoming_data_is(tmp_path: Path) -> None:
 
 
 def test_no_time_is_up_early_where_now_is_rounded_down(tmp_path: Path) -> None:
-    """`resolution_ms` is how much later than `now` it may be."""
+    """`resolution_ms` is the clock error: the real time may be this much later than `now`."""
     robot = Robot(tmp_path, "initial marked state idle { after 1 s goto idle }")
     robot.loop = ControlLoop(robot.loop.engine.model, Settings(resolution_ms=1), Hooks(after=robot._hear))
     robot.wait(5_000)
@@ -224,7 +233,7 @@ def test_no_time_is_up_early_where_now_is_rounded_down(tmp_path: Path) -> None:
 
 
 def test_names_and_durations(tmp_path: Path) -> None:
-    """Units `ms`, `s`, `min`; a constant of type integer or double; `component_X.u_after1…` in text order."""
+    """Units `ms`, `s` and `min`; constants of type integer or double; `component_X.u_after1…` in text order."""
     robot = Robot(
         tmp_path,
         "after 2 min without scan goto idle"

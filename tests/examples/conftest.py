@@ -1,4 +1,4 @@
-"""The robots among the examples, each with its supervisor."""
+"""The robots of the examples, each with its supervisor."""
 
 from functools import cache
 from pathlib import Path
@@ -8,9 +8,9 @@ from robosc.m2t.models import Models
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 #: Every model, by its name.
-#: The workspaces have copies of one of them.
+#: The workspaces contain copies of one of them.
 MODELS = {path.stem: path for path in sorted(EXAMPLES.rglob("*.rscd")) if "workspace" not in path.parts}
-#: Robots of the second edition; too large to look at every state.
+#: Robots of the second edition, with too many states to enumerate.
 SHOWCASES = ["sprayer", "warehouse_robot"]
 #: All examples: folders with a page.
 PAGES = sorted(path.parent.name for path in EXAMPLES.glob("*/README.md") if path.parent.name in MODELS)
@@ -20,7 +20,7 @@ SCENARIOS = [name for name in PAGES if name not in SHOWCASES]
 
 @cache
 def models_of(name: str) -> Models:
-    """The models of an example."""
+    """Return the models of an example."""
     robot = robosc.load(MODELS[name])
     plants = robosc.to_sct(robot)
     robosc.synthesize(plants)

@@ -1,4 +1,4 @@
-"""The examples: nothing is wrong with them, and what is said about them is so."""
+"""The examples have no unexpected findings, and their guards and targets match the documentation."""
 
 import json
 import re
@@ -16,12 +16,12 @@ from tests.searching import slow_but
 from .conftest import EXAMPLES, MODELS, PAGES, SCENARIOS, SHOWCASES, models_of
 
 GUARDS = Path(__file__).with_name("guards")
-#: Targets for controllers with services or actions as well, and those for messages only.
+#: Targets for controllers with services or actions, and targets for controllers with messages only.
 ALL, MESSAGES = "cif,supervisor,xmi", "cif,supervisor,xmi,ros1,ros2"
-#: Packages of detectors and of Nav2 are not known everywhere.
+#: The packages of detectors and of Nav2 are not installed everywhere.
 EXPECTED = {"interface-unknown"}
 EACH = pytest.mark.parametrize("name", slow_but((name for name in MODELS if name not in SHOWCASES), MODELS))
-#: What synthesis forbids beyond the requirements.
+#: Events that synthesis restricts beyond the requirements.
 ADDED = {"warehouse_robot": ["service_raise.c_trigger"]}
 
 
@@ -39,7 +39,7 @@ def test_nothing_is_wrong(name: str) -> None:
 
 @EACH
 def test_a_robot_that_gets_messages_says_what_stops_it(name: str) -> None:
-    """A goal is cancelled when the node ends; a message, such as a velocity, holds on."""
+    """The node cancels its goals when it ends, but a message such as a velocity stays in effect."""
     messages = [
         definition.name
         for component in read(MODELS[name]).base.definitions
@@ -57,7 +57,7 @@ def test_guards(name: str, golden) -> None:
     assert answer.exit_code == 0
     assert {*re.findall(r" warning: .* \[([a-z-]+)\]$", answer.stderr, re.MULTILINE)} <= EXPECTED
     said = json.loads(answer.stdout)
-    # What it cost is no matter of the example.
+    # The costs of synthesis may change; the golden files omit them.
     said = {key: said[key] for key in ("robot", "uncontrolled_states", "controlled_states", "empty", "events")}
     golden(GUARDS / f"{name}.json", json.dumps(said, indent=2) + "\n")
     assert not said["empty"]

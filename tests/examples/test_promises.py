@@ -1,4 +1,4 @@
-"""What the pages promise, looked at in every state that a robot can get into, and tried in the control loop."""
+"""The claims of the example pages hold in every reachable state, and in runs of the control loop."""
 
 from collections.abc import Iterator
 from itertools import product
@@ -16,7 +16,7 @@ SMALL = [name for name in MODELS if name not in SHOWCASES]
 EACH = pytest.mark.parametrize("name", SMALL)
 STOP = "component_EmergencyStop"
 STOPPABLE = pytest.mark.parametrize("name", [model for model in SMALL if model != "line_stepper"])
-#: While this plant is in one of these locations, somebody else drives the wheels.
+#: Plant and locations in which another node drives the wheels.
 TURNING = {
     "maze_solver": ("component_Platform", {"turning_left", "turning_right"}),
     "object_finder": ("component_Rotator", {"turning"}),
@@ -27,7 +27,7 @@ HALTING = pytest.mark.parametrize(
 
 
 def states(engine: Engine) -> Iterator[State]:
-    """Every state that can be reached under the supervisor, whatever comes in; the engine is in it meanwhile."""
+    """Yield every state that is reachable under the supervisor, for any inputs. The engine is in the yielded state."""
     data = {event_name(event): [*inputs(event)] for event in engine.roles.events}
     found, pending = {engine.state}, [engine.state]
     while pending:
@@ -102,7 +102,10 @@ def test_the_button_cancels_the_journey(name: str) -> None:
 
 
 class Robot(ControlLoop):
-    """A loop that gives what it sends, in short: `move` for `message_move.c_trigger`. The robot has been set going."""
+    """A control loop that records its commands by short names: `move` for `message_move.c_trigger`.
+
+    The robot is in service from the start.
+    """
 
     def __init__(self, name: str) -> None:
         self.sent: list[str] = []
@@ -118,7 +121,7 @@ class Robot(ControlLoop):
             self.sent.append(name.removesuffix(".c_trigger"))
 
     def hears(self, **messages) -> list[str]:
-        """What one batch makes the robot send; a message comes with its value, or with None."""
+        """Return the commands after one batch of messages; each message has a value or None."""
         self.begin()
         for name, value in messages.items():
             event = f"message_{name}.u_response"
@@ -127,7 +130,7 @@ class Robot(ControlLoop):
         return self.said()
 
     def happens(self, event: str, data: dict[str, int] | None = None) -> list[str]:
-        """What the robot sends after an event of a service or action."""
+        """Return the commands after an event of a service or action."""
         self.begin()
         assert self.perform(event, data or {})
         self.end()
@@ -156,7 +159,7 @@ def test_the_maze_solver_turns_once_and_looks_first() -> None:
     assert robot.hears(**along) == ["move"]
     assert robot.hears(**corner) == ["halt"]
     assert "rotate_right" in robot.ticks()
-    # While it turns, and after that until a scan has come, the old view counts for nothing.
+    # While the robot turns, and until the next scan after that, the old view does not count.
     assert robot.hears(**corner) == []
     assert robot.ticks() == []
     assert robot.hears(rotate_done=None) == ["halt"]
@@ -180,10 +183,10 @@ def test_the_maze_solver_rounds_a_corner_once() -> None:
     around = scan("way_ahead", "no_wall_right", "wall_back_right")
     assert "rotate_right" in robot.hears(**around) + robot.ticks()
     robot.hears(rotate_done=None)
-    # What it sees behind its right side now is another wall.
+    # The wall behind the right side is now another one.
     assert robot.hears(**around) == ["move"]
     assert robot.ticks() == ["move"]
-    # When it has seen the wall beyond the corner, and that ends, it turns again.
+    # The robot turns again after it has seen the wall beyond the corner and that wall ends.
     assert robot.hears(**scan("way_ahead", "wall_right", "wall_back_right")) == []
     assert robot.hears(**around) == ["halt"]
     assert "rotate_right" in robot.ticks()

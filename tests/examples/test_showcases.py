@@ -1,4 +1,4 @@
-"""The two showcases in the control loop: each does its work, and what its page forbids does not happen on the way."""
+"""The two showcases do their work in the control loop, and never do anything that their pages forbid."""
 
 import json
 import re
@@ -21,14 +21,14 @@ def heard(name: str, value: object = None) -> str:
 
 
 PRESSED, RELEASED, GO_ON = heard("pressed", True), heard("pressed", False), heard("continue")
-#: Seconds for which nothing counts as silent.
+#: Seconds without a message before a topic counts as silent.
 PATIENCE = 0.4
 
 
 def play(name: str, *lines: str, button: bool = True) -> list[list[str]]:
-    """The commands of the controller after each line of a script and the tick that follows it, once each.
+    """Return the commands of the controller after each line of a script and the tick after it, without repetitions.
 
-    The robot has been set going. While a line waits, the `button` repeats whether it is pressed.
+    The robot is in service from the start. During a line that waits, `button` repeats the state of the button.
     """
     level, steps = RELEASED, [[RELEASED], [GO_ON]]
     for line in lines:
@@ -56,7 +56,7 @@ def scans() -> list[str]:
 
 
 def shelved() -> list[str]:
-    """The robot is ready for its way to a shelf, in the aisle, but for its lidars."""
+    """Return the lines that prepare the robot in the aisle for its way to a shelf, except for the lidar scans."""
     return [
         *(heard(f"{name}_touched", False) for name in ("Front", "Rear", "Left", "Right")),
         heard("charge", {"percentage": 0.8}),
@@ -99,7 +99,7 @@ def test_the_warehouse_robot_turns_back_where_its_power_is_low() -> None:
 
 
 def test_the_warehouse_robot_leaves_the_aisle_when_its_goal_has_ended() -> None:
-    """A goal that succeeds before its cancel arrives is one that has arrived: the robot leaves the aisle then."""
+    """A goal that succeeds before its cancel arrives has arrived: the robot then leaves the aisle."""
     lines = [*shelved(), *scans(), heard("Left_touched", True), "tick", "action_navigate.u_response"]
     assert work(play("warehouse_robot", *lines))[-3:] == [["cancel navigate"], [], ["leave"]]
 
@@ -199,7 +199,7 @@ CLEAR = {"ranges": [2.0] * 360}
 LINE = heard("correction", 0.0)
 PERSON = heard("who", {"bounding_boxes": [{"class_id": "person"}]})
 BALL = heard("ball_correction", 0.0)
-#: What each robot that drives by itself hears when it moves.
+#: Messages that set each robot with its own wheel control in motion.
 MOVING = {
     "line_follower": [LINE, heard("scan", CLEAR)],
     "maze_solver": [heard("scan_front", CLEAR)],
@@ -215,7 +215,7 @@ SENSORS = [(name, sensor) for name, sensors in MOVING.items() for sensor in sens
     ("name", "sensor"), SENSORS, ids=[f"{name} {sensor.split('.')[0]}" for name, sensor in SENSORS]
 )
 def test_a_robot_with_a_sensor_that_falls_silent_stops(name: str, sensor: str) -> None:
-    """Also where all other sensors go on; and it moves on when the sensor is back."""
+    """The robot stops even if all other sensors continue, and moves on when the sensor is back."""
     others = [line for line in MOVING[name] if line != sensor]
     sent = play(name, *others, sensor, "wait 0.4", *others, sensor, "wait 0.4", *others, "wait 0.2", sensor)
     moves, stops = [["step"], []] if name == "supervised_line_follower" else [["move"], ["halt"]]
@@ -223,7 +223,7 @@ def test_a_robot_with_a_sensor_that_falls_silent_stops(name: str, sensor: str) -
     assert sent[-2:] == [stops, moves]
 
 
-#: What sets the others going, and what they send when they stop.
+#: Lines that set the other robots in motion.
 UNDER_WAY = {
     "obstacle_navigation": [heard("initial_pose"), heard("clicked_point")],
     "simple_navigation": [heard("initial_pose"), heard("clicked_point")],

@@ -1,4 +1,4 @@
-"""Nothing is refuted of any example or listing of the thesis, nor of what is generated from it; the page shows it."""
+"""`verify` refutes no property of the examples, the thesis listings, or their code; the page shows the table."""
 
 import re
 from collections.abc import Callable
@@ -15,11 +15,11 @@ from .conftest import MODELS, PAGES, SHOWCASES
 
 ROOT = Path(__file__).parents[2]
 LISTINGS = ROOT.parent / "shared" / "thesis" / "models"
-#: All but the one that has its faults on purpose.
+#: All listings except the one with deliberate faults.
 LISTED = [path for path in sorted(LISTINGS.glob("*.rscd")) if path.stem != "language-concepts"]
 
 
-#: The control loops of the others take seconds of the processor each.
+#: Examples whose control loops take little time; each other one takes seconds.
 QUICK = ("supervised_line_follower", "simple_navigation")
 CASES = [
     pytest.param(path, id=path.stem, marks=[] if path.stem in QUICK else [pytest.mark.slow])
@@ -40,7 +40,7 @@ def test_all_is_proved(path: Path, verified: Callable[[Path], Any]) -> None:
 def test_the_page_shows_the_table(
     verified_once: Callable[[Path], Callable[..., Any]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """All of it but the seconds."""
+    """The page shows the whole table, except for the seconds."""
     page = (ROOT / "docs" / "verify.md").read_text()
     shown = page.partition("$ robosc verify examples/line_follower/line_follower.rscd\n")[2].partition("```")[0]
     monkeypatch.setattr(import_module("robosc.tools.cli.verify"), "verify", verified_once(MODELS["line_follower"]))
@@ -48,7 +48,7 @@ def test_the_page_shows_the_table(
     assert _without_seconds(shown) == _without_seconds(told.stdout)
 
 
-#: Which examples have a row that is not proved in all states, as the page says.
+#: Examples with properties that `verify` samples instead of proving in all states, as on the page.
 SAMPLED = {
     "line_follower": {"loop-translation"},
     "maze_solver": {"loop-translation"},
@@ -64,7 +64,7 @@ SAMPLED = {
 
 @pytest.mark.parametrize("path", [case for case in CASES[: len(MODELS)] if case.id in PAGES])
 def test_the_page_sums_up_the_examples(path: Path, verified: Callable[[Path], Any]) -> None:
-    page = (ROOT / "docs" / "verify.md").read_text()
+    page = (ROOT / "docs" / "verify-examples.md").read_text()
     name, answered = path.stem, verified(path)["properties"]
     by_name = {verdict["property"]: verdict["evidence"] for verdict in answered}
     row = [name, by_name["controllability"].partition(" state")[0], str(len(by_name))]

@@ -1,4 +1,4 @@
-"""Commands that a signal ends while they write: what is there then is what was there before, or what is to be there."""
+"""Commands that a signal ends while they write leave either the old files or the complete new ones."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ robot Door {
 }
 """
 _NEW = _OLD.replace("/open", "/unlock").replace("state locked { }", "state free { }")
-#: Commands, with MODEL and OUT; what they write.
+#: Commands with MODEL and OUT, and the files that they write.
 COMMANDS = (
     "transform MODEL --to cif,supervisor,xmi -o OUT",
     "transform MODEL --to ros1,ros2 -o OUT",
@@ -30,15 +30,15 @@ COMMANDS = (
     "format MODEL",
 )
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGKILL)
-#: More changes to the file system than any of the commands makes.
+#: An upper bound of the changes to the file system that any of the commands makes.
 _CHANGES = 150
 
 
 def broken_off_tried(folder: Path, seed: int) -> int:
-    """Runs a command, then again on another model, ended by a signal at some change; then to its end.
+    """Run a command, interrupt it on a changed model at a random change of the file system, then run it to the end.
 
-    Returns how the second run ended, see `interrupted`. Raises AssertionError where files of the two models are mixed,
-    or something is left behind.
+    Returns the status of the interrupted run, see `interrupted`. Raises AssertionError if files of the two models are
+    mixed, or if the interrupted run leaves other files behind.
     """
     random = Random(seed)  # noqa: S311 - nothing here is secret
     command, sent, again = random.choice(COMMANDS), random.choice(SIGNALS), random.random() < 0.3
@@ -51,7 +51,7 @@ def broken_off_tried(folder: Path, seed: int) -> int:
 
         def run() -> None:
             with Path(os.devnull).open("w", encoding="utf-8") as nowhere:
-                sys.stdout = sys.stderr = nowhere  # those of a process of its own
+                sys.stdout = sys.stderr = nowhere  # The run has a process of its own.
                 raise SystemExit(main(words, standalone_mode=False))
 
         status = interrupted(run, random.randint(1, _CHANGES), sent, again=again)

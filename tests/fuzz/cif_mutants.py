@@ -1,6 +1,6 @@
-"""CIF specifications with a few faults: random ones and those of the tests, their tokens dropped, doubled and swapped.
+"""CIF specifications with a few faults: tokens of random specifications and of test cases, dropped, doubled, swapped.
 
-Now and then the file ends early, or has bytes in it that are no text.
+Some files end early or contain bytes that are not valid text.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ _TOKEN = re.compile(
     r"(?:[.^]?[$\w]+(?:\.[$\w]+)*|\"(?:[^\"\n\\]|\\.)*\"|:=|=>|<=>|!=|<=|>=|\.\.|\S)"
 )
 _BLOCK = re.compile(r"^```cif\n(.*?)^```", re.MULTILINE | re.DOTALL)
-#: Bytes that are no UTF-8, end a text in C, or lead a text that is in another encoding.
+#: Bytes that are invalid UTF-8, end a string in C, or begin a text in another encoding.
 _GARBAGE = (b"\xff", b"\x00", b"\xc3(", b"\xef\xbb\xbf", b"\xed\xa0\x80", b"\xf4\x90\x80\x80", b"\x1a", b"\r")
-#: What other constructs begin with, so that one is found where it does not belong.
+#: First words of constructs, which a mutation inserts at a wrong place.
 _WORDS = (
     *("plant", "requirement", "supervisor", "invariant", "needs", "disables", "location", "edge", "goto", "end", "tau"),
     *(
@@ -64,7 +64,7 @@ _WORDS = (
 
 @cache
 def _small() -> list[str]:
-    """The specifications that tests and pages of the documentation have in them."""
+    """Return the specifications within the tests and the pages of the documentation."""
     found = []
     for module in sorted((ROOT / "tests" / "language" / "cif").glob("test_*.py")):
         nodes = ast.walk(ast.parse(module.read_text(encoding="utf-8")))
@@ -76,7 +76,7 @@ def _small() -> list[str]:
 
 
 def cif_mutant(seed: int) -> dict[str, bytes]:
-    """The files of a specification with one to four faults in one of them; the first imports the others."""
+    """Return the files of a specification with one to four faults in one of them; the first file imports the others."""
     random = Random(seed)  # noqa: S311 - nothing here is secret
     if random.random() < 0.3:
         files = {"random.cif": random.choice(_small())}
@@ -134,7 +134,7 @@ def _say_hostile(tokens: list[str], random: Random) -> None:
 
 
 def _names(tokens: list[str]) -> list[int]:
-    """The places of names, those with something in them among them."""
+    """Return the indices of names, including qualified names."""
     found = [
         (place, re.fullmatch(r"[.^]?[$\w]+(?:\.[$\w]+)*", token.split()[-1])) for place, token in enumerate(tokens)
     ]
@@ -142,7 +142,7 @@ def _names(tokens: list[str]) -> list[int]:
 
 
 def _name_alike(tokens: list[str], random: Random) -> None:
-    """Something is called like something else: it is declared twice, or read within its own declaration."""
+    """Give one thing the name of another, so that a name is declared twice or used in its own declaration."""
     if len(places := _names(tokens)) > 1:
         near = random.random() < 0.5
         first = random.randrange(len(places))
@@ -151,7 +151,7 @@ def _name_alike(tokens: list[str], random: Random) -> None:
 
 
 def _name_its_space(tokens: list[str], random: Random) -> None:
-    """The file is in a namespace that is called like something."""
+    """Put the file into a namespace with the name of another thing."""
     if places := _names(tokens):
         names = [tokens[random.choice(places)].split()[-1].lstrip(".^") for _ in range(random.choice((1, 1, 2, 3)))]
         place = random.choice((0, 0, random.choice(places)))
@@ -165,7 +165,7 @@ def _annotate(tokens: list[str], random: Random) -> None:
     tokens[at:at] = [f" {name}{arguments} "]
 
 
-#: Those that leave a text that can be read to its end come more often.
+#: Mutations of which the text stays parsable occur more often.
 _MUTATIONS: list[Callable[[list[str], Random], None]] = [
     *[_drop, _double, _swap, _replace] * 3,
     *[_name_alike] * 6,

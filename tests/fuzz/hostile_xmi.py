@@ -1,5 +1,4 @@
-"""Saved models with one fault: a reference to another element, an element doubled, dropped or of another class, an
-attribute with an extreme value."""
+"""Saved models with one fault: a changed reference, a doubled, dropped or retyped element, or an extreme attribute."""
 
 from __future__ import annotations
 
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-#: What no attribute may bring down whatever it says: numbers, booleans, nothing, line breaks and what looks like some.
+#: Attribute values that must not crash the tool: numbers, booleans, empty text, line breaks and escapes of them.
 EXTREMES = (
     *("", "0", "-1", "1", "3", "true", "false", "none", "x", "a b", "../../etc/passwd", "nan", "1e308", "0.5"),
     *(str(number) for number in (2**31 - 1, -(2**31), 2**63 - 1, -(2**63), 2**63, 10**400)),
@@ -23,7 +22,7 @@ _REFERENCE = re.compile(r"(?:[\w.]*#)?//\S*")
 
 @dataclass
 class Node:
-    """An element: where it stands in the text, the path that refers to it, its attributes' places, what it holds."""
+    """An element: its position in the text, its reference path, the positions of its attributes, its children."""
 
     start: int
     tag: str
@@ -34,14 +33,14 @@ class Node:
     children: list[Node] = field(default_factory=list)
 
     def all(self) -> Iterator[Node]:
-        """This and all below it."""
+        """Yield this element and all its descendants."""
         yield self
         for child in self.children:
             yield from child.all()
 
 
 def parsed(text: str) -> Node:
-    """The outermost element of a saved model."""
+    """Return the root element of a saved model."""
     stack: list[Node] = []
     counts: list[dict[str, int]] = [{}]
     root = None
@@ -69,7 +68,7 @@ def parsed(text: str) -> Node:
 
 
 def edits(texts: Mapping[str, str], name: str, choose: int | None = None) -> Iterator[tuple[str, str]]:
-    """What is done to the file `name` of `texts`, and its text then; no more than `choose` targets for a reference."""
+    """Yield description and new text of each edit of the file `name`, with at most `choose` targets for a reference."""
     text = texts[name]
     trees = {path: parsed(other) for path, other in texts.items()}
     elements = list(trees[name].all())
@@ -129,7 +128,7 @@ def _same(path: str, other: str) -> bool:
 
 
 def _spread(all_of_them: Sequence[Any], choose: int | None) -> Sequence[Any]:
-    """As many of them, from all over."""
+    """Return at most `choose` elements, evenly distributed."""
     if choose is None or len(all_of_them) <= choose:
         return all_of_them
     return [all_of_them[number * len(all_of_them) // choose] for number in range(choose)]

@@ -1,7 +1,7 @@
-"""Models with a few faults: words of the repository's own models dropped, doubled, swapped, replaced and joined.
+"""Models with a few faults: words of the repository's models, dropped, doubled, swapped, replaced and joined.
 
-Now and then a bound at the edge of a machine's integers, a type of ROS, characters that a terminal or a reader of lines
-takes for something else, or the whole model on one line.
+Some mutants have a bound at the edge of a machine integer, a ROS type, characters that a terminal or a line reader
+interprets, or the whole model on one line.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _WORD = re.compile(
     r"(?:\s|//[^\n]*\n|/\*[\s\S]*?\*/)*"
     r"(?:\^?\w+(?:\.\d+)?|\"[^\"\n]*\"|:=|->|=>|!=|<=|>=|\.\.|\S)"
 )
-#: Words that take each other's place in a text that can still be read.
+#: Groups of words that can replace each other in a parsable text.
 _KINDS = [
     re.compile(pattern)
     for pattern in (
@@ -48,26 +48,27 @@ _KINDS = [
         rf"(?!(?:{'|'.join(sorted(ROBOSC_KEYWORDS))})$)\^?[A-Za-z_]\w*$",
     )
 ]
-#: Bounds at which integers of machines end, and their neighbours.
+#: Bounds of machine integers, and their neighbors.
 EDGES = sorted({sign * 2**bits + step for bits in (0, 8, 16, 31, 32, 63) for sign in (1, -1) for step in (-1, 0, 1)})
-#: Types that ROS defines, and two that it does not.
+#: Types that ROS defines, and two undefined ones.
 _ROS_TYPES = ("geometry_msgs/PoseStamped", "std_msgs/Header", "nav_msgs/Path", "std_srvs/Empty", "no_msgs/None")
-#: What ends lines, is no character of XML, can't be seen, or turns the text around; U+009B begins a terminal's command.
+#: Line ends, characters that XML forbids, invisible characters, and changes of direction; U+009B begins a terminal
+#: command.
 HOSTILE = ("\x85", "\u2028", "\u2029", "\ufffe", "\x9b", "\x1b[2J", "\u202e", "\u200b", "\x00", "\x7f", "\r")
 _STRING = re.compile(r"\"[^\"\n]*\"$")
 _COMMENT = re.compile(r"//[^\n]*\n|/\*[\s\S]*?\*/")
-#: What statements begin with that can be missing, or stand elsewhere.
+#: First words of statements that can be removed or moved.
 _STARTERS = {"requirement", "provide", "on", "transition", "variable"}
 
 
 def words(text: str) -> list[str]:
-    """The text cut up, each word with what stands before it."""
+    """Split a text into words, each with the blanks and comments before it."""
     return _WORD.findall(text)
 
 
 @cache
 def sources(*, rejected: bool = True) -> list[list[str]]:
-    """The words of each model that is there, with those that show faults or without."""
+    """Return the words of each model in the repository, with or without the rejected ones."""
     files = [path for folder in _FOLDERS for path in sorted((ROOT / folder).rglob("*.rscd"))]
     texts = [file.read_text(encoding="utf-8") for file in files if rejected or "rejected" not in file.parts]
     for module in sorted((ROOT / "tests" / "m2m").glob("test_robosc_*.py")):
@@ -76,7 +77,7 @@ def sources(*, rejected: bool = True) -> list[list[str]]:
 
 
 def mutant(seed: int) -> str:
-    """The text of a model with one to four faults, the same for the same seed and models."""
+    """Return a model with one to four faults; the same seed and models give the same text."""
     random = Random(seed)  # noqa: S311 - nothing here is secret
     text = list(random.choice(sources(rejected=random.random() < 0.5)))
     for _ in range(random.choice((1, 1, 1, 2, 2, 3, 4))):
@@ -100,7 +101,7 @@ def _replace(text: list[str], random: Random) -> None:
 
 
 def _statement(text: list[str], random: Random) -> slice:
-    """Where a statement stands that could be missing; nowhere where there is none."""
+    """Return the slice of a statement that can be removed, or an empty slice if the text has none."""
     starts = [index for index, token in enumerate(text) if _bare(token) in _STARTERS]
     if not starts:
         return slice(0, 0)
@@ -148,7 +149,7 @@ def _splice(text: list[str], random: Random) -> None:
 
 
 def _bound(text: list[str], random: Random) -> None:
-    """Gives an integer a range at the edge of what machines count."""
+    """Give an integer a range at the edge of a machine integer."""
     low, high = sorted(random.choices(EDGES, k=2))
     low, high = random.choice(((low, high), (0, high), (low, low + 1), (-1, high)))
     at = random.choice([index for index, word in enumerate(text) if _bare(word) == "integer"] or [0])
@@ -159,14 +160,14 @@ def _bound(text: list[str], random: Random) -> None:
 
 
 def _type_of_ros(text: list[str], random: Random) -> None:
-    """Puts a type of ROS where a type stands; often it is a variable's."""
+    """Replace a type, often that of a variable, by a ROS type."""
     starts = [index + 1 for index, word in enumerate(text[:-1]) if _bare(word) == ":"]
     variables = [at for at in starts if at > 2 and _bare(text[at - 3]) == "variable"]
     text[random.choice(random.choice((variables, starts)) or starts or [0])] = f" {random.choice(_ROS_TYPES)}"
 
 
 def _say_hostile(text: list[str], random: Random) -> None:
-    """Puts characters into a string or a name, or a comment with them before a word."""
+    """Insert hostile characters into a string or a name, or into a comment before a word."""
     said = random.choice(HOSTILE)
     strings = [index for index, word in enumerate(text) if _STRING.search(word)]
     at = random.choice(strings or [0])
@@ -178,14 +179,14 @@ def _say_hostile(text: list[str], random: Random) -> None:
 
 
 def _join_lines(text: list[str], random: Random) -> None:
-    """Puts all on one line, at times with one of its words many times."""
+    """Join all lines, and sometimes repeat a part of the text many times."""
     text[:] = [f" {' '.join(_COMMENT.sub(' ', word).split())}" for word in text]
     if random.random() < 0.5:
         at = random.randrange(len(text))
         text[at:at] = text[at : at + random.randint(1, 12)] * random.choice((3, 30, 300))
 
 
-#: Those that leave a text that can be read to its end come more often.
+#: Mutations of which the text stays parsable occur more often.
 _MUTATIONS: list[Callable[[list[str], Random], None]] = [
     *[_replace, _drop_statement, _move_statement] * 3,
     *[_exchange, _drop, _double, _swap, _splice],

@@ -1,4 +1,4 @@
-"""Saved models with a few faults: references bent, doubled and lost, values at the edge, files of others named."""
+"""Saved models with a few faults: wrong, doubled and missing references, extreme values, names of other files."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from tests.fuzz.mutants import EDGES, HOSTILE, LIBRARIES, ROOT
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-#: Models with messages, services and actions, data that is computed, and a library.
+#: Models with messages, services and actions, computed data, and a library.
 MODELS = (
     "examples/line_follower/line_follower.rscd",
     "examples/obstacle_navigation/obstacle_navigation.rscd",
     "tests/m2t/cpp/courier.rscd",
     "tests/model/warehouse.rscd",
 )
-#: What stands in a file beside the folder of the models.
+#: Content of a file beside the folder of the models, which no output may contain.
 UNTOLD = "what nobody may read"
-#: Files that are no business of a model's.
+#: Files that a model must not name.
 _FILES = (
     "../secret.txt",
     "/proc/self/environ",
@@ -45,7 +45,7 @@ _PLACE = re.compile(r'(?<= )(source|file|origin|text|href|name)="([^"]*)"')
 
 @cache
 def saved(model: str) -> dict[str, str]:
-    """The files that `transform --to xmi` writes of a model: name to text."""
+    """Return the files that `transform --to xmi` writes for a model: name to text."""
     robot = robosc.load(ROOT / model, [LIBRARIES])
     assert isinstance(robot, robosc.model.robosc.Robot)
     models = Models(robosc.to_sct(robot), robosc.to_rosgraph(robot), robot)
@@ -55,7 +55,7 @@ def saved(model: str) -> dict[str, str]:
 
 
 def saved_mutant(seed: int) -> tuple[str, dict[str, str]]:
-    """The files of a model, one of them with one to three faults, and that one's name; the same for the same seed."""
+    """Return the name of a file with one to three faults, and all files of its model; deterministic for a seed."""
     random = Random(seed)  # noqa: S311 - nothing here is secret
     files = dict(saved(random.choice(MODELS)))
     own = [name for name in sorted(files) if "Library" not in name]
@@ -71,7 +71,7 @@ def _one(pattern: re.Pattern[str], text: str, random: Random) -> re.Match[str] |
 
 
 def _set(text: str, match: re.Match[str] | None, value: str) -> str:
-    """The text with another value for an attribute, escaped as a writer would; what XML forbids stays as it is."""
+    """Set the value of an attribute, escaped as a writer does; characters that XML forbids stay unescaped."""
     if match is None:
         return text
     escaped = value.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;").replace("\r", "&#13;")
@@ -79,7 +79,7 @@ def _set(text: str, match: re.Match[str] | None, value: str) -> str:
 
 
 def _bend(text: str, random: Random) -> str:
-    """Points a reference elsewhere: at something else of the model, twice at the same, or nowhere."""
+    """Change a reference: to another element, twice to the same element, or to a missing one."""
     references = re.compile(r'(?<= )([\w:]+)="([^"]*//@[^"]*)"')
     here = _one(references, text, random)
     if here is None:
@@ -103,7 +103,7 @@ def _drop(text: str, random: Random) -> str:
 
 
 def _exchange(text: str, random: Random) -> str:
-    """Gives an attribute the value of another one, of the same name or of any."""
+    """Give an attribute the value of another attribute, usually one of the same name."""
     here = _one(_ATTRIBUTE, text, random)
     if here is None:
         return text
@@ -118,7 +118,7 @@ def _edge(text: str, random: Random) -> str:
 
 
 def _name_a_file(text: str, random: Random) -> str:
-    """Says that an element comes from a file of somebody else, or from a place that no file has."""
+    """Set the source of an element to a foreign file, or to a position that no file has."""
     match = _one(_PLACE, text, random)
     span = random.choice(("1:1-1:20", "1:1-1:2", "9:9-1:1", "0:0-0:0", f"{2**31}:1-{2**63}:{2**31}"))
     return _set(text, match, random.choice((f"{random.choice(_FILES)}:{span}", random.choice(_FILES), span)))

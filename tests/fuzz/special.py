@@ -1,4 +1,4 @@
-"""What is no file where a command looks for one: pipes, devices, sockets, folders, links in a circle."""
+"""Pipes, devices, sockets, folders and cyclic links where a command expects a file."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _EXAMPLE = ROOT / "examples" / "line_follower"
-#: Seconds on the clock after which a command that reads a few lines has waited for somebody.
+#: Seconds after which a command that reads a few lines counts as hanging.
 _PATIENCE = 60
 
 
@@ -27,7 +27,7 @@ def _socket(path: Path) -> None:
         made.bind(str(path))
 
 
-#: What stands where a file is looked for, and how it is made.
+#: Special files and the functions that create them.
 KINDS: dict[str, Callable[[Path], Any]] = {
     "pipe": os.mkfifo,
     "socket": _socket,
@@ -44,7 +44,7 @@ KINDS: dict[str, Callable[[Path], Any]] = {
     "many brackets": lambda path: path.write_bytes(b"[" * 2_000_000),
     "digits": lambda path: path.write_bytes(b"[" + b"9" * 300_000 + b"]"),
 }
-#: Files after all, and what leads to none: a command that is to write there may.
+#: Kinds that a command may replace with its output: regular files, and a link to a missing file.
 _REPLACEABLE = {"huge", "bytes", "brackets", "many brackets", "digits", "nothing"}
 
 
@@ -53,7 +53,7 @@ def _sparse(path: Path, size: int) -> None:
         file.truncate(size)
 
 
-#: Commands, with SPECIAL for what is no file and the words that the others are named by.
+#: Commands. A word that begins with SPECIAL stands for the special file; MODEL, OUT and FOLDER for ordinary paths.
 COMMANDS = (
     "check SPECIAL",
     "check SPECIAL.xmi",
@@ -88,22 +88,22 @@ def _patience() -> Iterator[None]:
 
 
 def special_tried(folder: Path, seed: int) -> int:
-    """Tries a command and a kind of file that a number stands for; see `tried_with`."""
+    """Try the command and the kind of file that a seed selects; see `tried_with`."""
     random = Random(seed)  # noqa: S311 - nothing here is secret
     return tried_with(folder, random.choice(COMMANDS), random.choice(sorted(KINDS)), random)
 
 
 def tried_with(folder: Path, command: str, kind: str, random: Random) -> int:
-    """Asks a command for something that is no file, or lies where files are looked for; returns the exit status.
+    """Run a command on a special file, or on a folder that contains one; return the exit status.
 
-    Raises AssertionError where that is none of the command line's own, or where the command replaced what is no file.
+    Raises AssertionError if the status is not one of the documented ones, or if the command replaced the special file.
     """
     place = folder / "special"
     place.mkdir()
     try:
         shutil.copy(_EXAMPLE / "line_follower.rscd", place)
         named = next((word for word in command.split() if word.startswith("SPECIAL")), "")
-        # A folder may hold models, libraries, definitions of ROS types.
+        # A folder may contain models, libraries, and definitions of ROS types.
         special = place / f"special{named.removeprefix('SPECIAL') or random.choice(('', '.rscd', '.msg', '.json'))}"
         if special.suffix == ".msg":
             special = place / "some_msgs" / "msg" / "Some.msg"

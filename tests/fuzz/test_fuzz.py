@@ -1,4 +1,4 @@
-"""Models with faults end in located findings, valid ones in code; `benchmarks/fuzz.py` tries many more."""
+"""Faulty models yield located findings and valid models yield code; `benchmarks/fuzz.py` tries many more."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.slow
 
-#: Quick to compile, and nothing undefined passes.
+#: Flags for a short compile time and for an abort at undefined behavior.
 FLAGS = ("-O0", "-fsanitize=undefined", "-fno-sanitize-recover=all")
 MUTANTS, SAVED, CALLS, VALID = 50, 25, 12, 5
 
@@ -56,8 +56,8 @@ def test_commands_that_are_broken_off(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_what_is_no_file(tmp_path: Path, command: str) -> None:
-    # Those take seconds; `benchmarks/fuzz.py` has the time.
-    # Each kind is tried with every second command.
+    # These take seconds each; `benchmarks/fuzz.py` tries them.
+    # Each kind meets every second command.
     kinds = sorted(KINDS.keys() - {"many brackets"})
     for number, kind in [*enumerate(kinds)][COMMANDS.index(command) % 2 :: 2]:
         tried_with(tmp_path, command, kind, Random(number))  # noqa: S311 - nothing here is secret

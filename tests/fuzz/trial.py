@@ -1,4 +1,4 @@
-"""One text through the whole pipeline: what must hold whatever stands in it, and how it ends."""
+"""One text through the whole pipeline: invariants that hold for any text, and the outcome."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-#: Characters of output that no model made by a person needs.
+#: More characters of output than any hand-written model needs.
 MOST_OUTPUT = 1_000_000
-#: Controls, but for the end of a line; what turns text around or can't be seen; what is no character.
+#: Control characters except the line feed, changes of direction, invisible characters, and noncharacters.
 _UNSEEN = re.compile(
     "[\\x00-\\x09\\x0b-\\x1f\\x7f-\\x9f\\u200b-\\u200f\\u2028-\\u202e\\u2060-\\u2069\\ufeff\\ufffe\\uffff]"
 )
@@ -46,7 +46,7 @@ class HangError(Exception):
 
 @contextmanager
 def time_limit(seconds: float) -> Iterator[None]:
-    """Raises HangError after so many seconds of the process' own time, which a busy machine does not use up."""
+    """Raise HangError after a number of seconds of CPU time, which does not depend on the load of the machine."""
 
     def ended(*_: Any) -> NoReturn:
         raise HangError(f"more than {seconds} s")
@@ -62,7 +62,7 @@ def time_limit(seconds: float) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a trial ended: the exit statuses that `check` and `transform` owe, and the models where there are some."""
+    """Outcome of a trial: the exit statuses that `check` and `transform` must return, and any models."""
 
     check_status: int
     status: int
@@ -71,9 +71,9 @@ class Outcome:
 
 
 def tried(path: Path, targets: Sequence[str]) -> Outcome:
-    """Reads, checks, transforms, synthesizes and generates; every error is to be a located finding.
+    """Read, check, transform, synthesize and generate; every error must be a located finding.
 
-    Raises AssertionError for a finding outside its text and for a model that breaks its metamodel.
+    Raises AssertionError for a finding outside its text and for a model that violates its metamodel.
     """
     reading = read(path, [LIBRARIES])
     found = [*reading.findings, *check(reading.base, reading.findings)]
@@ -102,7 +102,7 @@ def _generated(robot: rsc.Robot, found: list[Diagnostic], texts: dict[str, str],
         raise ModelError(supervision.findings)
     configuration = robosc.Configuration()
     if graph.serviceClients or graph.actionClients:
-        targets = [target for target in targets if not TARGETS[target].needs_graph]  # They know of messages only.
+        targets = [target for target in targets if not TARGETS[target].needs_graph]  # They support messages only.
     refused = [finding for target in targets for finding in TARGETS[target].findings(models, configuration)]
     _located(refused, texts)
     if has_errors(refused):
@@ -114,7 +114,7 @@ def _generated(robot: rsc.Robot, found: list[Diagnostic], texts: dict[str, str],
 
 
 def called(path: Path, seed: int) -> int:
-    """Has the command line do what a trial does, and asserts its exit statuses; returns that of `transform`."""
+    """Run the same steps on the command line and check the exit statuses; return that of `transform`."""
     outcome = tried(path, ["cif"])
     form = ("text", "json", "sarif")[seed % 3]
     checking = _run("check", str(path), "-I", str(LIBRARIES), "--format", form)
@@ -129,7 +129,7 @@ def called(path: Path, seed: int) -> int:
     return transforming
 
 
-#: What can be asked of a saved model, each with `MODEL` and `OUT`.
+#: Commands for a saved model, with `MODEL` and `OUT`.
 _ASKED = (
     "check MODEL",
     "check MODEL --format json",
@@ -146,10 +146,10 @@ _ASKED = (
 
 
 def saved_tried(folder: Path, seed: int) -> int:
-    """Saves a mutant of a saved model, with what it may name but not tell beside it, and asks for something.
+    """Save a mutant of a saved model, beside files that it may name but must not reveal, and run a command on it.
 
-    Returns the exit status. Raises AssertionError where it is none of the command line's own, and where something is
-    told of a file that is no business of a model's.
+    Returns the exit status. Raises AssertionError if the status is not one of the documented ones, and if the output
+    reveals the content of a file outside the model.
     """
     (folder / "secret.txt").write_text(UNTOLD, encoding="utf-8")
     models = folder / f"models{seed}"
@@ -170,9 +170,9 @@ def saved_tried(folder: Path, seed: int) -> int:
 
 
 def cif_tried(folder: Path, files: dict[str, bytes]) -> int:
-    """Writes a specification of CIF and has it checked, synthesized and transformed; returns `synthesize`'s status.
+    """Write a CIF specification, and check, synthesize and transform it; return the status of `synthesize`.
 
-    Raises AssertionError for a finding outside its text and where the commands contradict each other.
+    Raises AssertionError for a finding outside its text and for commands that contradict each other.
     """
     for name, content in files.items():
         (folder / name).write_bytes(content)
@@ -195,10 +195,10 @@ def _run(*arguments: str) -> int:
 
 
 def said(*arguments: str) -> tuple[int, str]:
-    """Calls the command line; returns its exit status and what it printed.
+    """Run the command line; return its exit status and its output.
 
-    Raises AssertionError for a status that is none of its own, for more text than a person may want to scroll through,
-    and for characters that would move a terminal's cursor.
+    Raises AssertionError for an undocumented status, for more text than a person reads, and for characters that move
+    the cursor of a terminal.
     """
     result = CliRunner().invoke(cli.main, arguments)
     if result.exception is not None and not isinstance(result.exception, SystemExit):
@@ -206,7 +206,7 @@ def said(*arguments: str) -> tuple[int, str]:
     output = result.output
     assert result.exit_code in {0, 1, 2, 3}, f"{' '.join(arguments)} ends with {result.exit_code}: {output[-300:]}"
     assert "Traceback" not in output
-    # Programs are told of all findings, people of a hundred.
+    # Machine-readable formats list all findings, the text format at most a hundred.
     most = MOST_OUTPUT * (10 if "--format" in arguments else 1)
     assert len(output) < most, f"{' '.join(arguments)} prints {len(output)} characters"
     unseen = set(_UNSEEN.findall(output))
@@ -215,8 +215,8 @@ def said(*arguments: str) -> tuple[int, str]:
 
 
 def _located(findings: Sequence[Diagnostic], texts: dict[str, str]) -> None:
-    """Findings stand in their texts, say something, and can be shown in each form."""
-    # Of the configuration there is no text: what is said of it is what it lacks.
+    """Check that findings lie within their texts, have a message, and can be printed in each format."""
+    # A finding about the configuration concerns a missing entry, so it has no text.
     by_name = {FILE_NAME: "", **{path.rpartition("/")[2]: text for path, text in texts.items()}}
     for finding in findings:
         text = texts[finding.file] if finding.file in texts else by_name[finding.file]

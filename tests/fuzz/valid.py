@@ -1,4 +1,4 @@
-"""Random valid robots: their CIF says what they say, and the engine in C does what the interpreter does."""
+"""For random valid robots, their CIF has the same meaning, and the C engine behaves as the interpreter."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ if TYPE_CHECKING:
     from robosc.synthesis import Synthesis
 
 TARGETS = ("cif", "supervisor", "ros1", "ros2", "xmi")
-#: Operations on the engines, each of one to five events.
+#: Operations on the engines, each with one to five events.
 STEPS = 200
-#: What synthesis says of an otherwise valid robot.
+#: Errors of synthesis that an otherwise valid robot may have.
 _ALLOWED = {"empty-supervisor", "self-cancelling"}
-#: States up to which they are counted one by one, too.
+#: Largest number of states for which the oracle enumerates them, too.
 _FEW = 150
 
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot that has a supervisor, and a walk through its states in Python."""
+    """A robot with a supervisor, and a walk through its states in Python."""
 
     seed: int
     models: Models
@@ -52,25 +52,25 @@ class Robot:
 
 
 def valid_robot(seed: int) -> str:
-    """The text of a robot; each other one uses the second edition of the language."""
+    """Return the text of a robot; odd seeds use the second edition of the language."""
     name = f"R{seed}"
     return second_edition_robot(seed, name) if seed % 2 else random_robot(seed, name, mistakes=False)
 
 
 def checked(seed: int, path: Path) -> tuple[Outcome, Robot | None]:
-    """Everything but the engine in C: the outcome, and the robot where it has a supervisor.
+    """Run all steps except the C engine; return the outcome, and the robot if it has a supervisor.
 
-    Raises AssertionError for an error that a valid robot draws, and where read back models differ.
+    Raises AssertionError for an error in a valid robot, and for a saved model that differs after it is read back.
     """
     path.write_text(valid_robot(seed), encoding="utf-8")
     return taken_through(path, seed)
 
 
 def taken_through(path: Path, seed: int) -> tuple[Outcome, Robot | None]:
-    """The same of the robot in a file; `seed` is for the walk, and a number of its own for `compiled`."""
+    """Run the same steps on the robot in a file. `seed` selects the walk and identifies the robot in `compiled`."""
     outcome = tried(path, TARGETS)
     errors = [finding for finding in outcome.findings if has_errors([finding]) and finding.rule not in _ALLOWED]
-    # A robot without a plant is none for CIF.
+    # CIF has no model without a plant.
     errors = [error for error in errors if not (error.rule == "cif" and error.message.endswith("without a plant"))]
     assert not errors, errors
     if outcome.models is None:
@@ -97,7 +97,7 @@ def _cif_says_the_same(models: Models) -> None:
     assert (found := differences(model, again)) == [], found[:3]
     assert (found := differences(model, supervised)) == [], found[:3]
     synthesis, read_back = synthesize(model), synthesize(again)
-    # CIF counts the states of requirement automata among those of plants.
+    # CIF counts the states of requirement automata as states of plants.
     observed = any(plant.kind == sct.PlantKind.requirement for plant in model.plants)
     compared = slice(1, None) if observed else slice(None)
     assert _counts(synthesis)[compared] == _counts(read_back)[compared]
@@ -108,7 +108,7 @@ def _cif_says_the_same(models: Models) -> None:
 
 
 def named_like(text: str, model: sct.SupervisoryControlModel) -> sct.SupervisoryControlModel:
-    """The model in a text of CIF, with the names of the lowered one where CIF has to call something else."""
+    """Read a model from CIF text, and restore the names of the lowered model that CIF does not permit."""
     again, names = read(text), CifNames(model)
 
     def alike(ours: Iterable[Any], theirs: Iterable[Any]) -> list[tuple[Any, Any]]:
@@ -130,7 +130,7 @@ def _counts(synthesis: Synthesis) -> tuple[int, int]:
 
 
 def _saves_the_same(models: Models, folder: Path) -> None:
-    """Saved models, read back, are saved as the same bytes and give the same CIF."""
+    """Check that saved models, read back, are saved as the same bytes and give the same CIF."""
     written = xmi.generate(models, Configuration())
     for name, text in written.items():
         (folder / name).write_text(text, encoding="utf-8")
@@ -144,7 +144,7 @@ def _saves_the_same(models: Models, folder: Path) -> None:
 
 
 def compiled(robots: Sequence[Robot], folder: Path, flags: Sequence[str]) -> Path:
-    """One program with the engines of all the robots; its argument says which of them runs."""
+    """Compile one program with the engines of all robots; its argument selects the engine."""
     sources = []
     for robot in robots:
         loop = robot.settings
@@ -171,7 +171,7 @@ def compiled(robots: Sequence[Robot], folder: Path, flags: Sequence[str]) -> Pat
 
 
 def compared(robot: Robot, built: Path) -> None:
-    """Raises AssertionError where the engine in C does anything else than the interpreter did."""
+    """Raise AssertionError if the C engine and the interpreter behave differently."""
     said = run(built, robot.walk.script, str(robot.seed))
     for number, (theirs, ours) in enumerate(zip(said, robot.walk.said, strict=True)):
         assert theirs == ours, f"step {number}: C {theirs}, Python {ours}"

@@ -1,4 +1,4 @@
-"""Robots of the language's second edition, from their text to what the supervisor lets happen."""
+"""Robots of the language's second edition, from their text to the events that the supervisor permits."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def errors(text: str) -> list[tuple[str, int]]:
-    """The errors in a robot's text: rule and line, in order."""
+    """Return the errors in a robot's text: rule and line, in order."""
     try:
         found = robosc.check(robosc.load(text=text))
     except ModelError as error:
@@ -22,7 +22,7 @@ def errors(text: str) -> list[tuple[str, int]]:
 
 
 def supervised(text: str) -> sct.SupervisoryControlModel:
-    """The sct model of a robot without errors, with its supervisor."""
+    """Return the sct model of a robot without errors, with its supervisor."""
     assert errors(text) == []
     model = robosc.to_sct(robosc.load(text=text))
     robosc.synthesize(model)
@@ -30,10 +30,10 @@ def supervised(text: str) -> sct.SupervisoryControlModel:
 
 
 def running(text: str) -> Engine:
-    """A robot without errors in its initial state."""
+    """Return a robot without errors in its initial state."""
     return Engine(supervised(text))
 
 
 def requirements(text: str) -> list[str | None]:
-    """What its requirements say, as people read it."""
+    """Return the text of its requirements for readers."""
     return [requirement.text for requirement in supervised(text).requirements]

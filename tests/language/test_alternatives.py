@@ -1,4 +1,4 @@
-"""Several transitions on one event, and what the supervisor is told of data: language, second edition."""
+"""Several transitions on one event, and the data that the supervisor receives: language, second edition."""
 
 from __future__ import annotations
 
@@ -33,7 +33,10 @@ def _cart(free: str = "", blocked: str = "", idle: str = "on request to move got
 
 
 def test_the_first_whose_condition_holds_is_taken() -> None:
-    """Several transitions of one state on one event are tried in text order, the first whose condition holds."""
+    """Several transitions of one state on one event are tried in text order.
+
+    The first with a true condition is taken.
+    """
     text = _cart(
         "on response from scan if value.level > 2 goto blocked"
         " on response from scan if value.level > 1 do left := 4"
@@ -48,7 +51,7 @@ def test_the_first_whose_condition_holds_is_taken() -> None:
 
 
 def test_where_none_holds_a_response_leaves_the_component_as_it_is() -> None:
-    """where none holds a response, error, feedback or cancel leaves the component as it is."""
+    """If no condition is true, a response, error, feedback or cancel leaves the component unchanged."""
     engine = running(_cart("on response from scan if value.ok goto blocked"))
     before = engine.state
     assert engine.perform(_SCAN, {"i_response_ok": False})
@@ -58,7 +61,7 @@ def test_where_none_holds_a_response_leaves_the_component_as_it_is() -> None:
 
 
 def test_where_none_holds_a_request_is_not_possible() -> None:
-    """and a request is not possible."""
+    """If no condition is true, a request is not possible."""
     scan = "on response from scan do left := value.level"
     engine = running(
         _cart(scan, idle="on request to move if Lidar.left = 2 on request to move if Lidar.left = 3 goto moving")
@@ -79,7 +82,10 @@ def test_where_none_holds_a_request_is_not_possible() -> None:
     ids=["after one without condition", "beside one at automaton level"],
 )
 def test_one_that_is_never_taken(free: str, line: int) -> None:
-    """One that can never be reached, and one in a state beside one at automaton level, are `nondeterminism`."""
+    """A transition that can never be taken is `nondeterminism`.
+
+    So is a transition in a state beside one at automaton level.
+    """
     text = (
         _cart(free)
         .replace("state other {", "initial marked state other {")
@@ -107,7 +113,7 @@ def test_conditions_read_the_values_before_the_event() -> None:
     "asked", ["false != (if Base.idle then near else false)", "!(if left > 1 then near else true)"]
 )
 def test_conditions_of_choices_beside_data(asked: str) -> None:
-    """Whatever holds, one transition is taken: the guards of these know that those before them cover the rest."""
+    """Exactly one transition is taken for all data: each guard accounts for the earlier ones."""
     free = f"on response from scan if ({asked}) or !value.ok do left := 1 on response from scan do near := true"
     engine = running(_cart(free, blocked="transition if left = 5"))
     for ok, state in ((True, (0, True)), (False, (1, True))):
@@ -116,7 +122,7 @@ def test_conditions_of_choices_beside_data(asked: str) -> None:
 
 
 def test_guards_that_read_what_the_event_changes() -> None:
-    """Conditions read the values before the event", also those of another component that the event moves."""
+    """Conditions read the values before the event, also those of another component that the event moves."""
     text = """robot Pair {
       component A {
         outgoing message tick with type: none
@@ -159,13 +165,13 @@ def _inputs(text: str) -> list[tuple[str, str | None, str]]:
 
 
 def test_finite_data_is_an_input_for_each_piece() -> None:
-    """Finite data (boolean, enum, integer with a range) is an input as before, one for each piece of data."""
+    """Finite data (boolean, enum, integer with a range) is an input, one for each piece of data."""
     text = _cart("on response from scan if value.ok and value.level = 2 goto blocked")
     assert _inputs(text) == [("i_response_ok", None, "BooleanType"), ("i_response_level", None, "IntegerType")]
 
 
 def test_the_largest_part_over_data_is_an_input() -> None:
-    """each largest sub-expression with `value` in it, over `value`, literals, enum values, constants."""
+    """The input is each largest sub-expression with `value` over `value`, literals, enum values and constants."""
     text = _cart(
         "on response from scan if left > 1 and (value.range < 0.5 or value.ranges[0] < reach) goto blocked",
         "on response from scan if value.range < 0.5 do left := 2",
@@ -177,7 +183,7 @@ def test_the_largest_part_over_data_is_an_input() -> None:
 
 
 def test_equal_ones_after_inlining_are_one() -> None:
-    """equal ones, after inlining, are one."""
+    """Inputs that are equal after inlining are one input."""
     text = _cart(
         "on response from scan if close(value.range) goto blocked on response from scan do near := value.range < 0.5",
         "on response from scan if !(value.range < 0.5) goto free",
@@ -186,7 +192,7 @@ def test_equal_ones_after_inlining_are_one() -> None:
 
 
 def test_an_integer_takes_the_range_of_the_variable() -> None:
-    """An integer of the latter kind takes the range of the variable that it is assigned to."""
+    """An integer input takes the range of the variable to which it is assigned."""
     text = _cart(
         "on response from scan do left := value.count + 1",
         "on response from scan do left := if near then value.count else 0",
@@ -200,12 +206,12 @@ def test_an_integer_takes_the_range_of_the_variable() -> None:
 
 
 def test_an_integer_without_variable_needs_a_range() -> None:
-    """else it needs one (`integer-range`)."""
+    """An integer input without such a variable needs a range (`integer-range`)."""
     assert ("integer-range", 2) in errors(_cart("on response from scan if value.count > left goto blocked"))
 
 
 def test_inputs_are_taken_as_independent() -> None:
-    """Inputs of one event are taken as independent: what is reachable may need values not together."""
+    """Inputs of one event are independent: a reachable state may need values that never occur together."""
     text = _cart(
         "on response from scan if value.range < 0.2 do near := true"
         " on response from scan if value.range < 0.5 goto blocked",
@@ -217,6 +223,6 @@ def test_inputs_are_taken_as_independent() -> None:
 
 
 def test_doubles_mixed_with_variables_stay_variable_type() -> None:
-    """Doubles, strings and arrays mixed with variables of the supervisor stay `variable-type`."""
+    """Doubles, strings and arrays mixed with variables of the supervisor draw `variable-type`."""
     assert errors(_cart("on response from scan if value.range < left goto blocked")) == [("variable-type", 9)]
     assert errors(_cart("on response from scan if value.ranges[left] < 0.5 goto blocked")) != []

@@ -1,4 +1,4 @@
-"""Arrays and functions in texts: how far a condition on elements reaches, which names mean what, the layout."""
+"""Arrays and functions in texts: the extent of a condition on elements, the meaning of names, the layout."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def assigned(expression: str) -> tuple[rsc.Robot, rsc.Assignment]:
 @pytest.mark.parametrize(
     ("text", "printed"),
     [
-        # Bodies reach as far right as they can.
+        # Bodies extend as far right as possible.
         ("any e in value.ranges: e < 1.0 and near", "(any e in value.ranges: e < 1.0 and Lidar.near)"),
         ("(any e in value.ranges: e < 1.0) and near", "(any e in value.ranges: e < 1.0) and Lidar.near"),
         (
@@ -58,7 +58,7 @@ def assigned(expression: str) -> tuple[rsc.Robot, rsc.Assignment]:
         ("(count e in value.ranges[1..2]: e > 0) > 1", "(count e in value.ranges[1..2]: e > 0) > 1"),
         ("value.ranges[value.first + 1] < 1.0", "value.ranges[value.first + 1] < 1.0"),
         ("size(value.ranges[r..size]) = 2", "size(value.ranges[Lidar.r..Lidar.size]) = 2"),
-        # Elsewhere these words are names.
+        # In other places these words are names.
         ("in and size > 1", "Lidar.in and Lidar.size > 1"),
     ],
 )
@@ -72,7 +72,7 @@ def test_texts(text: str, printed: str) -> None:
 
 
 def test_a_bound_name_comes_first() -> None:
-    """A bare name is, in order: a bound name (`all r in …`) …; not in the array itself."""
+    """A bound name (`all r in …`) precedes all other meanings of a bare name, except in the array itself."""
     _, assignment = assigned("any r in value.ranges[r..r]: r < 1.0")
     quantifier = assignment.value
     assert isinstance(quantifier, rsc.ArrayQuantifier)
@@ -91,14 +91,14 @@ def test_the_inner_one_of_two_equal_names() -> None:
 
 def test_a_bound_name_ends_with_its_condition() -> None:
     robot = robosc.load(text=MODEL.format(expression="(any e in value.ranges: e < 1.0) and near"))
-    assert robosc.check(robot)  # the package of its interface
+    assert robosc.check(robot)  # the finding is about the package of its interface
     with pytest.raises(robosc.ModelError) as error:
         robosc.load(text=MODEL.format(expression="(any e in value.ranges: e < 1.0) and e > 0.0"))
     assert [finding.rule for finding in error.value.diagnostics] == ["unresolved-reference"]
 
 
 def test_a_condition_in_a_function_is_written_out_where_it_is_called() -> None:
-    """`function`: inlined; names of elements in it are its own."""
+    """A `function` is inlined at its calls; names of elements in it are its own."""
     text = MODEL.format(expression="any e in value.ranges: close(e)").replace(
         "  component Lidar {",
         "  constant most: double = 2.0\n  function close(e: double): boolean = if e > most then false else e >= 0.0\n\n"

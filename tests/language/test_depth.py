@@ -1,4 +1,4 @@
-"""Reading and laying out need no more than Python's own limit of recursion, on a small stack as well."""
+"""Reading and layout need no more than Python's default recursion limit, also on a small stack."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""Texts in memory, what their names stand for, the places of editors, and edits that mend a text."""
+"""Texts in memory, the meaning of their names, editor positions, and edits that mend a text."""
 
 from pathlib import Path
 
@@ -125,7 +125,7 @@ def test_the_name_at_a_place() -> None:
     assert wheel is not None
     assert turn is not None
     assert (wheel.name, turn.name, turn.target.name) == ("Wheel", "turn", "turn")
-    assert file.name_at(start + 5) == wheel  # right behind
+    assert file.name_at(start + 5) == wheel  # directly after the name
     assert file.name_at(start - 1) is None
     assert in_memory("").files["/nowhere/model.rscd"].name_at(0) is None
 
@@ -175,7 +175,7 @@ def test_positions_in_units_of_utf_16(offset: int, position: tuple[int, int]) ->
 
 def test_positions_that_are_none() -> None:
     text = Text("a.rscd", ASTRAL)
-    assert text.from_utf16(0, 2) == 1  # between the halves of a character
+    assert text.from_utf16(0, 2) == 1  # between the surrogates of a character
     assert text.from_utf16(0, 99) == 3
     assert text.from_utf16(1, 1) == 4
     assert text.from_utf16(0, -1) == 0

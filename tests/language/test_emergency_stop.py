@@ -1,4 +1,4 @@
-"""The emergency stops of the standard library, in the control loop of a robot that drives when it may."""
+"""The emergency stops of the standard library, in the control loop of a robot that drives when permitted."""
 
 import json
 from pathlib import Path
@@ -27,7 +27,7 @@ CONTINUE = "message_continue.u_response"
 
 
 def states(folder: Path, component: str, *lines: str) -> str:
-    """`m` or `h` for each line of a script: the command that the robot sends at the next tick."""
+    """Return `m` or `h` for each line of a script: the command that the robot sends at the next tick."""
     path = folder / "rover.rscd"
     path.write_text(ROVER % component)
     script = "\n".join(f"{line}\ntick" for line in lines)

@@ -1,4 +1,4 @@
-"""Expressions: what binds tighter, and that the printer's text of a tree is read as that tree."""
+"""Expressions: precedence of operators, and the printed text of a tree is read as the same tree."""
 
 from typing import Any
 
@@ -50,7 +50,7 @@ EXPRESSIONS = st.recursive(ACCESSES | LITERALS, trees, max_leaves=12)
 
 
 def shape(expression: Any, names: Any = None) -> Any:
-    """What distinguishes one expression from another; `names` are those of a parsed one, which is not linked."""
+    """Return a comparable form of an expression; `names` has the names of a parsed, unlinked one."""
 
     def name(element: Any, feature: str) -> str | None:
         if names is not None:

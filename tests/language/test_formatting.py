@@ -1,4 +1,4 @@
-"""The canonical layout: what it looks like, and that it never changes more than blanks and line breaks."""
+"""The canonical layout, which never changes more than blanks and line breaks."""
 
 import re
 from collections.abc import Iterator
@@ -45,20 +45,20 @@ def formatted(text: str) -> str:
 
 
 def body(text: str) -> str:
-    """A robot with these definitions."""
+    """Return a robot with these definitions."""
     return f"robot R {{\n{text}\n}}\n"
 
 
 def comments(text: str) -> list[list[str]]:
-    """The comments of a text in their order, each as its lines without the blanks around them."""
+    """Return the comments of a text in order, each as its lines without surrounding blanks."""
     found = (match for match in _STRING_OR_COMMENT.finditer(text) if match[1] is None)
     return [[line.strip() for line in finding[0].split("\n")] for finding in found]
 
 
 def model(text: str) -> tuple[Any, Any]:
-    """What a text means: its elements with all features but their places, and the names that they refer to.
+    """Return the meaning of a text: its elements with all features except positions, and the names they refer to.
 
-    Without the descriptions of parameters: these are comments, which the tests compare by themselves.
+    Descriptions of parameters are left out: they are comments, which the tests compare separately.
     """
     parsed = parse_file(Text("model.rscd", text))
     assert parsed.findings == []
@@ -93,7 +93,7 @@ def _listed(value: Any) -> list[Any]:
 
 @cache
 def words(path: Path) -> list[tuple[str, str]]:
-    """The words of a file, each with what stands before it."""
+    """Return the words of a file, each with the text before it."""
     text = path.read_text(encoding="utf-8")
     tokens = list(Tokens(text))
     ends = [0, *(token.end for token in tokens)]
@@ -101,7 +101,7 @@ def words(path: Path) -> list[tuple[str, str]]:
 
 
 def signs(path: Path) -> Iterator[bool]:
-    """Whether a word of a file is a number behind the sign of a bound, where no comment may stand."""
+    """Yield for each word whether it is the number after the sign of a bound: no comment may precede it."""
     texts = [word for _, word in words(path)]
     kinds = [token.kind for token in Tokens(path.read_text(encoding="utf-8"))]
     for index, kind in enumerate(kinds):
@@ -110,9 +110,9 @@ def signs(path: Path) -> Iterator[bool]:
 
 @st.composite
 def layouts(draw: st.DrawFn) -> tuple[str, str]:
-    """The text of a file and the same words laid out in another way, with comments anywhere."""
+    """Draw the text of a file and the same words in another layout, with comments anywhere."""
     path = draw(st.sampled_from(FILES))
-    # Of the words some few get comments: how often, that is drawn too.
+    # The share of words with comments is random, too.
     rarely = draw(st.sampled_from([0.02, 0.2, 1.0]))
     random = draw(st.randoms(use_true_random=False))
     parts = []

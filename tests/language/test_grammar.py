@@ -1,4 +1,4 @@
-"""Grammar and metamodel say the same, each all that the other says."""
+"""The grammar and the metamodel have the same content."""
 
 import re
 from typing import Any
@@ -27,7 +27,7 @@ WORDS = {
 }
 WORDS |= {"Boolean", "Comment"}
 ENUMERATIONS = ["MessageDirection", "ResultType", "Quantifier", "InvariantKind", "TimeUnit"]
-#: Words that are keywords in one place only, so that they are names elsewhere.
+#: Words that are keywords in one place only, and names elsewhere.
 UNRESERVED = {
     "after",
     "always",
@@ -55,14 +55,14 @@ UNRESERVED = {
     "then",
     "without",
 }
-#: What a text can't say: transformations make it.
+#: Classes without a textual form: only transformations create them.
 MADE_BY_TRANSFORMATIONS = {
     *("Type", "BooleanType", "IntegerType", "DoubleType", "StringType", "EnumerationType", "Enumeration"),
     *("EnumerationLiteral", "EnumerationLiteralReference", "DoubleConversion"),
 }
-#: Features that no rule sets: reading sets them from the file, and the operators' left operands from their precedence.
+#: Features that no rule sets: reading sets them from the file, and left operands from operator precedence.
 SET_OTHERWISE = {"source", "file", "left"}
-#: Those that linking, or the comment above, sets in elements of one class.
+#: Features that linking, or the comment above, sets in elements of one class.
 MADE_BY_LINKING = {
     "InterfaceTypeReference": {"arguments", "definition", "interface", "type"},
     "Access": {"enumeration"},
@@ -72,7 +72,7 @@ MADE_BY_LINKING = {
 
 
 def classifier(name: str) -> Any:
-    """The EClass or EEnum of a name; None where there is none."""
+    """Return the EClass or EEnum of a name, or None."""
     found = getattr(rsc, name, None) or getattr(ex, name, None)
     return getattr(found, "eClass", None) if isinstance(found, type) else found
 
@@ -138,7 +138,7 @@ def test_a_rule_assigns_what_its_class_wants(rule: str) -> None:
             assert target.startswith("'") or target in WORDS or target == feature.eType.name
         else:
             assert bool(bracket) != feature.containment
-            # An operand is any expression: `Operand` is what stands between operators.
+            # An operand is any expression: `Operand` is the rule between operators.
             assert is_a("Expression" if target == "Operand" else target, feature.eType.name)
 
 
@@ -166,7 +166,7 @@ def test_every_word_of_the_grammar_is_reserved_and_no_other() -> None:
 
 def test_what_a_rule_begins_with() -> None:
     assert first_words("State", "Variable") == {"initial", "marked", "state", "variable"}
-    assert first_words("Requirement") == {"requirement"}  # not the words of its expression
+    assert first_words("Requirement") == {"requirement"}  # without the words of its expression
     assert first("TopicRemapping") == {"Name"}
     assert {"array", "UnreservedName"} <= first("DataType")
     assert "true" in first("Expression")
@@ -177,4 +177,4 @@ def test_what_follows_a_word() -> None:
     assert following()["initial"] == {"marked", "state"}
     assert following()["incoming"] == {"message"}
     assert following()["goto"] == {"Name"}
-    assert "on" not in following()["transition"]  # which would be the next transition
+    assert "on" not in following()["transition"]  # `on` would belong to the next transition

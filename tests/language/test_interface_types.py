@@ -58,7 +58,7 @@ def interfaces(tmp_path: Path) -> RosTypes:
 
 
 def findings(folder: Path, interfaces: RosTypes, *texts: str) -> list[tuple[str, str, str | None]]:
-    """Rules, messages and hints for the first of several files of one folder."""
+    """Return the rules, messages and hints for the first of several files in one folder."""
     for number, text in enumerate(texts):
         (folder / f"model{number}.rscd").write_text(text)
     reading = read(folder / "model0.rscd", ros_types=interfaces)

@@ -1,4 +1,4 @@
-"""Where libraries come from, and what goes wrong with them."""
+"""Search paths of libraries, and faults in libraries."""
 
 import os
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What a name stands for in each place (the language reference, files and names)."""
+"""The meaning of a name in each place (the language reference, files and names)."""
 
 from pathlib import Path
 from typing import Any
@@ -150,7 +150,7 @@ def test_the_few_names_that_there_are_are_listed(tmp_path: Path) -> None:
     ("called", "hint"), [("exp", "there is `abs`, `atan2`, "), ("median", "did you mean `min`?"), ("halt", "did you")]
 )
 def test_the_functions_that_there_are_are_listed(tmp_path: Path, called: str, hint: str) -> None:
-    """A call of one that is nowhere shows what there is, and how another is declared."""
+    """A call of an unknown function draws a finding that lists the functions and shows how to declare one."""
     found = reading(
         tmp_path,
         f"""
@@ -282,7 +282,10 @@ def test_two_instances_share_names_that_need_qualification(tmp_path: Path) -> No
 
 
 def test_of_many_that_may_be_meant_a_few_are_listed(tmp_path: Path) -> None:
-    """As many for each of as many names would make the findings grow with the square of the text."""
+    """Only a few candidates are listed.
+
+    If each of many names listed all candidates, the findings would grow with the square of the text.
+    """
     made = "\n".join(f"component C{number} from Safety import Stop" for number in range(300))
     found = reading(tmp_path, f"robot R {{ {made} requirement stop needs C0.running }}", safety=STOP)
     (finding,) = found.findings

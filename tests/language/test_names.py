@@ -1,4 +1,4 @@
-"""Names for values and conditions, and components made several times, sentence by sentence."""
+"""Names for values and conditions, and components with several instances, statement by statement."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _robot(names: str = "", inside: str = "", needs: str = "Base.left > 0") -> s
 
 
 def _holds(text: str, *values: int) -> list[bool]:
-    """Whether `move` is possible after `hit` with each of these values."""
+    """Return for each of these values whether `move` is possible after `hit`."""
     engine = running(text)
     found = []
     for value in values:
@@ -48,7 +48,10 @@ def _holds(text: str, *values: int) -> list[bool]:
     ],
 )
 def test_a_constant_is_usable_wherever_a_literal_is(declared: str, condition: str) -> None:
-    """boolean, integer, double, string or enum; its value a constant expression. Usable wherever a literal is."""
+    """A constant (boolean, integer, double, string or enum) is usable wherever a literal is.
+
+    Its value is a constant expression.
+    """
     assert _holds(_robot(declared, needs=condition), 5, 6) == [False, True]
 
 
@@ -58,7 +61,7 @@ def test_a_constant_lies_in_its_range() -> None:
 
 
 def test_constants_in_bounds_initial_values_and_identifiers() -> None:
-    """range bounds, initial values, arguments, parts of identifiers (`ns + "/scan"`)."""
+    """Constants in range bounds, initial values, arguments, and parts of identifiers (`ns + "/scan"`)."""
     text = _robot('constant most: integer = 4 constant ns: string = "/left"')
     text = text.replace('identifier: "/hit"', 'identifier: ns + "/hit"').replace(
         "(0..9) = 3", "(0..most * 2) = most - 1"
@@ -93,14 +96,14 @@ def test_a_cycle_is_cyclic_definition(names: str) -> None:
 
 
 def test_a_condition_is_inlined_and_texts_for_people_keep_its_name() -> None:
-    """condition: Inlined; texts for people keep its name."""
+    """A condition is inlined; texts for readers keep its name."""
     text = _robot("condition some = Base.left > 2 condition few = some and Base.left < 6", needs="few")
     assert _holds(text, 2, 3, 5, 6) == [False, True, True, False]
     assert requirements(text) == ["requirement move needs few"]
 
 
 def test_conditions_in_guards_and_provide_conditions() -> None:
-    """usable in guards, requirements, provide conditions, conditions."""
+    """Conditions are usable in guards, requirements, provide conditions and conditions."""
     text = _robot(inside="condition calm = left > 2 provide move with 0.5 if calm").replace(
         "initial marked state idle {", "initial marked state idle { transition if calm and left < 5 do left := 9 "
     )
@@ -114,7 +117,10 @@ def test_conditions_in_guards_and_provide_conditions() -> None:
 
 
 def test_a_function_is_inlined_and_legal_where_its_body_is() -> None:
-    """function: an expression of its parameters, constants and parameters; legal where its inlined body is."""
+    """A function is an expression of its parameters, constants and node parameters.
+
+    It is legal where its inlined body is.
+    """
     names = "constant step: integer = 2 function twice(n: integer): integer = step * n"
     assert _holds(_robot(names, needs="twice(Base.left) > 6"), 3, 4) == [False, True]
     doubled = "function far(d: double): boolean = d > 0.5"
@@ -128,7 +134,10 @@ def test_a_wrong_call_is_argument(call: str) -> None:
 
 
 def test_what_a_bare_name_is() -> None:
-    """A bare name is, in order: a parameter, a component, one of the own component, one of the robot, an enum value."""
+    """The meanings of a bare name, in order.
+
+    A parameter, a component, a name of the own component, a name of the robot, an enum value.
+    """
     names = "constant left: integer = 8 constant most: integer = 1"
     inside = "constant most: integer = 4 condition here = left > most function over(left: integer): boolean = left > 7"
     assert _holds(_robot(names, inside, needs="Base.here"), 4, 5) == [False, True]
@@ -137,7 +146,7 @@ def test_what_a_bare_name_is() -> None:
 
 
 def test_a_component_has_constants_and_conditions_too() -> None:
-    """`X.y`: component (its constants and conditions too), enum."""
+    """`X.y` names a member of a component (its constants and conditions, too) or of an enum."""
     text = _robot(inside="constant most: integer = 4", needs="Base.left > Base.most")
     assert _holds(text, 4, 5) == [False, True]
     enums = "datatype enum Size from integer(0..9) to { value > 5 -> big default -> small }"
@@ -150,7 +159,7 @@ def test_a_component_has_constants_and_conditions_too() -> None:
 
 
 def test_enums_may_share_values_and_a_bare_value_is_of_one_enum_only() -> None:
-    """a bare value must be of one enum only. Enums may share values. Several rules may give the same value."""
+    """Enums may share values, but a bare value must belong to one enum only. Several rules may give the same value."""
     enums = """datatype enum Size from integer(0..9) to { value > 7 -> big value < 2 -> big default -> small }
       datatype enum Age from integer(0..9) to { value > 5 -> old default -> small }"""
     text = _robot(enums, needs="Base.size = Size.small").replace("type: integer(0..9)", "type: Size")
@@ -168,7 +177,10 @@ def test_enums_may_share_values_and_a_bare_value_is_of_one_enum_only() -> None:
     ],
 )
 def test_new_names_are_unique_with_their_neighbours(names: str, inside: str, rule: str) -> None:
-    """New names are unique with their neighbours: `unique-variable` in a component, `unique-component` in a robot."""
+    """A new name must be unique among its neighbors.
+
+    The rule is `unique-variable` in a component and `unique-component` in a robot.
+    """
     assert rule in {found for found, _ in errors(_robot(names, inside))}
 
 
@@ -176,7 +188,7 @@ def test_new_names_are_unique_with_their_neighbours(names: str, inside: str, rul
     "expression", ["if Base.left > 5 then true else false", "(if Base.left > 5 then 1 else 2) = 1"]
 )
 def test_if_then_else(expression: str) -> None:
-    """`if C then A else B` (loosest; both branches of one type), everywhere."""
+    """`if C then A else B` binds loosest, has branches of one type, and is usable everywhere."""
     assert _holds(_robot(needs=expression), 5, 6) == [False, True]
     assert errors(_robot(needs="if Base.left > 5 then 1 else false")) != []
 
@@ -204,7 +216,10 @@ def _bumpers(needs: str = "true") -> str:
 
 
 def test_a_template_is_no_part_of_the_robot_until_made() -> None:
-    """A component with parameters is a template: no part of the robot until made by `is` or `import`."""
+    """A component with parameters is a template.
+
+    It is not part of the robot until `is` or `import` makes an instance of it.
+    """
     model = supervised(_bumpers())
     names = [plant.name for plant in model.plants]
     assert [name for name in names if name.startswith("component")] == ["component_Front", "component_Rear"]
@@ -225,13 +240,13 @@ def test_a_template_is_no_part_of_the_robot_until_made() -> None:
     ids=["too few", "too many", "name", "type", "no template"],
 )
 def test_wrong_arguments_are_argument(made: str) -> None:
-    """`argument`: wrong count, name, type, or `is` of what is no template."""
+    """A wrong count, name or type of arguments is `argument`. So is `is` with a component that is not a template."""
     text = _bumpers().replace('Bumper(ns: "/front")', made)
     assert {rule for rule, _ in errors(text)} == {"argument"}
 
 
 def test_names_of_communications_and_requirements_of_instances() -> None:
-    """Instances share names of communications, so these need `Component.`. Names of requirements: `Left.SR4`."""
+    """Instances share names of communications, which then need `Component.`. Names of requirements: `Left.SR4`."""
     assert "unresolved-reference" in {
         rule for rule, _ in errors(_bumpers().replace("move needs true", "lamp needs true"))
     }
@@ -249,7 +264,7 @@ def test_names_of_communications_and_requirements_of_instances() -> None:
     ],
 )
 def test_quantifiers_range_over_the_instances(needs: str, after: list[bool]) -> None:
-    """`all Bumper: …`, `any Bumper: …`, `count Bumper: …` range over the instances of a template."""
+    """`all Bumper: …`, `any Bumper: …` and `count Bumper: …` range over the instances of a template."""
     engine = running(_bumpers(needs))
     found = [engine.enabled("message_move.c_trigger")]
     for component in ("Rear", "Front", "Front"):
@@ -270,7 +285,10 @@ def test_quantifiers_range_over_the_instances(needs: str, after: list[bool]) -> 
     ],
 )
 def test_others_name_what_is_made_of_a_template(mention: str) -> None:
-    """A template is no part of the robot until made: others name what is made of it, the template also itself."""
+    """A template is not part of the robot: others name its instances.
+
+    Only the template itself also uses its own name.
+    """
     (finding,) = errors(_bumpers().replace("requirement move", f"{mention} requirement move"))
     assert finding[0] == "unresolved-reference"
     inside = _bumpers().replace("do left := left - 1", "if Bumper.left > 0 do left := Bumper.left - 1")
@@ -278,7 +296,10 @@ def test_others_name_what_is_made_of_a_template(mention: str) -> None:
 
 
 def test_statements_outside_a_component_replace_those_in_it() -> None:
-    """Statements for a communication outside a component replace those in it, the robot's those of a library."""
+    """Statements for a communication outside a component replace those inside it.
+
+    The robot's replace those of a library.
+    """
     inside = supervised(_bumpers())
     assert [len(plant.locations) for plant in inside.plants if plant.kind == sct.PlantKind.data] == [2, 2]
     text = _bumpers().replace("requirement move", "provide Front.lamp with true if Front.left = 1 requirement move")
@@ -288,7 +309,7 @@ def test_statements_outside_a_component_replace_those_in_it() -> None:
 
 
 def test_arguments_of_an_enum() -> None:
-    """Arguments of an enum are constants or parameters; the type of a variable is the enum without arguments."""
+    """Arguments of an enum are constants or parameters. The type of a variable is the enum without arguments."""
     text = """robot Cart {
       constant close: double = 0.3
       datatype enum Ahead(limit: double) from double to { value < limit -> near default -> clear }

@@ -1,4 +1,4 @@
-"""The words of the language's later editions are no reserved words."""
+"""The words of the language's later editions are not reserved."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ NAMED = """robot {word} {{
 
 @pytest.mark.parametrize("word", WORDS)
 def test_a_new_word_is_a_name_elsewhere(word: str) -> None:
-    """No new reserved word: a new word is a keyword only where the next tokens make its construct."""
+    """A new word is a keyword only if the next tokens form its construct."""
     engine = running(NAMED.format(word=word))
     assert not engine.enabled(f"message_{word}.c_trigger")
     engine.perform("message_told.u_response", {f"i_response_{word}": True})
@@ -39,7 +39,7 @@ def test_a_new_word_is_a_name_elsewhere(word: str) -> None:
 
 @pytest.mark.parametrize("word", WORDS)
 def test_a_new_word_is_the_value_of_an_enum(word: str) -> None:
-    """What `->` gives in an enum stays a plain name."""
+    """A value after `->` in an enum is a plain name."""
     text = f"""robot R {{
       datatype enum Kind from integer(0..9) to {{ value > 5 -> {word} default -> other }}
       component C {{

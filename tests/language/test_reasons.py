@@ -1,4 +1,4 @@
-"""`error` is the reason of an error, and bare names are values of `Failure` where the text expects one."""
+"""`error` is the reason of an error, and bare names are values of `Failure` if the text expects one."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def robot(driving: str = "", docking: str = "", definitions: str = "", variables
 
 
 def failed(text: str, inputs: dict[str, Any] | None = None, event: str = "action_drive") -> Any:
-    """The engine after a call or goal has failed."""
+    """Return the engine after a call or goal has failed."""
     engine = running(text)
     engine.perform(f"{event}.c_trigger")
     engine.perform(f"{event}.u_error", inputs or {})
@@ -119,7 +119,7 @@ def test_of_two_bare_names_the_left_one_is_looked_up_as_ever(tmp_path: Path) -> 
 
 
 def test_elsewhere_a_bare_name_is_what_it_was(tmp_path: Path) -> None:
-    """A value of another enum, a state, a constant."""
+    """It is a value of another enum, a state or a constant."""
     definitions = "datatype enum Kind from integer to { value = 1 -> lost default -> aborted }"
     text = robot(
         "on error from drive if kind = lost and error = lost goto other",
@@ -185,7 +185,7 @@ _REASON = st.sampled_from(sorted(FAILURES))
 @settings(max_examples=examples(30), deadline=None)
 @given(st.lists(st.tuples(_REASON, st.sampled_from(["=", "!="])), min_size=1, max_size=4), _REASON)
 def test_the_first_transition_whose_reason_fits_is_taken(tests: list[tuple[str, str]], reason: str) -> None:
-    """Against the meaning of a list of conditions, computed here."""
+    """Compare with the meaning of a list of conditions, which the test computes itself."""
     possible = REASONS[rsc.Action]
     tests = [(wanted, symbol) for wanted, symbol in tests if wanted in possible]
     if reason not in possible or not tests:
@@ -217,7 +217,7 @@ FORBIDDEN = """robot Forbidden {
 
 @pytest.mark.parametrize("others", [0, 3])
 def test_an_error_that_is_forbidden_for_a_reason_must_not_come(others: int) -> None:
-    """The error can't be prevented, so that the call is."""
+    """The error is uncontrollable, so the supervisor prevents the call."""
     more = "".join(
         f"""component C{number} {{ outgoing message m{number} with type: none
         behaviour {{ initial marked state a {{ on response from m{number} goto b }}
@@ -265,7 +265,7 @@ def test_a_reason_is_bare_beside_a_variable_of_a_library(tmp_path: Path) -> None
 
 
 def test_a_library_of_the_user_can_have_the_name_of_the_predefined_one(tmp_path: Path) -> None:
-    """Its own `Failure` hides the predefined one, and the reasons of errors stay what they are."""
+    """Its own `Failure` hides the predefined one, and the reasons of errors keep their meaning."""
     (tmp_path / "predefined.rscd").write_text("""library Predefined {
   datatype enum Failure from string to { value = "big" -> big default -> small }
   component Gauge { outgoing message size with type: Failure }

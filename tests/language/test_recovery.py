@@ -1,4 +1,4 @@
-"""Syntax errors: each is found, each is found once, and none hides what is right or wrong elsewhere."""
+"""Each syntax error is found exactly once, and none hides other errors or correct parts."""
 
 from pathlib import Path
 
@@ -65,7 +65,7 @@ def changed(text: str, old: str, new: str) -> str:
     return text.replace(old, new)
 
 
-#: One fault each: what is changed, into what, the text that the finding stands at, and what it says or advises.
+#: One fault each: the original text, its replacement, the text at the finding, and the message or hint.
 FAULTS = [
     ("robot Right", "robto Right", "robto", "expected `robot` or `library`"),
     ("robot Right", "robot", "{", "expected a name"),
@@ -291,7 +291,7 @@ def test_no_damage_is_too_bad(tmp_path: Path, damages: list[tuple[int, str | Non
     found = read(path)
     last = found.texts[str(path)].count("\n") + 1
     assert all(1 <= finding.span.line <= finding.span.end_line <= last for finding in found.findings)
-    # Whatever is left has the shape of the metamodel: each element stands in a feature that takes its kind.
+    # The remaining model conforms to the metamodel: each element is in a feature of its type.
     for element in found.base.eAllContents() if found.base else ():
         assert element.source is not None
 
@@ -304,7 +304,7 @@ def test_no_damage_is_too_bad(tmp_path: Path, damages: list[tuple[int, str | Non
         ("component C { incoming message with type: none }", False),
         ("datatype object P { : integer }", False),
         ("component C from L import", False),
-        # Where a brace is missing, the variable may be one of `A`.
+        # If a brace is missing, the variable may belong to `A`.
         ("component C { behaviour { variable : integer }", True),
     ],
 )
@@ -341,7 +341,7 @@ def test_a_nameless_declaration_may_be_the_missing_one_of_its_definition(tmp_pat
     assert {finding.rule for finding in reading(tmp_path, text).findings} == {"syntax"}
 
 
-#: Words of other languages, and words of this one where they can't stand, with what the hint says of them.
+#: Words of other languages, and misplaced words of this one, with the hint.
 FOREIGN = [
     ("robot R { const speed: double = 0.5 }", "write `constant name: type = value`"),
     ("robot R { component C { behaviour { initial marked state s { timeout 3.0 goto s } } } }", "write `after 3.0 s"),

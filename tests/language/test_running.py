@@ -1,4 +1,4 @@
-"""`Base.drive.running` reads whether a service or action is running, where the name means nothing else."""
+"""`Base.drive.running` reads whether a service or action is running, unless the name has another meaning."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def test_it_takes_no_state_of_its_own() -> None:
 
 
 def test_a_text_keeps_its_meaning(tmp_path: Path) -> None:
-    """A variable named like a communication, with a property `running`, comes first."""
+    """A variable with the name of a communication and a property `running` takes precedence."""
     found = reading(
         tmp_path,
         """robot R {

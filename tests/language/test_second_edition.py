@@ -1,4 +1,4 @@
-"""Sentences on the language's second edition that no other test names, each in a small robot."""
+"""Statements about the language's second edition that no other test covers, each in a small robot."""
 
 from __future__ import annotations
 
@@ -53,8 +53,11 @@ USES = """robot R {
 
 
 def test_a_constant_of_each_type_in_each_place() -> None:
-    """Usable wherever a literal is: range bounds, indexes, durations, initial values, arguments, `at most N`, parts of
-    identifiers. Folded in M2M."""
+    """A constant of each type is usable wherever a literal is.
+
+    These places are range bounds, indexes, durations, initial values, arguments, `at most N` and parts of identifiers.
+    M2M folds constants.
+    """
     model = supervised(USES)
     engine = Engine(model)
     assert (engine.state["Left.seen"], engine.state["Left.level"]) == ("big", 2)
@@ -95,7 +98,7 @@ LIBRARY = """library {0} {{
 
 
 def found(folder: Path, **texts: str) -> list[Diagnostic]:
-    """The errors of the file `robot.rscd` beside others."""
+    """Return the errors of the file `robot.rscd` with other files in its folder."""
     for name, text in texts.items():
         (folder / f"{name}.rscd").write_text(text, encoding="utf-8")
     try:
@@ -108,15 +111,17 @@ def found(folder: Path, **texts: str) -> list[Diagnostic]:
 @pytest.mark.parametrize(
     ("condition", "levels"),
     [
-        ("Tank.level > most", range(6, 10)),  # the library's
+        ("Tank.level > most", range(6, 10)),  # the constant of the library
         ("below(Tank.level)", range(2)),
         ("Tank.low", range(7)),
-        ("Tank.level < Tank.most", range(7)),  # the component's
+        ("Tank.level < Tank.most", range(7)),  # the constant of the component
     ],
 )
 def test_names_of_a_directly_imported_library(tmp_path: Path, condition: str, levels: range) -> None:
-    """A bare name is one of the robot or library, then of a directly imported library; names in a component resolve
-    in the component first."""
+    """A bare name is one of the robot or library, then one of a directly imported library.
+
+    Names in a component are resolved in the component first.
+    """
     robot = f"""robot R {{
       component Tank from Tanks import Tank
       component Base {{ incoming message go with type: none }}
@@ -138,7 +143,7 @@ def test_names_of_a_directly_imported_library(tmp_path: Path, condition: str, le
     "declared", ["condition c = Tank.level > 1", "function f(n: integer): boolean = Tank.level > n"]
 )
 def test_a_library_speaks_of_its_components_in_them(tmp_path: Path, declared: str) -> None:
-    """Which one would a condition beside them mean? A robot may have a component several times, or not at all."""
+    """A condition beside its components would be ambiguous: a robot may have several of a component, or none."""
     text = LIBRARY.format("Tanks", declared)
     robot = "robot R { component Tank from Tanks import Tank component Other from Tanks import Tank }"
     (finding,) = found(tmp_path, Tanks=text, robot=robot)
@@ -149,7 +154,7 @@ def test_a_library_speaks_of_its_components_in_them(tmp_path: Path, declared: st
 
 
 def test_the_robots_own_name_comes_before_the_librarys_and_no_other_librarys_is_there(tmp_path: Path) -> None:
-    """One of the robot or library, then of a directly imported library."""
+    """A bare name is one of the robot or library, then one of a directly imported library."""
     robot = """robot R {
       component Tank from Tanks import Tank
       component Base { incoming message go with type: none }
@@ -183,7 +188,10 @@ def test_the_robots_own_name_comes_before_the_librarys_and_no_other_librarys_is_
     ],
 )
 def test_names_are_unique_with_their_neighbours(definitions: str, rule: str) -> None:
-    """New names are unique with their neighbours: `unique-variable` in a component, `unique-component` in a robot."""
+    """A new name must be unique among its neighbors.
+
+    The rule is `unique-variable` in a component and `unique-component` in a robot.
+    """
     component = "component C { behaviour { initial marked state here { } state other { } } }"
     text = f"robot R {{ {component} {definitions} }}"
     assert [found for found, _ in errors(text) if found.startswith(rule)], errors(text)
@@ -230,7 +238,7 @@ def data(assigned: str, needs: str = "C.flag or C.hits > 8") -> str:
     ],
 )
 def test_doubles_strings_and_arrays_are_of_the_node(node_side: str) -> None:
-    """On doubles, strings and arrays they are node-side; an index may be any integer expression in node-side data."""
+    """Expressions on doubles, strings and arrays belong to the node. There, an index may be any integer expression."""
     model = supervised(data(node_side))
     assert [given.name for plant in model.plants for given in plant.inputs] == []
     reactions = robosc.to_rosgraph(robosc.load(text=data(node_side))).reactions
@@ -250,8 +258,10 @@ def test_doubles_strings_and_arrays_are_of_the_node(node_side: str) -> None:
     ],
 )
 def test_what_simply_works(assigned: str, inputs: list[str | None]) -> None:
-    """Each largest sub-expression with `value` in it, over `value`, literals, enum values, constants and parameters,
-    that is a boolean, enum or integer is one input more."""
+    """Each largest sub-expression with `value` that is a boolean, enum or integer is one more input.
+
+    Its operands are `value`, literals, enum values, constants and parameters.
+    """
     model = supervised(data(assigned))
     assert [given.text for plant in model.plants for given in plant.inputs] == inputs
 
@@ -279,7 +289,7 @@ QUANTIFIED = """robot R {
 
 
 def test_quantifiers_stand_in_guards_requirements_conditions_and_provide_conditions() -> None:
-    """In guards, requirements, conditions, provide conditions."""
+    """Quantifiers are usable in guards, requirements, conditions and provide conditions."""
     engine = running(QUANTIFIED)
     (tau,) = [event for event in engine.events if "tau" in event]
     names = ("message_go.c_trigger", tau, "data_say.c_d1")
@@ -308,7 +318,7 @@ GRIPPERS = """library Grippers {
 
 
 def test_quantifiers_range_over_components_of_libraries(tmp_path: Path) -> None:
-    """The instances of a library component; one of a directly imported library may be named."""
+    """Quantifiers range over the instances of a library component, also one of a directly imported library."""
     robot = """robot R {
       component One from Grippers import Finger with { bent: "/one" }
       component Two from Grippers import Finger with { bent: "/two" }
@@ -328,7 +338,10 @@ def test_quantifiers_range_over_components_of_libraries(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("condition", ["at_ease", "all Joint: Joint.free"])
 def test_a_condition_of_a_library_ranges_over_instances_of_its_template(tmp_path: Path, condition: str) -> None:
-    """One of a directly imported library may be named; in a library: its own instances."""
+    """A quantifier may name a component of a directly imported library.
+
+    In a library, it ranges over the library's instances.
+    """
     robot = f"""robot R {{
       component Thumb from Grippers import Thumb
       component Index from Grippers import Joint("/index")
@@ -385,7 +398,7 @@ ACTION = """robot R {
 def test_where_none_holds_an_error_or_feedback_leaves_the_component_as_it_is(
     events: list[str], data: dict[str, bool]
 ) -> None:
-    """Where none holds a response, error, feedback or cancel leaves the component as it is."""
+    """If no condition is true, an error or feedback leaves the component unchanged."""
     engine = running(ACTION)
     assert engine.perform(events[0])
     assert engine.perform(events[1], data)
@@ -394,7 +407,7 @@ def test_where_none_holds_an_error_or_feedback_leaves_the_component_as_it_is(
 
 @pytest.mark.parametrize(("condition", "state"), [("held", "there"), ("!held", "here")])
 def test_where_none_holds_a_cancel_leaves_the_component_as_it_is(condition: str, state: str) -> None:
-    """Where none holds a response, error, feedback or cancel leaves the component as it is."""
+    """If no condition is true, a cancel leaves the component unchanged."""
     engine = running(ACTION.replace("cancel from go if held", f"cancel from go if {condition}"))
     assert engine.perform("action_go.c_trigger")
     assert engine.perform("message_stop.u_response")
@@ -439,8 +452,11 @@ TIMED = """robot R {{
     ],
 )
 def test_where_a_time_may_stand(level: str, state: str, found: str | None) -> None:
-    """`do` may stand there, `if` may not; a constant or parameter of type integer or double; outgoing messages of any
-    component; at automaton level `without` is a must."""
+    """The permitted parts of `after`.
+
+    `do` is permitted, `if` is not. The duration is a constant or parameter of type integer or double. `without` names
+    outgoing messages of any component; at automaton level it is required.
+    """
     assert [rule for rule, _ in errors(TIMED.format(level, state))] == ([found] if found else [])
 
 
@@ -461,8 +477,10 @@ def test_where_a_time_may_stand(level: str, state: str, found: str | None) -> No
     ],
 )
 def test_variables_of_the_node(declared: str, stored: str, found: list[str]) -> None:
-    """Variables may be objects, arrays, strings, doubles and hold what an event brought; neither an array nor an object
-    takes an initial value."""
+    """Variables may be objects, arrays, strings and doubles, and hold the data of an event.
+
+    Arrays and objects have no initial value.
+    """
     text = data(f"flag := true, a := {stored}").replace("variable text", f"variable a: {declared} variable text")
     assert [rule for rule, _ in errors(text)] == found
 
@@ -500,8 +518,12 @@ PROVIDING = """library Base {
 def test_statements_of_the_robot_replace_those_of_a_library(
     tmp_path: Path, robot: str, statements: list[list[bool]]
 ) -> None:
-    """`provide` and `requirement` may stand in components, also in libraries; statements for a communication outside a
-    component replace those in it, the robot's those of a library."""
+    """Statements for a communication outside a component replace those inside it.
+
+    The robot's replace those of a library.
+
+    `provide` and `requirement` may be in components, also in libraries.
+    """
     assert found(tmp_path, Base=PROVIDING, robot=f"robot R {{ component Lamp from Base import Lamp {robot} }}") == []
     model = robosc.to_sct(robosc.load(tmp_path / "robot.rscd"))
     robosc.synthesize(model)
@@ -527,7 +549,7 @@ def test_statements_of_the_robot_replace_those_of_a_library(
     ],
 )
 def test_where_send_change_may_stand(declared: str, found: list[str]) -> None:
-    """`send` last, before `links`; only for incoming messages."""
+    """`send` is the last part, before `links`; only incoming messages have it."""
     text = data("flag := true").replace("incoming message go", f"{declared} incoming message go")
     assert [rule for rule, _ in errors(text)][:1] == found
 
@@ -536,7 +558,7 @@ def test_where_send_change_may_stand(declared: str, found: list[str]) -> None:
 
 
 def test_arguments_are_read_where_they_stand() -> None:
-    """A bare name is one of the own component: no argument is within the component that it is given to."""
+    """Names in arguments are resolved outside the component that receives them."""
     text = """robot R {
       constant here: string = "/robot"
       constant most: integer = 4
@@ -560,7 +582,7 @@ def test_arguments_are_read_where_they_stand() -> None:
 
 @pytest.mark.parametrize(("topic", "lines"), [('ns + "/told"', []), ('"/told"', [3])])
 def test_instances_on_one_topic(topic: str, lines: list[int]) -> None:
-    """Two `outgoing` on one topic draw `unique-topic` as ever."""
+    """Two `outgoing` messages on one topic draw `unique-topic`."""
     text = f"""robot R {{
       component Bumper(ns: string) {{
         outgoing message told with identifier: {topic}, type: none
@@ -600,7 +622,10 @@ ARM = """robot R {{
     ],
 )
 def test_events_are_named_as_in_transitions(requirement: str, event: str) -> None:
-    """Events are named as in transitions; a bare communication means its request, an outgoing message its response."""
+    """Events have the same names as in transitions.
+
+    A bare communication means its request, a bare outgoing message its response.
+    """
     engine = running(ARM.format(f"requirement {requirement}"))
     assert not engine.enabled("message_grip.c_trigger")
     before = {"service_dock.u_error": "service_dock.c_trigger", "action_move.u_feedback": "action_move.c_trigger"}
@@ -621,7 +646,7 @@ def test_events_are_named_as_in_transitions(requirement: str, event: str) -> Non
     ],
 )
 def test_what_an_automaton_has_not(inside: str) -> None:
-    """No variables, no `do`, no silent transitions, no `after`, nothing at automaton level (`syntax`)."""
+    """Variables, `do`, silent transitions, `after` and automaton-level transitions are not permitted (`syntax`)."""
     assert [rule for rule, _ in errors(ARM.format(f"requirement T: automaton {{ {inside} }}"))][:1] == ["syntax"]
 
 

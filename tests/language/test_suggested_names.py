@@ -1,4 +1,4 @@
-"""`did you mean` takes the place of one name and of nothing else, in models and in CIF."""
+"""The edit of `did you mean` replaces one name and nothing else, in models and in CIF."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
@@ -19,7 +19,7 @@ from tests.language.cif.test_language import COUNTS
 EXAMPLES = Path(__file__).parents[2] / "examples"
 ROBOTS = [EXAMPLES / name / f"{name}.rscd" for name in ("line_follower", "person_follower")]
 INTERFACES = RosTypes()
-#: How a name is mistyped: it gets longer at either end or inside, shorter, or two letters change places.
+#: Misspellings of a name: longer at an end or inside, shorter, or with two letters swapped.
 MISTYPED: dict[str, Callable[[str], str]] = {
     "longer": lambda name: f"{name}x",
     "longer before": lambda name: f"x{name}",
@@ -35,7 +35,7 @@ def words(content: str) -> list[str]:
 
 
 def replaced(before: Sequence[str], after: Sequence[str]) -> list[tuple[str, str]]:
-    """The tokens that an edit replaced, each by one other."""
+    """Return the tokens that an edit replaced, each with its replacement."""
     assert len(before) == len(after), (before, after)
     return [(old, new) for old, new in zip(before, after, strict=True) if old != new]
 
@@ -49,7 +49,7 @@ def suggestions(findings: Iterable[Diagnostic], file: str) -> Iterator[Diagnosti
 @pytest.mark.parametrize("mistyped", MISTYPED)
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda path: path.stem)
 def test_a_name_in_a_model_is_replaced_whole(robot: Path, mistyped: str) -> None:
-    """Every 17th word of the text, keywords among them."""
+    """The test misspells every 17th word of the text, keywords included."""
     content = robot.read_text(encoding="utf-8")
     tokens = [token for token in Tokens(content) if token.kind is Kind.WORD and len(token.text) > 3]
     for token in tokens[len(mistyped) :: 17]:

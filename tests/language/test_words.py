@@ -1,4 +1,4 @@
-"""Names, keywords, numbers, strings, comments and the places where they stand."""
+"""Names, keywords, numbers, strings, comments and their positions."""
 
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ PROVIDE = "robot R { component C { incoming message m with type: none } provide 
 
 
 def value_of(folder: Path, literal: str) -> Any:
-    """The element that a literal makes, as the data of a provide statement."""
+    """Return the element of a literal, parsed as the data of a provide statement."""
     found = reading(folder, f"{PROVIDE}{literal} }}")
     assert found.findings == []
     assert found.base is not None
@@ -115,7 +115,7 @@ def test_literals(tmp_path: Path, literal: str, value: object) -> None:
     ],
 )
 def test_what_is_no_literal_is_one_finding_at_its_place(tmp_path: Path, literal: str, at: str) -> None:
-    # A string that is not closed takes the rest of its line.
+    # An unclosed string extends to the end of its line.
     text = f"{PROVIDE}{literal} }}" + ("\n}" if literal == '"open' else "")
     assert underlined(reading(tmp_path, text)) == [("syntax", at)]
 

@@ -1,4 +1,4 @@
-"""Reads texts that tests write down."""
+"""Read the texts that tests contain."""
 
 from pathlib import Path
 from textwrap import dedent
@@ -7,19 +7,19 @@ from robosc.language.reading import Reading, read
 
 
 def reading(folder: Path, text: str, **libraries: str) -> Reading:
-    """What comes of a text that stands in a file `model.rscd`, beside libraries in files of other names."""
+    """Write a text to `model.rscd` and libraries beside it, and read the model."""
     for name, content in {"model": text, **libraries}.items():
         (folder / f"{name}.rscd").write_text(dedent(content).strip("\n"), encoding="utf-8")
     return read(folder / "model.rscd")
 
 
 def places(found: Reading) -> list[tuple[str, int, str]]:
-    """File, line and rule of each finding."""
+    """Return file, line and rule of each finding."""
     return [(Path(finding.file).name, finding.span.line, finding.rule) for finding in found.findings]
 
 
 def underlined(found: Reading) -> list[tuple[str, str]]:
-    """The rule of each finding and the text that it stands at."""
+    """Return the rule of each finding and the text at its position."""
     texts = []
     for finding in found.findings:
         lines = found.texts[finding.file].split("\n")

@@ -1,4 +1,4 @@
-"""Models written in the test itself."""
+"""Robot models that tests define as text."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Transformed = tuple[sct.SupervisoryControlModel, "Trace"]
 
 @pytest.fixture
 def robot(tmp_path: Path) -> Callable[..., robosc.Robot]:
-    """A linked robot from its text; further texts are libraries beside it."""
+    """Return a linked robot from its text; further texts are libraries in its folder."""
 
     def load(text: str, **libraries: str) -> robosc.Robot:
         for name, library in libraries.items():
@@ -38,5 +38,5 @@ def robot(tmp_path: Path) -> Callable[..., robosc.Robot]:
 
 @pytest.fixture
 def to_sct(robot: Callable[..., robosc.Robot]) -> Callable[..., Transformed]:
-    """The sct model of a robot's text, with its trace."""
+    """Return the sct model of a robot's text with its trace."""
     return lambda text, **libraries: robosc_to_sct.transform(robot(text, **libraries))

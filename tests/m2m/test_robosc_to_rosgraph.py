@@ -1,4 +1,4 @@
-"""What a robot model means on the ROS side."""
+"""The ROS side of a robot model."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -279,14 +279,16 @@ def test_linked_basic_data_goes_to_the_only_field(robot: Callable, tmp_path: Pat
     assert [list(event.alternatives[0].fields[0].path) for event in sent] == [["level"], ["data"], ["height"], ["goal"]]
     read = [[step.name for step in reaction.assignments[0].value.steps] for reaction in graph.reactions]
     assert read == [["level"], ["done"], ["reached"], ["height"]]
-    # Without the definitions it is a guess.
+    # Without the definitions, `data` is a guess.
     unknown = robosc_to_rosgraph.transform(trace, RosTypes())
     assert {step.name for reaction in unknown.reactions for step in reaction.assignments[0].value.steps} == {"data"}
 
 
 def test_kept_objects_are_where_they_came_from(robot: Callable) -> None:
-    """`do route := value.poses`: objects, and arrays of them, have the ROS type of what is stored in them, in one step
-    or several."""
+    """Variables that store objects have the ROS type of the stored data.
+
+    `do route := value.poses`: this holds for objects and for arrays of them, in one step or several.
+    """
     model = robot("""
         robot R {
           component Mission {

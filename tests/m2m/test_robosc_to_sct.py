@@ -1,4 +1,4 @@
-"""What a robot model means as plants and requirements."""
+"""The plants and requirements of a robot model."""
 
 from robosc.model import expression as ex
 from robosc.model.semantics.edges import edges_from

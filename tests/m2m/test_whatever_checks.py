@@ -1,6 +1,6 @@
-"""What the checks let pass can be transformed, and no text at all breaks reading and checking.
+"""Models without findings can be transformed, and no text makes reading or checking fail.
 
-Models are the repository's own, and random ones. `tests/fuzz` adds faults to them.
+The models are the repository's own and random ones. `tests/fuzz` adds faults to them.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ MODELS = examples(50)
 
 
 def examined(path: Path) -> tuple[robosc.Base | None, list[Diagnostic]]:
-    """Reads and checks a file, and shows what was found."""
+    """Read and check a file; render its findings."""
     reading = read(path, [LIBRARIES])
     found = [*reading.findings, *check(reading.base, reading.findings)]
     assert as_text.render(found, reading.texts) or not found

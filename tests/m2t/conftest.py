@@ -48,7 +48,7 @@ def porter_settings() -> config.Configuration:
 
 
 def differences(before: Mapping[str, str], after: Mapping[str, str]) -> str:
-    """The lines that files lose and get, below the path of each, without where they stand."""
+    """Return the removed and added lines of files below their paths, without positions."""
     lines = []
     for path, text in after.items():
         found = unified_diff(before[path].splitlines(), text.splitlines(), "", path, n=0, lineterm="")
@@ -58,9 +58,9 @@ def differences(before: Mapping[str, str], after: Mapping[str, str]) -> str:
 
 @pytest.fixture
 def golden_package(golden: Callable[[Path, str], None]) -> Callable[[Path, dict[str, str]], None]:
-    """`golden_package(folder, files)`: a package but for what others pin: the engine in C, headers that are copied.
+    """`golden_package(folder, files)`: compare a package except the C engine and copied headers.
 
-    The definition is the same in each ROS, so it stands once for both.
+    Other tests cover these. The definition is the same in each ROS and has one golden file for both.
     """
 
     def compare(folder: Path, files: dict[str, str]) -> None:

@@ -1,4 +1,4 @@
-"""What the first edition saved still loads, and means the same: `first_edition` holds the courier as it wrote it."""
+"""Models that the first edition saved still load with the same meaning: `first_edition` has its courier."""
 
 from pathlib import Path
 from shutil import copyfile
@@ -15,7 +15,7 @@ INTERFACES = HERE.parent / "ros" / "interfaces" / "ros2"
 
 
 def transformed(folder: Path, source: Path, target: str) -> dict[str, bytes]:
-    """The generated files of a copy of the source, beside the courier's configuration."""
+    """Return the generated files of a copy of the source, with the courier's configuration beside it."""
     folder.mkdir()
     copyfile(ROBOT.parent / "controller-config.json", folder / "controller-config.json")
     copyfile(source, folder / source.name)
@@ -36,7 +36,7 @@ def test_a_saved_robot_gives_what_its_text_gives(tmp_path: Path, target: str) ->
 
 
 def test_a_saved_graph_gives_a_node(tmp_path: Path) -> None:
-    """With the plants beside it."""
+    """The plants are in the same folder."""
     (tmp_path / "saved").mkdir()
     for file in SAVED.glob("*.xmi"):
         copyfile(file, tmp_path / "saved" / file.name)

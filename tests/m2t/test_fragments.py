@@ -1,4 +1,4 @@
-"""What becomes part of a package, or of a project of CMake, of the user's own; that it builds, `tests/cmake` shows."""
+"""Generated parts of the user's own package or CMake project; `tests/cmake` shows that they build."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent / "fragments"
 USHER = HERE.parent / "layer"
-#: A layer, whose robot sends different commands to different topics, for one ROS is as good as for the other.
+#: The layer for one ROS represents the other. Its robot has different commands on different topics.
 TARGETS = ("ros1", "ros2", "ros2-layer", "supervisor")
 
 
@@ -55,7 +55,7 @@ def test_the_fragment(
 
 @pytest.mark.parametrize("target", TARGETS)
 def test_the_code_is_that_of_a_package_of_its_own(target: str, models: robosc.Models, settings: Configuration) -> None:
-    """But for launch files, which name the package, and for the place of the engine's header."""
+    """Only launch files, which name the package, and the path of the engine's header differ."""
     own = robosc.generate(target, models, settings)
     part = robosc.generate(target, models, settings, into="my_robot")
     assert {path.rpartition("/")[2] for path in own} - {path.rpartition("/")[2] for path in part} == {

@@ -1,7 +1,7 @@
-"""A model is data: no text of a model or of its configuration gets out of its place in anything that is generated.
+"""A model is data: its texts and those of its configuration stay in their places in all generated files.
 
-Each hostile text carries a mark. After strings and comments are taken away, the mark must be gone, too; and what has a
-parser must parse. A target may also refuse the text, with a located error.
+Each hostile text has a mark. The mark must disappear with the strings and comments, and each file with a parser must
+parse. A target may also reject the text, with a located error.
 """
 
 import ast
@@ -42,7 +42,7 @@ HOSTILE = [
     f"\\u000a{MARK}();",
     f"\u2028{MARK}();\u202e",
 ]
-#: All of them: each that gets out of its place brings its own mark out.
+#: All texts together: each that leaves its place exposes its own mark.
 TOGETHER = " ".join(HOSTILE)
 MODEL = """
 robot Robot {
@@ -62,13 +62,13 @@ robot Robot {
 PLACES = ('"/heard"', '"/said"', '"/asked"')
 TARGETS = ("cif", "supervisor", "ros1", "ros2", "ros2-layer")
 
-#: How the configuration starts a controller behind a supervisory layer.
+#: The configuration's ways to start a controller behind a supervisory layer.
 RUN = {"packageName": "drive", "executable": "drive", "name": "drive", "namespace": "left"}
 LAUNCH = {"packageName": "drive", "file": "drive.launch"}
 
 
 def quoted(text: str) -> str:
-    """A string literal of the language."""
+    """Return a string literal of the language."""
     escapes = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r"}
     return '"' + "".join(escapes.get(character, character) for character in text) + '"'
 
@@ -83,7 +83,7 @@ def harmless(tmp_path_factory: pytest.TempPathFactory) -> Models:
 def generated(
     models: Models, configuration: Configuration | None = None, targets: Sequence[str] = TARGETS
 ) -> Iterator[tuple[str, str]]:
-    """Every file that a target makes of the models, unless it refuses them with located findings."""
+    """Yield every file that a target generates, unless it rejects the models with located findings."""
     for target in targets:
         try:
             files = robosc.generate(target, models, configuration=configuration)
@@ -97,7 +97,7 @@ def generated(
 
 
 def models_of(text: str, folder: Path) -> Models | None:
-    """The models of a text; None where reading or checking it finds errors."""
+    """Return the models of a text; None if reading or checking it reports errors."""
     path = folder / "robot.rscd"
     path.write_text(text, encoding="utf-8")
     try:
@@ -111,7 +111,7 @@ def models_of(text: str, folder: Path) -> Models | None:
 
 
 def bare(path: str, text: str) -> str:
-    """What is left of a file without its strings and comments."""
+    """Return a file's text without its strings and comments."""
     kind = PurePosixPath(path).suffix
     if kind in {".c", ".h", ".hpp", ".cpp"}:
         literals = r'R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|/\*.*?\*/|//[^\n]*'
@@ -122,7 +122,7 @@ def bare(path: str, text: str) -> str:
     if kind == ".txt":
         return re.sub(r'"(?:\\.|[^"\\])*"|#[^\n]*', "", text, flags=re.DOTALL)
     if kind == ".yaml":
-        # A parameter of a topic has its name.
+        # A topic's parameter has the topic's name.
         return re.sub(r'"(?:\\.|[^"\\\n])*"|#[^\n]*|^ +\w+(?=: \d+(?:  #|$))', "", text, flags=re.MULTILINE)
     if kind == ".py":
         tree_of_it = ast.parse(text)
@@ -140,7 +140,7 @@ def assert_contained(files: Iterator[tuple[str, str]]) -> int:
         assert not PurePosixPath(path).is_absolute()
         assert ".." not in parts
         assert re.fullmatch(r"[\w./-]+", path)
-        # A harmless topic like `/PWNED` may well be part of an identifier.
+        # A harmless topic such as `/PWNED` may be part of an identifier.
         assert not re.search(rf"\b{MARK}\b", bare(path, text)), path
         count += 1
     return count
@@ -163,7 +163,7 @@ def test_values_of_a_model(tmp_path: Path) -> None:
 
 
 def test_topics_of_a_model(tmp_path: Path) -> None:
-    """ROS refuses all of them, each at its place; other targets have them as texts."""
+    """The ROS targets reject all of them, each at its position; other targets keep them as texts."""
     declarations = [line for line in MODEL.splitlines() if any(place in line for place in PLACES)]
     more = [
         re.sub(r'(heard|said|asked)( with identifier: )".*?"', rf"\g<1>{n}\g<2>@", line).replace("@", quoted(text))
@@ -194,7 +194,7 @@ def test_a_topic_that_ros_takes(place: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("key", ["description", "maintainer", "license", "name", "version", "email"])
 def test_texts_of_the_configuration(key: str, harmless: Models) -> None:
     def taken(*texts: str) -> bool:
-        """Whether neither the configuration nor the target refuses them."""
+        """Return whether both the configuration and the target accept the texts."""
         try:
             configuration = Configuration.model_validate({"package": {key: " ".join(texts)}})
             robosc.generate("ros2-layer", harmless, configuration=configuration)
@@ -221,7 +221,10 @@ def test_how_an_existing_controller_is_started(form: str, key: str, harmless: Mo
 
 @pytest.mark.parametrize("part", ["model", "graph", "elements of the graph"])
 def test_names_that_no_text_could_have(part: str, tmp_path: Path) -> None:
-    """A saved model may come from anywhere, with any name on anything: on all at once that targets refuse alike."""
+    """A saved model from any source may have any name on any element.
+
+    Elements that targets reject alike are changed at once.
+    """
     models = models_of(MODEL, tmp_path)
     assert models is not None
     assert models.rosgraph is not None

@@ -1,4 +1,4 @@
-"""The least integer of 64 bits, whose magnitude none of them has: written, saved, read and compiled."""
+"""The least 64-bit integer, whose magnitude has no 64-bit type: written, saved, read and compiled."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ robot R {{
 
 @pytest.fixture
 def models(tmp_path: Path) -> Models:
-    """The models of a robot with that number in every place."""
+    """Return the models of a robot with that number in every place."""
     file = tmp_path / "r.rscd"
     file.write_text(MODEL, encoding="utf-8")
     robot = robosc.load(file)

@@ -1,4 +1,4 @@
-"""What does not change a robot does not change what is generated for it."""
+"""Changes without effect on a robot leave its generated files unchanged."""
 
 from pathlib import Path
 

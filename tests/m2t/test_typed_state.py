@@ -1,4 +1,4 @@
-"""The package with the type of a robot's state; that it builds, and that nodes publish it, `tests/ros` shows."""
+"""The package with the type of a robot's state; `tests/ros` shows that it builds and that nodes publish it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent
 TYPED = Configuration(typed_state=True)
-#: Names that clash, are words of C++ or Python, or no names in ROS; an enumeration that is larger than a byte.
+#: Names that clash, are keywords of C++ or Python, or are invalid in ROS; an enumeration larger than a byte.
 ODD = """\
 robot Odd {{
   datatype enum Wide from integer to {{ {rules} default -> none }}
@@ -66,7 +66,7 @@ def test_every_file(courier: robosc.Models, target: str, golden: Callable[[Path,
         f"{target}/courier_msgs/{name}" for name in ("package.xml", "CMakeLists.txt", "msg/State.msg")
     ]
     for path, text in files.items():
-        # The type is the same in each ROS, so it stands once for both.
+        # The type is the same in each ROS and has one golden file for both.
         golden(HERE / "typed_state" / path.removeprefix(f"{target}/courier_msgs/msg/"), text)
     if target == "ros2":
         assert TARGETS["ros2-layer"].beside(courier, TYPED) == files

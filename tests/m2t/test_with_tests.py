@@ -1,4 +1,4 @@
-"""What `--with-tests` adds to the packages; that it finds faults, `tests/traces` and `tests/ros` show."""
+"""Files that `--with-tests` adds to the packages; `tests/traces` and `tests/ros` show that they find faults."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ TEST_DEPENDS = {
     "ros1": {"rosgraph_msgs", "rospy", "rostest"},
     "ros2": {"launch_testing", "launch_testing_ament_cmake", "rclpy", "rosgraph_msgs"},
 }
-#: What is the same in each ROS, so it stands once for both.
+#: Files that are the same in each ROS and have one golden file for both.
 SAME = ("test/connections.json", "test/traces/tour_1.jsonl")
 
 pytestmark = pytest.mark.parametrize("target", TEST_DEPENDS)
@@ -52,7 +52,7 @@ def test_what_is_added(
     golden(folder.parent / f"{target}.diff", differences(plain, changed))
     player = new.pop("test/trace_player.py")
     assert player == (Path(robosc.__file__).parent / "run/node_tests/trace_player.py").read_text(encoding="utf-8")
-    # Neither pytest nor the linters of this house shall take the scripts for their own.
+    # The suffix hides the scripts from pytest and from this repository's linters.
     new = {f"{path}.golden" if path.endswith(".py") else path: text for path, text in new.items()}
     for path in SAME:
         golden(folder.parent / path, new.pop(path))
@@ -94,7 +94,7 @@ def test_the_platform_s_linter_is_content(target: str, files: dict[str, str], tm
 
 
 def test_scripts_and_launch_files_can_be_read(target: str, files: dict[str, str], tmp_path: Path) -> None:
-    """ROS 1 has Python 3.8. Names that nobody defines or uses are found by ruff."""
+    """Scripts for ROS 1 must be valid in Python 3.8. Ruff finds undefined and unused names."""
     scripts = {path: text for path, text in files.items() if path.endswith(".py") and path.startswith("test/")}
     assert len(scripts) == (3 if target == "ros2" else 2)
     for path, text in scripts.items():

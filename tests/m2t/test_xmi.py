@@ -1,4 +1,4 @@
-"""The target `xmi`: which files, and that the files give the same files again."""
+"""The target `xmi`: its files, and that reading them gives the same files again."""
 
 from pathlib import Path
 
@@ -47,7 +47,7 @@ def test_every_model_has_its_file(tmp_path: Path) -> None:
         "Walker.sct.xmi",
         "Walker.rosgraph.xmi",
         "Walker.robosc.xmi",
-        "Walker_.robosc.xmi",  # the library that is called like the robot
+        "Walker_.robosc.xmi",  # the library with the robot's name
         "Deep.robosc.xmi",
     ]
 

@@ -13,7 +13,7 @@ from robosc.model.xmi import to_texts
 
 @pytest.fixture(scope="session")
 def roots() -> dict[str, Any]:
-    """Its models by the path of their file, all that belongs together."""
+    """Return all models of the robot that belong together, by the paths of their files."""
     reading = read(Path(__file__).with_name("warehouse.rscd"))
     assert reading.findings == []
     robot = reading.base
@@ -37,7 +37,7 @@ def texts(roots: dict[str, Any]) -> dict[str, str]:
 
 @pytest.fixture
 def folder(tmp_path: Path, texts: dict[str, str]) -> Path:
-    """A folder with the saved models."""
+    """Return a folder with the saved models."""
     for name, text in texts.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     return tmp_path

@@ -1,4 +1,4 @@
-"""Eclipse's own EMF, as a second reader of everything that we write in its format."""
+"""Eclipse EMF as a second reader of all files that robosc writes in its format."""
 
 import os
 import shutil
@@ -25,7 +25,7 @@ METAMODELS = [locate(f"metamodel/{name}.ecore") for name in ("expression", "robo
 
 @pytest.fixture(scope="session")
 def java(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """Runs a program of ours in Java: gives its exit status and what it says."""
+    """Run a Java program of the tests; return its exit status and output."""
     absent = [program for program in ("javac", "java") if shutil.which(program) is None]
     absent += [jar.name for jar in JARS if not jar.exists()]
     if absent:
@@ -49,7 +49,7 @@ def java(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 @pytest.fixture(scope="session")
 def emf(java: Any) -> Any:
-    """Lets EMF load and validate models."""
+    """Let EMF load and validate models."""
     return lambda *models, metamodels=METAMODELS: java("EmfCheck", *metamodels, "--", *models)
 
 

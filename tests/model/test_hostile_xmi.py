@@ -1,4 +1,4 @@
-"""Saved models that somebody has changed: whatever is redirected, doubled, dropped or extreme ends in findings."""
+"""Edited saved models: redirected, duplicated, missing or extreme values end in findings."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "line_follower" / "line_follower.rscd"
-#: For each file so many changes are tried.
+#: The number of random changes per file.
 TRIALS = 25
 
 ROBOT, GRAPH = "LineFollower.robosc.xmi", "LineFollower.rosgraph.xmi"
-#: A change, and what is said about it.
+#: Changes with their expected messages.
 CHANGES = {
     "communication of another component": (
         ROBOT,
@@ -97,7 +97,7 @@ CHANGES = {
 
 @pytest.fixture(scope="module")
 def saved() -> Mapping[str, str]:
-    """The saved models of the line follower, by their names."""
+    """Return the saved models of the line follower by name."""
     robot = robosc.load(EXAMPLE)
     models = Models(robosc.to_sct(robot), robosc.to_rosgraph(robot), robot)
     robosc.synthesize(models.sct)
@@ -105,7 +105,7 @@ def saved() -> Mapping[str, str]:
 
 
 def used(path: Path, target: str | None) -> None:
-    """What commands do with a saved model; raises ModelError for what can't be done with this one."""
+    """Use a saved model as the commands do. Raises ModelError if the model does not support this."""
     root = load(path)
     if isinstance(root, rsc.Base):
         found = check(root, [], RosTypes(()))
@@ -144,7 +144,7 @@ def test_what_no_text_could_say_is_said(
     assert {diagnostic.rule for diagnostic in error.value.diagnostics} == {"xmi"}
 
 
-#: A change of a robot with a template (0) and what is made of it (1 and 2), and what is said about it.
+#: Changes of a robot with a template (0) and its instances (1 and 2), with their expected messages.
 OF_TEMPLATES = {
     "component of itself": (
         r'(InstantiatedComponent" [^>]*definition="//@definitions)\.0"',

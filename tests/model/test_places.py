@@ -1,4 +1,4 @@
-"""Where elements come from: whole places, which tell two files of one name apart."""
+"""Origins of elements: full paths, which distinguish two files of one name."""
 
 import json
 from pathlib import Path
@@ -56,7 +56,7 @@ def test_place_of_an_element_without_one() -> None:
     assert place(sct.SupervisoryControlModel()) == ("model", START)
 
 
-#: A library whose file has the name of the robot's, with a fault of its own that only synthesis finds, far below.
+#: A library whose file has the name of the robot's file, with a fault near its end that only synthesis finds.
 LIBRARY = (
     "library Arms {\n"
     + "\n" * 20

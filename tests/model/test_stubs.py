@@ -1,4 +1,4 @@
-"""The type stubs of the metamodels are those that the .ecore files give."""
+"""The type stubs of the metamodels match the .ecore files."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""XMI files to models: the same model comes back, and whatever is wrong with a file is said, in its place."""
+"""Read XMI files: models round-trip, and each fault in a file is reported with its position."""
 
 import os
 import re
@@ -41,13 +41,13 @@ def findings(path: Path) -> list[Diagnostic]:
 
 
 def shown(path: Path) -> list[str]:
-    """The findings as `line:column: message`."""
+    """Return the findings as `line:column: message`."""
     return [f"{finding.span.line}:{finding.span.column}: {finding.message}" for finding in findings(path)]
 
 
 @pytest.fixture
 def write(tmp_path: Path) -> Any:
-    """Writes a file from a text and gives its path."""
+    """Write a file with a text and return its path."""
 
     def written(text: str | bytes, name: str = "robot.sct.xmi") -> Path:
         path = tmp_path / name
@@ -306,7 +306,7 @@ def test_a_truncated_file_is_a_finding(folder: Path, texts: dict[str, str], name
 @settings(max_examples=examples(75), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_no_damage_makes_anything_but_findings(folder: Path, texts: dict[str, str], data: st.DataObject) -> None:
-    """Words of the file change places: the result is a model, or findings inside the files."""
+    """Swap words of the file: the result is a model or findings inside the files."""
     name = data.draw(st.sampled_from(["Warehouse.sct.xmi", "Warehouse.rosgraph.xmi", "Warehouse.robosc.xmi"]))
     words = texts[name].split('"')
     for _ in range(data.draw(st.integers(1, 4))):

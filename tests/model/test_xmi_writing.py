@@ -1,4 +1,4 @@
-"""Models to XMI text: what is written where, and that nothing but the model decides it."""
+"""Write models as XMI: the order of the text, which depends on the model only."""
 # ruff: noqa: E501 - XML declares its namespaces in one line.
 
 import re
@@ -116,7 +116,7 @@ def test_every_text_comes_back(text: str, tmp_path: Any) -> None:
 @pytest.mark.parametrize("value", [0, 7, 2**63 - 1])
 def test_integers_come_back(value: int, tmp_path: Any) -> None:
     saved = model([plant("p", {"s": []})])
-    states = 10**5000 + 1  # more digits than Python writes by itself
+    states = 10**5000 + 1  # more digits than Python prints by default
     saved.supervisor = sct.Supervisor(
         uncontrolledStates=states, controlledStates=0, bddNodes=value, settlingBound=value
     )

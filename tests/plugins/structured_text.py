@@ -1,4 +1,4 @@
-"""Runs a function block in Structured Text, as blark parses it: the part of the language that the example writes."""
+"""Interpreter of function blocks in Structured Text, parsed by blark, for the constructs that the example generates."""
 
 import operator
 import re
@@ -28,12 +28,12 @@ _FUNCTIONS = {
     "SEL": lambda condition, no, yes: yes if condition else no,
 }
 _DECLARED = re.compile(r"^ +(\w+) : (BOOL|DINT)(?: := (\S+))?;", re.MULTILINE)
-#: Integers are of 32 bits.
+#: Integers have 32 bits.
 _RANGE = range(-(2**31), 2**31)
 
 
 class Block:
-    """An instance of the function block in a text; its variables can be read and set."""
+    """An instance of the function block in a text, with readable and writable variables."""
 
     def __init__(self, text: str) -> None:
         items = parse_source_code(text).transform().items
@@ -44,7 +44,7 @@ class Block:
             self.variables[name] = value == "TRUE" if kind == "BOOL" else int(value or 0)
 
     def call(self, inputs: Mapping[str, Any]) -> None:
-        """One call of the block."""
+        """Call the block once."""
         self.variables |= inputs
         self._run(self._block.body)
 

@@ -1,4 +1,4 @@
-"""The example packages that add a target and a synthesizer, installed as a stranger installs them, and broken ones."""
+"""The example packages add a target and a synthesizer when a user installs them; broken packages are reported."""
 
 import json
 import os
@@ -33,7 +33,7 @@ LINE_FOLLOWER = MODELS["line_follower"]
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder into which pip has installed both packages, without a network."""
+    """Return a folder into which pip has installed both packages without a network."""
     folder = tmp_path_factory.mktemp("installed")
     source = tmp_path_factory.mktemp("source")
     for name in ("robosc-structured-text", "robosc-faudes"):
@@ -44,7 +44,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def tool(installed: Path, *arguments: object, status: int = 0) -> str:
-    """The standard output of a run of the tool where the packages are installed."""
+    """Run the tool with the packages installed; return its standard output."""
     done = subprocess.run(
         [sys.executable, "-m", "robosc", *map(str, arguments)],
         env={**os.environ, "PYTHONPATH": f"{ROOT}:{installed}"},
@@ -103,7 +103,7 @@ def test_a_synthesizer_that_is_not_installed() -> None:
 
 @pytest.fixture
 def broken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    """Installs a package with one module, which does not do what it ought to."""
+    """Install a package with one module that violates the interface."""
 
     def install(group: str, text: str) -> Path:
         site = tmp_path / "site"
@@ -179,7 +179,7 @@ def test_verify_refutes_a_supervisor_that_allows_too_much(broken) -> None:
     assert any(name.startswith("requirement move needs") for name in refuted)
 
 
-#: The robot never moves, though it could.
+#: Synthesizer whose robot never moves, although it could.
 SHY = (
     f"{SYNTHESIZER}from robosc.model import expression\n"
     "    from robosc.model.semantics.roles import event_name\n"
@@ -228,7 +228,7 @@ def test_the_debugger_takes_another_synthesizer(broken, tmp_path: Path) -> None:
         assert program.end() == (0, "")
 
 
-#: The commands that ask for a supervisor.
+#: Commands that need a supervisor.
 SYNTHESIZING = ("synthesize", "transform", "verify", "explain", "simulate", "test", "run", "view", "report", "dap")
 
 
@@ -264,7 +264,7 @@ def test_the_function_block_of_an_example(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def follow(model, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Both are asked and told the same for 300 random events."""
+    """Check that both engines behave the same for 300 random events."""
     monkeypatch.syspath_prepend(str(PLUGINS / "robosc-structured-text"))
     import robosc_structured_text  # noqa: PLC0415  # it is found here only
 

@@ -1,9 +1,9 @@
-"""Loads components into the container `/ComponentManager` and unloads them again, while messages rain on them.
+"""Load components into the container `/ComponentManager` and unload them, while it receives many messages.
 
 python3 churn_ros2.py ROUNDS
 
-In each round a controller, two managed ones that are activated, of which one has times, and a layer come and go. Prints
-how often something was unloaded.
+Each round loads and unloads a controller, two managed nodes that are activated (one of them with times), and a layer.
+Prints the number of unloaded components.
 """
 
 import sys
@@ -23,7 +23,7 @@ RAIN = [("/pulse", Int32), ("/light", Bool), ("/stop", Empty), ("/resume", Empty
 
 
 class Operator:
-    """Asks, and waits for the answer."""
+    """Client that sends a request and waits for the answer."""
 
     def __init__(self):
         self.node = rclpy.create_node("operator")

@@ -1,4 +1,4 @@
-"""Generated packages over a real ROS: built and run once, so that the tests only read what came of it."""
+"""Generated packages over a real ROS. Fixtures build and run them once; the tests only read the results."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["ros1_build", "ros1_workspace", "ros2_workspace", "run_ros2"]
 
 HERE = Path(__file__).parent
-#: Fixtures that run nodes for several tests, and the parameters that say of which kind they are.
+#: Fixtures that run nodes for several tests, and names of the parameters that select the kind of node.
 RUNS = (
     "drive",
     "courier",
@@ -37,14 +37,14 @@ RUNS = (
     "base",
 )
 KINDS = ("nodes", "layers", "controller", "kind", "name")
-#: Compiled nodes of each ROS, and those of ROS 2 that run straight from their models.
+#: Compiled nodes of each ROS version, and nodes that `robosc run` starts from models over ROS 2.
 NODES = ("ros1", "ros2", "run-ros2")
 SIMULATOR = HERE.parents[1] / "examples" / "simulator"
 
 
 @dataclass(frozen=True)
 class Drive:
-    """What crossed the world's topics, what the node did in its own order, what it reported and printed."""
+    """A run of the line follower: messages on the world's topics, event log, reports and output of the node."""
 
     record: list[dict[str, Any]]
     log: list[dict[str, Any]]
@@ -53,18 +53,18 @@ class Drive:
     node_output: str
 
     def commands(self, start: float = 0.0, end: float = 1e9) -> list[tuple[float, float, float]]:
-        """Time, linear and angular speed of the commands that the world received in a span of time."""
+        """Return time, linear and angular speed of the commands that the world received in an interval."""
         received = [entry for entry in self.record if entry["topic"] == "/cmd_vel" and start <= entry["time"] < end]
         return [
             (message["time"], message["data"]["linear"]["x"], message["data"]["angular"]["z"]) for message in received
         ]
 
     def poses(self, start: float = 0.0, end: float = 1e9) -> list[dict[str, Any]]:
-        """Where the robot was in a span of time."""
+        """Return the poses of the robot in an interval."""
         return [entry["data"] for entry in self.record if entry["topic"] == "pose" and start <= entry["time"] < end]
 
     def when(self, happening: str) -> float:
-        """When something happened in the world."""
+        """Return the time of an event in the world."""
         (time,) = [
             entry["time"] for entry in self.record if (entry["topic"], entry["data"]) == ("happening", happening)
         ]
@@ -73,7 +73,7 @@ class Drive:
 
 @dataclass(frozen=True)
 class Courier:
-    """What the courier reported and sent after each step of `send_to_courier.py`, and what it logged and printed."""
+    """State and messages of the courier after each step of `send_to_courier.py`, its event log and its output."""
 
     steps: dict[str, Any]
     log: list[dict[str, Any]]
@@ -91,7 +91,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Tests of one run of a node go to one process, those of another run to the next that is free."""
+    """Assign the tests of one run of a node to one process, and those of another run to the next free process."""
     groups: dict[str, int] = {}
     for item in items:
         if is_here(item.path):
@@ -109,14 +109,14 @@ def is_here(path: Path) -> bool:
 
 
 def needs_ros1_workspace(item: pytest.Item) -> bool:
-    """Whether a test runs what is compiled in the workspace of ROS 1."""
+    """Whether a test needs the compiled workspace of ROS 1."""
     if not is_here(item.path):
         return False
     return "ros1_workspace" in getattr(item, "fixturenames", ()) or "ros1" in parameters(item).values()
 
 
 def group(item: pytest.Item) -> str:
-    """The run of nodes that a test looks at, or else the test itself."""
+    """Return the name of the node run that a test uses, or else the name of the test."""
     names = getattr(item, "fixturenames", ())
     run = next((name for name in RUNS if name in names), None)
     if run is None:
@@ -126,20 +126,20 @@ def group(item: pytest.Item) -> str:
 
 
 def parameters(item: pytest.Item) -> dict[str, Any]:
-    """The values of a test's parameters by name."""
+    """Return the parameters of a test by name."""
     callspec = getattr(item, "callspec", None)
     return dict(callspec.params) if callspec else {}
 
 
 @dataclass
 class Kept:
-    """What the tests of one group share: names to what was made, and how it is given up."""
+    """Resources shared by the tests of one group, by name, and their cleanup."""
 
     ends: ExitStack = field(default_factory=ExitStack)
     made: dict[str, Any] = field(default_factory=dict)
 
     def end(self) -> None:
-        """Gives all of it up."""
+        """Release all resources."""
         self.made.clear()
         self.ends.close()
 
@@ -149,13 +149,16 @@ _KEPT = Kept()
 
 @pytest.fixture
 def kept() -> Callable[[str, Callable[[], AbstractContextManager[Any]]], Any]:
-    """`kept(name, make)`: what the context of `make` yields, the same for all tests of a group; left after the last."""
+    """Return `kept(name, make)`, which yields the context of `make` once for all tests of a group.
+
+    The context ends after the last test of the group.
+    """
 
     def one(name: str, make: Callable[[], AbstractContextManager[Any]]) -> Any:
         if name not in _KEPT.made:
             try:
                 _KEPT.made[name] = _KEPT.ends.enter_context(make())
-            except Exception as error:  # not to be tried, and waited for, again
+            except Exception as error:  # the tests that follow fail at once
                 _KEPT.made[name] = error
         if isinstance(_KEPT.made[name], Exception):
             raise _KEPT.made[name]
@@ -173,7 +176,7 @@ def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> 
 
 @pytest.fixture(scope="session", autouse=True)
 def ros1_build_begins(request: pytest.FixtureRequest) -> None:
-    """Has `ros1_workspace` built from the first test on, if it is needed at all."""
+    """Start the build of `ros1_workspace` before the first test, if any test needs it."""
     if any(map(needs_ros1_workspace, request.session.items)) and find_ros1().ros is not None:
         request.getfixturevalue("ros1_build")
 
@@ -186,13 +189,13 @@ def workspace(request: pytest.FixtureRequest) -> Workspace:
 
 @pytest.fixture(scope="session")
 def nodes(request: pytest.FixtureRequest) -> Workspace | Runner:
-    """Nodes of every kind, to be started by their packages' names: compiled, and run straight from their models."""
+    """Nodes of every kind, started by the names of their packages: compiled, and run from their models."""
     return nodes_of(request, request.param)
 
 
 @pytest.fixture(scope="session")
 def layers(request: pytest.FixtureRequest) -> Workspace | Runner:
-    """The kinds of nodes that layers can be: those of ROS 2."""
+    """Layers of every kind: compiled, and run from their models, both over ROS 2."""
     return nodes_of(request, request.param)
 
 
@@ -204,7 +207,7 @@ def nodes_of(request: pytest.FixtureRequest, kind: str) -> Workspace | Runner:
 
 @pytest.fixture(scope="session")
 def drive(nodes: Workspace | Runner, tmp_path_factory: pytest.TempPathFactory) -> Drive:
-    """The line follower in its scenario, from start to end, in simulated time."""
+    """Run the line follower through its whole scenario in simulated time."""
     package, ros = "line_follower_controller", nodes.ros
     folder = tmp_path_factory.mktemp("drive") / "run"
     events, reports, record = folder / "events.jsonl", folder / "reports.jsonl", folder / "record.jsonl"
@@ -225,7 +228,7 @@ def drive(nodes: Workspace | Runner, tmp_path_factory: pytest.TempPathFactory) -
 
 @pytest.fixture(scope="session")
 def courier(nodes: Workspace | Runner, tmp_path_factory: pytest.TempPathFactory) -> Courier:
-    """The courier, sent one message after the other, in real time."""
+    """Send messages to the courier one by one, in real time."""
     package, ros = "courier_controller", nodes.ros
     folder = tmp_path_factory.mktemp("courier") / "run"
     steps = folder / "steps.json"

@@ -1,4 +1,4 @@
-"""Sends what comes on /question to /answer, until interrupted: what a message and its answer take at the least.
+"""Send each message on /question to /answer until interrupted: a lower bound for a message and its answer.
 
 python3 echo.py 1|2
 """

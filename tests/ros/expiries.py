@@ -1,4 +1,4 @@
-"""How late a node's time is up, measured over a real ROS by `expiry_times.py`."""
+"""Delays of a node's timers, measured over a real ROS by `expiry_times.py`."""
 
 from __future__ import annotations
 
@@ -16,12 +16,15 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent
 PACKAGE = "patience_controller"
-#: How long the model waits, in seconds.
+#: Duration of the timer in the model, in seconds.
 DURATION = 0.2
 
 
 def expiries(nodes: Workspace | Runner, folder: Path, times: int, hz: float) -> list[float]:
-    """Seconds from what starts a time to what is sent when it is up; scans come meanwhile. `folder` must not exist."""
+    """Return the times from the start of a timer to the message at its expiry, in seconds, under a load of scans.
+
+    `folder` must not exist.
+    """
     with middleware(nodes, folder) as processes:
         processes.start("node", one_process(nodes, PACKAGE))
         out = folder / "measured.json"

@@ -1,8 +1,8 @@
-"""Measures how late a node's time is up: writes the seconds from a press of a button to the beep 200 ms after it.
+"""Measure the delays of a node's timer: write the seconds from each press of a button to the beep 200 ms after it.
 
 python3 expiry_times.py 1|2 FILE [--times N] [--hz HZ]
 
-Meanwhile scans are sent, so many a second.
+The program publishes scans at HZ meanwhile.
 """
 
 import argparse
@@ -19,7 +19,7 @@ SCAN = {"ranges": [2.0] * 360}
 
 
 class World:
-    """Presses the button and hears the beep, and is the lidar meanwhile."""
+    """The button, the listener to the beep, and the lidar."""
 
     def __init__(self, version, hz):
         self.beeps = []
@@ -31,7 +31,7 @@ class World:
         self.scan = self.topics.publisher("/scan", "sensor_msgs/LaserScan")
 
     def live(self, seconds):
-        """Time passes; scans are sent when they are due."""
+        """Let time pass, and publish scans when they are due."""
         until = time.monotonic() + seconds
         while (left := until - time.monotonic()) > 0:
             if time.monotonic() >= self.due:
@@ -40,7 +40,7 @@ class World:
             self.topics.receive(max(0.0, min(left, self.due - time.monotonic())))
 
     def wait(self, condition, what):
-        """Lives until a condition holds."""
+        """Let time pass until a condition holds."""
         until = time.monotonic() + PATIENCE
         while not condition():
             if time.monotonic() > until:
@@ -48,7 +48,7 @@ class World:
             self.live(0.002)
 
     def start(self):
-        """Waits until the node hears, acts and is heard."""
+        """Wait until the node receives messages, reacts, and its messages arrive."""
         self.wait(self.topics.heard, "the node listens")
 
         def pressed():
@@ -60,7 +60,7 @@ class World:
         self.live(0.5)
 
     def expiry(self):
-        """Seconds from a press to the beep."""
+        """Return the seconds from a press to the beep."""
         heard = len(self.beeps)
         began = time.perf_counter()
         self.press()

@@ -1,4 +1,4 @@
-"""The ROS installations of this machine, and what it takes to build and run packages with them."""
+"""The ROS installations of this machine, with the environment and commands that build and run packages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ HERE = Path(__file__).parent
 
 @dataclass(frozen=True)
 class Ros:
-    """An installation: the environment of its programs, its Python, and how a workspace is built."""
+    """An installation: the environment of its programs, its Python, and its build command."""
 
     version: int
     environment: dict[str, str]
@@ -22,9 +22,9 @@ class Ros:
     build: list[str]
 
     def built(self, workspace: Path) -> str:
-        """Builds the packages below `src` of a workspace; what the build said. Fails where the build does.
+        """Build the packages below `src` of a workspace and return the output; fail if the build fails.
 
-        `CFLAGS` and `CXXFLAGS` of whoever runs this are added to.
+        The flags extend `CFLAGS` and `CXXFLAGS` of the environment.
         """
         flags = {name: f"{os.environ.get(name, '')} -Wconversion" for name in ("CFLAGS", "CXXFLAGS")}
         done = subprocess.run(
@@ -43,14 +43,14 @@ class Ros:
 
 @dataclass
 class Found:
-    """An installation, or the reason why there is none."""
+    """An installation, or the reasons why there is none."""
 
     ros: Ros | None = None
     missing: list[str] = field(default_factory=list)
 
 
 def find_ros1() -> Found:
-    """ROS 1 as Debian packages it, all in /usr, or one below /opt/ros."""
+    """Find ROS 1 as packaged by Debian, all in /usr, or below /opt/ros."""
     found = Found()
     if Path("/usr/share/roscpp/package.xml").exists():
         environment = _plain_environment() | {"ROS_PACKAGE_PATH": "/usr/share", "ROS_ETC_DIR": "/etc/ros"}
@@ -82,20 +82,20 @@ def find_ros1() -> Found:
         found.missing.append("no definitions of std_msgs (Debian: ros-std-msgs)")
     found.missing += [f"no {program}" for program in ("catkin_make", "cmake", "g++") if not _has(program, environment)]
     if not found.missing:
-        # Without the number of jobs it takes one alone while the machine is busy.
+        # Without an explicit number, catkin_make uses one job while the machine is busy.
         build = ["catkin_make", f"-j{os.cpu_count() or 1}", f"-DPYTHON_EXECUTABLE={python}"]
         if "CXX" not in os.environ and _has("clang++", environment):
-            # It takes a third of the time that g++ takes: see `test_build.py` for what that one has to say.
+            # clang takes a third of the time of g++; `test_build.py` checks the warnings of g++.
             build += ["-DCMAKE_C_COMPILER=clang", "-DCMAKE_CXX_COMPILER=clang++"]
             build.append(f"-DCMAKE_PROJECT_INCLUDE={HERE / 'precompiled.cmake'}")
-        # Nobody here speaks Lisp to the nodes.
+        # No test uses the messages in Lisp.
         environment["ROS_LANG_DISABLE"] = "genlisp"
         found.ros = Ros(1, environment, python, build)
     return found
 
 
 def find_ros2() -> Found:
-    """The ROS 2 that this environment names (AMENT_PREFIX_PATH), or one below /opt/ros, if it has rclcpp."""
+    """Find the ROS 2 of this environment (AMENT_PREFIX_PATH), or one below /opt/ros; it must have rclcpp."""
     found = Found()
     environment = dict(os.environ)
     prefixes = [Path(part) for part in environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part]
@@ -116,7 +116,7 @@ def find_ros2() -> Found:
 
 
 def free_port() -> int:
-    """A TCP port that nobody listens to."""
+    """Return an unused TCP port."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port: int = probe.getsockname()[1]
@@ -128,7 +128,7 @@ def _has(program: str, environment: dict[str, str]) -> bool:
 
 
 def _plain_environment() -> dict[str, str]:
-    """An environment without any Python or ROS of the tests' own; with what sanitizers are told."""
+    """Return an environment without the Python and ROS of the tests, but with the options of sanitizers."""
     names = ("HOME", "LANG", "LC_ALL", "USER", "ASAN_OPTIONS", "TSAN_OPTIONS", "UBSAN_OPTIONS", "LDFLAGS")
     kept = {name: os.environ[name] for name in names if name in os.environ}
     return kept | {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin"}

@@ -1,4 +1,4 @@
-"""Sends data that a node keeps, and writes what it hands on to a file: all that came on each topic, in its order.
+"""Send data that a node stores, and write all messages of the node to a file, in their order for each topic.
 
 python3 keep_data.py 1|2 FILE
 """
@@ -14,7 +14,7 @@ PATIENCE = 120.0
 
 
 class World:
-    """Sends joints, poses and images, and hears what comes of them."""
+    """Publisher of joints, poses and images, and listener to the resulting messages."""
 
     def __init__(self, version):
         self.heard = {"/again": [], "/twist": [], "/stamped": [], "/text": []}
@@ -34,7 +34,7 @@ class World:
         self.topics.listen(topic, kind, lambda message: self.heard[topic].append(read(message)))
 
     def wait(self, topic, value):
-        """Until this came last on a topic."""
+        """Wait until a value is the last one on a topic."""
         until = time.monotonic() + PATIENCE
         while self.heard[topic][-1:] != [value]:
             if time.monotonic() > until:
@@ -42,7 +42,7 @@ class World:
             self.topics.receive(0.01)
 
     def start(self):
-        """Until the node hears, and is heard on all topics; then nothing of it is remembered."""
+        """Wait until the node is connected in both directions on all topics, then clear the records."""
         until, number = time.monotonic() + PATIENCE, 0
         while not self.topics.heard() or not all([*self.heard.values(), *self.unset.values()]):
             if time.monotonic() > until:
@@ -72,8 +72,8 @@ class World:
         self.wait("/stamped", [7.0, 0.0])
         self.joints(name=["ab", "b", "c"], position=[5.0, 7.9])
         self.wait("/twist", [7.0, -2.0, 9.0])
-        self.joints(name=["ab", "b", "c"], position=[0.5])  # the slice ends behind it
-        self.poses()  # has no last one
+        self.joints(name=["ab", "b", "c"], position=[0.5])  # the slice ends behind the array
+        self.poses()  # has no last pose
         self.image(data=bytes([1, 2, 250]))
         self.poses((1.6, 0.5), (2.5, 0.25))
         self.wait("/stamped", [1.6, 0.5])
@@ -84,7 +84,7 @@ class World:
         self.wait("/text", "last")
         self.wait("/twist", [3.0, 0.25, 12.0])
         self.wait("/again", [["last", "", ""], [0.5, 0.25], [0.25, 0.25]])
-        self.poses((float("nan"), 0.5), (4.0, 0.125))  # can't be handed on
+        self.poses((float("nan"), 0.5), (4.0, 0.125))  # the node cannot send this
         self.wait("/twist", [4.0, 0.25, 12.0])
         self.poses((2.0, 0.5), (4.0, 0.125))
         self.wait("/stamped", [2.0, 0.5])

@@ -1,8 +1,8 @@
-"""Runs a model as a node of ROS 2 that does nothing for a while, in which a scan arrives and a time is up.
+"""Run a model as a ROS 2 node that sleeps while a scan arrives and a timer expires.
 
 python3 late_ros2.py controller|layer MODEL --ros-args -p event_log:=LOG
 
-Prints when it goes on.
+Prints the time at which the node continues.
 """
 
 import sys
@@ -15,12 +15,12 @@ from std_msgs.msg import Empty
 from robosc.run.runtime.ros2.node import Ros2Node
 from robosc.tools.cli import main
 
-#: Twice as long as the model bears without a scan, and then some.
+#: More than twice the silence of scans that the model accepts.
 SLEEP = 2.0
 
 
 def spin(node, handler):
-    """In the place of the node's own."""
+    """Spin a node, in place of its own method."""
     handler.start()
     robot = rclpy.create_node("robot")
     publisher = robot.create_publisher(Empty, "/scan", 10)

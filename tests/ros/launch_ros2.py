@@ -1,4 +1,4 @@
-"""Includes a launch file, in a namespace that is pushed or on a clock that is set around it.
+"""Include a launch file, in a pushed namespace or with a clock setting of the including file.
 
 python3 launch_ros2.py FILE plain|pushed|simulated [ARGUMENT=VALUE ...]
 """

@@ -1,4 +1,4 @@
-"""Reads a launch file of ROS 2 without its launch system: a stand-in for what the generated files use of it."""
+"""Evaluation of a ROS 2 launch file without the launch system: a stand-in for the parts that generated files use."""
 
 from __future__ import annotations
 
@@ -11,33 +11,33 @@ from unittest.mock import patch
 
 @dataclass(frozen=True)
 class Context:
-    """What a launch file is evaluated in."""
+    """Context in which a launch file is evaluated."""
 
     launch_configurations: dict[str, str]
 
 
 @dataclass(frozen=True)
 class Made:
-    """An action or a substitution: what it is, and what it was made of."""
+    """An action or a substitution: its kind and its arguments."""
 
     kind: str
     positional: tuple[Any, ...] = ()
     named: dict[str, Any] = field(default_factory=dict)
 
     def perform(self, context: Context) -> str:
-        """The value of a launch configuration."""
+        """Return the value of a launch configuration."""
         return context.launch_configurations[self.positional[0]]
 
 
 @dataclass(frozen=True)
 class Launched:
-    """What a launch file starts: the arguments with their values, and its actions, one after the other."""
+    """Contents of a launch file: the arguments with their values, and the actions in their order."""
 
     arguments: dict[str, str]
     actions: list[Made]
 
     def of(self, kind: str) -> list[Made]:
-        """The actions of a kind, such as `Node`."""
+        """Return the actions of a kind, such as `Node`."""
         return [action for action in self.actions if action.kind == kind]
 
 
@@ -60,7 +60,7 @@ _MODULES = {
 
 
 def launched(text: str, **arguments: str) -> Launched:
-    """What the launch file of this text starts when it is given these arguments."""
+    """Evaluate the text of a launch file with these arguments."""
     modules = {name: ModuleType(name) for name in _MODULES}
     for name, members in _MODULES.items():
         for member in members:

@@ -1,4 +1,4 @@
-"""What the line follower may send and when, written down by hand from its requirements: the tests' second opinion."""
+"""Independent rules for the commands of the line follower, written by hand from its requirements."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ HALT = "message_halt.c_trigger"
 
 @dataclass
 class Inputs:
-    """What the controller has been told."""
+    """The inputs that the controller has received."""
 
     correction: float | None = None
     clear: bool = False
@@ -26,7 +26,7 @@ class Inputs:
         return self.correction is not None and self.clear and not self.stopped
 
     def hear(self, topic: str, data: Any) -> None:
-        """Takes in a message; of a scan `data` says whether the way is clear."""
+        """Process a message; for a scan, `data` is true if the way is clear."""
         match topic:
             case "correction":
                 self.correction = data
@@ -41,7 +41,7 @@ class Inputs:
                 self.stopped = self.stopped and not self.released
 
     def miss(self, component: str) -> None:
-        """Takes in that what a component waits for has fallen silent."""
+        """Process the timeout of a component."""
         match component:
             case "LineDetector":
                 self.correction = None
@@ -52,7 +52,7 @@ class Inputs:
 
 
 def violations(log: Iterable[Entry]) -> list[str]:
-    """What the event log of a node shows that must not be: each command in the node's own order, so this is exact."""
+    """Return the commands in an event log that violate the rules; the node's own order makes this exact."""
     inputs = Inputs()
     found = []
     for entry in log:
@@ -75,16 +75,16 @@ def violations(log: Iterable[Entry]) -> list[str]:
 
 
 def commands_in(log: Iterable[Entry]) -> list[tuple[float, float]]:
-    """The linear and angular speeds that a node says it has sent."""
+    """Return the linear and angular speeds of the commands in a log."""
     sent = (entry["data"]["value"] for entry in log if entry["event"] in (MOVE, HALT))
     return [(message["linear"]["x"], message["angular"]["z"]) for message in sent]
 
 
 def late_moves(record: Sequence[Entry], allowance: float, front: float) -> list[str]:
-    """Moves that the world received although all that it sent for so many seconds forbade them.
+    """Return moves that the world received although its inputs forbade them for longer than `allowance` seconds.
 
-    `front` is the distance from which on the way is clear. This needs nothing of what the node says about itself; it
-    is not exact, as messages are on their way for a while.
+    The way is clear from a distance of `front` on. The check uses no report of the node. It is not exact, because
+    messages take time.
     """
     inputs = Inputs()
     forbidden_since: float | None = 0.0

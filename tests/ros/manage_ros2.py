@@ -1,9 +1,9 @@
-"""What an operator does with nodes of ROS 2: loads components, changes the state of managed nodes, reads parameters.
+"""Operator of ROS 2 nodes: loads components, changes states of managed nodes, reads and sets parameters.
 
 python3 manage_ros2.py load PACKAGE NAMESPACE EVENT_LOG | unload NUMBER | change NODE TRANSITION | describe NODE NAME...
     | give NODE NAME NUMBER
 
-Prints what came of it as JSON. The container is `/ComponentManager`; transitions are numbered as in lifecycle_msgs.
+Prints the result as JSON. The container is `/ComponentManager`; transitions have the numbers of lifecycle_msgs.
 """
 
 import json
@@ -31,7 +31,7 @@ def call(kind, service, request):
 
 
 def load(package, namespace, event_log):
-    """The number of the component in its container, its name, and what is wrong with it."""
+    """Load a component; return its number in the container, its name, and the error."""
     text = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=event_log)
     request = LoadNode.Request(
         package_name=package,
@@ -55,7 +55,7 @@ def change(node, transition):
 
 
 def describe(node, *names):
-    """Each parameter's description, and its range."""
+    """Return the description and the range of each parameter."""
     found = call(DescribeParameters, f"{node}/describe_parameters", DescribeParameters.Request(names=names))
     return {
         descriptor.name: [
@@ -67,7 +67,7 @@ def describe(node, *names):
 
 
 def give(node, name, number):
-    """Sets a parameter; whether the node takes it."""
+    """Set a parameter; return whether the node accepts it."""
     value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=float(number))
     request = SetParameters.Request(parameters=[Parameter(name=name, value=value)])
     return call(SetParameters, f"{node}/set_parameters", request).results[0].successful

@@ -1,6 +1,6 @@
-# What each node of ROS 1 includes is read once for all packages of the tests' workspace. CMake includes this at each
-# `project`. What a node includes for its model alone is not here: where a package forgets it, its build fails. Whether
-# one forgets what is here, `test_gcc_has_nothing_to_say` sees, with nothing precompiled.
+# Precompile the headers that each ROS 1 node includes, once for all packages of the tests' workspace. CMake includes
+# this file at each `project`. Headers that a node includes for its model are not precompiled, so the build fails if one
+# is missing. `test_gcc_has_nothing_to_say` precompiles nothing, so it finds missing includes of precompiled headers.
 if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang" OR CMAKE_CXX_COMPILER_VERSION VERSION_LESS 11)
   return()
 endif()

@@ -1,4 +1,4 @@
-// What each node of ROS 1 includes, whatever its model, and what the code generator adds to all but a few.
+// Headers that each ROS 1 node includes, and headers that the code generator adds to all but a few nodes.
 #include <chrono>
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-"""Programs that a test starts and that don't outlive it."""
+"""Programs of a test, which end with it."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ if TYPE_CHECKING:
     from pathlib import Path
     from types import TracebackType
 
-#: Seconds for what takes a moment, on a machine that is busy with twenty other programs.
+#: Seconds for a quick operation on a machine with twenty other busy programs.
 PATIENCE = 120
 
 
 class Processes:
-    """Starts programs, each with a log file and as a process group of its own; at the end all are stopped."""
+    """Programs, each with a log file and a process group of its own; leaving the context stops them all."""
 
     def __init__(self, environment: dict[str, str], logs: Path) -> None:
         self.environment = environment
@@ -27,7 +27,7 @@ class Processes:
         self._started: list[tuple[str, subprocess.Popen[bytes]]] = []
 
     def start(self, name: str, command: Sequence[str | Path], *, steered: bool = False) -> subprocess.Popen[bytes]:
-        """Starts a program; `name` names its log. One that is steered has pipes as standard input and output."""
+        """Start a program with the log file `name`; a `steered` one has pipes as standard input and output."""
         with (self._logs / f"{name}.log").open("wb") as log:
             process = subprocess.Popen(
                 [str(word) for word in command],
@@ -37,21 +37,21 @@ class Processes:
                 stdout=subprocess.PIPE if steered else log,
                 stderr=log if steered else subprocess.STDOUT,
                 start_new_session=True,
-                # Whoever runs the tests may ignore it (nohup); a program in a terminal does not.
+                # The tests may run with SIGHUP ignored (nohup); a program in a terminal does not ignore it.
                 preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL),  # noqa: PLW1509
             )
         self._started.append((name, process))
         return process
 
     def wait_until(self, condition: Callable[[], bool], what: str, seconds: float = PATIENCE) -> None:
-        """Waits for something that the programs do; fails with their logs where it takes too long."""
+        """Wait for a condition; fail with the logs of the programs after `seconds`."""
         until = time.monotonic() + seconds
         while not condition():
             assert time.monotonic() < until, f"{what}: not within {seconds} s\n{self.logs()}"
             time.sleep(0.05)
 
     def stop(self, process: subprocess.Popen[bytes]) -> int:
-        """Interrupts a program, as Ctrl-C does; its exit status. One that does not end is killed."""
+        """Interrupt a program like Ctrl-C, and kill it if it does not end; return its exit status."""
         self._signal(process, signal.SIGINT)
         try:
             return process.wait(PATIENCE)
@@ -60,7 +60,7 @@ class Processes:
             return process.wait()
 
     def logs(self) -> str:
-        """What the programs wrote."""
+        """Return the output of all programs."""
         texts = ((name, (self._logs / f"{name}.log").read_text(errors="replace")) for name, _ in self._started)
         return "\n".join(f"--- {name}\n{text[-3000:]}" for name, text in texts)
 
@@ -74,7 +74,7 @@ class Processes:
             if process.poll() is None:
                 self.stop(process)
         for _, process in self._started:
-            # What a program has left behind is in its group.
+            # Children of a program are in its process group.
             self._signal(process, signal.SIGKILL)
 
     @staticmethod

@@ -1,12 +1,12 @@
-"""Measures how soon a line follower stops: writes the seconds from what it was told to its first zero on /cmd_vel.
+"""Measure the reaction times of a line follower: the seconds from an input to the first zero on /cmd_vel.
 
 python3 reaction_times.py 1|2 FILE --reason stop|obstacle [--times N] [--seed S] [--frozen SECONDS]
 
-A `stop` is a press of the button, while somebody else sends the sensors' messages; an `obstacle` is a scan, in a stream
-of scans that is this program's. The robot drives each time, and the moment is random.
+A `stop` is a press of the button, while another program publishes the sensors' messages. An `obstacle` is a scan in a
+stream of scans of this program. The robot drives each time, and the moment is random.
 
-In between it is measured what `echo.py` takes to answer. `--frozen` is for a node in simulated time whose period is
-so many seconds: after one tick the clock stands still, and what comes has not waited for a tick.
+Between the reactions the program measures the round trips of `echo.py`. `--frozen` is for a node in simulated time
+with a period of SECONDS: after one tick the clock stops, so that a reaction cannot come from a tick.
 """
 
 import argparse
@@ -20,13 +20,13 @@ from topics import connect
 
 HZ = 30
 PATIENCE = 120.0
-#: Most seconds that the robot drives, a period of the control loop, and that it stands, before it is told again.
+#: Maximum seconds for which the robot drives (one period of the control loop) and stands before the next input.
 DRIVES, STANDS = 0.1, 0.02
 CLEAR, BLOCKED = {"ranges": [2.0] * 360}, {"ranges": [0.3] * 360}
 
 
 class World:
-    """The line follower's surroundings: what it hears, and when it commands what."""
+    """Environment of the line follower: its sensors, and its commands with their times."""
 
     def __init__(self, version, scans):
         self.version = version
@@ -50,7 +50,7 @@ class World:
         self.answers.append((time.perf_counter(), message.data))
 
     def live(self, seconds):
-        """Time passes; scans, and whether the button is pressed, are sent when they are due."""
+        """Let time pass; publish the scans and the state of the button when they are due."""
         until = time.monotonic() + seconds
         while True:
             now = time.monotonic()
@@ -62,7 +62,7 @@ class World:
             self.topics.receive(min(left, max(0.0, self._due - now)))
 
     def sense(self):
-        """What the sensors and the button say now, and again a period later."""
+        """Publish the sensors and the button now; the next publication follows after one period."""
         self.button(data=self.pressed)
         if self.scan:
             self.scan(**self.seen)
@@ -70,7 +70,7 @@ class World:
         self._due = time.monotonic() + 1 / HZ
 
     def wait(self, condition, what, period=0.002):
-        """Lives until a condition holds, which is looked at once in a period."""
+        """Let time pass until a condition holds, and check it once in each period."""
         until = time.monotonic() + PATIENCE
         while not condition():
             if time.monotonic() > until:
@@ -78,7 +78,7 @@ class World:
             self.live(period)
 
     def drive(self):
-        """Releases the button and presses continue until the robot drives."""
+        """Release the button, and press continue until the robot drives."""
         since = len(self.commands)
         self.seen, self.pressed = CLEAR, False
         self.sense()
@@ -90,7 +90,7 @@ class World:
         self.wait(drives, "the robot drives", 0.05)
 
     def reaction(self):
-        """Seconds from what is told now to the first command to stand."""
+        """Publish the new input; return the seconds to the first command to stand."""
         since = len(self.commands)
         began = time.perf_counter()
         self.sense()
@@ -102,11 +102,11 @@ class World:
         return found() - began
 
     def start(self):
-        """Waits until the node listens."""
+        """Wait until the node is connected."""
         self.wait(self.topics.heard, "the node listens")
 
     def start_frozen(self, period):
-        """As `start`, with a clock that allows one tick and no more."""
+        """Start like `start`, with a clock that permits exactly one tick."""
         send = self.topics.publisher("/clock", "rosgraph_msgs/Clock")
 
         def clock(seconds):
@@ -125,7 +125,7 @@ class World:
         self.live(0.5)
 
     def round_trip(self, number):
-        """Seconds until the echo answers."""
+        """Return the seconds to the answer of the echo."""
         began = time.perf_counter()
         self.ask(data=number)
         self.wait(lambda: number in [answered for _, answered in self.answers[-3:]], "the echo answers")
@@ -133,7 +133,7 @@ class World:
 
 
 def measure(world, options):
-    """The reactions, and the round trips of the echo."""
+    """Return the reaction times, and the round trips of the echo."""
     chance = random.Random(options.seed)  # noqa: S311  # no secret
     reactions, echoes = [], []
     for number in range(options.times):

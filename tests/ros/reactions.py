@@ -1,4 +1,4 @@
-"""How soon a line follower stops for what it is told, measured over a real ROS by `reaction_times.py`."""
+"""Reaction times of a line follower, measured over a real ROS by `reaction_times.py`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SENSORS_HZ = 30
 
 
 def one_process(nodes: Workspace | Runner, package: str, *parameters: str) -> list[str | Path]:
-    """The command that starts a node, and nothing beside it, with parameters (`name:=value`)."""
+    """Return the command that starts a node without any other process, with parameters (`name:=value`)."""
     if isinstance(nodes, Workspace) and nodes.ros.version == 1:
         executable = nodes.folder / f"devel/lib/{package}/{package}"
         return [executable, f"__name:={package}", *(f"_{parameter}" for parameter in parameters)]
@@ -31,9 +31,9 @@ def one_process(nodes: Workspace | Runner, package: str, *parameters: str) -> li
 def reactions(
     nodes: Workspace | Runner, folder: Path, reason: str, times: int, parameters: Sequence[str] = ()
 ) -> tuple[list[float], list[float]]:
-    """Seconds from what the robot is told (`stop` or `obstacle`) to its first zero, at random moments.
+    """Return the seconds from an input (`stop` or `obstacle`) to the first zero of the robot, at random moments.
 
-    Beside them round trips of an echo, measured in between. The sensors speak at 30 Hz. `folder` must not exist.
+    Also returns round trips of an echo, measured in between. The sensors publish at 30 Hz. `folder` must not exist.
     """
     with middleware(nodes, folder) as processes:
         processes.start("node", one_process(nodes, PACKAGE, *parameters))
@@ -43,7 +43,7 @@ def reactions(
 
 
 def reactions_without_ticks(nodes: Workspace | Runner, folder: Path, times: int) -> tuple[list[float], list[float]]:
-    """As `reactions` for obstacles, where the control loop's next tick never comes."""
+    """Measure like `reactions` for obstacles, with a control loop whose next tick never comes."""
     period = 3600
     parameters = [f"period_ms:={1000 * period}", "reactions_per_tick:=65535"]
     if nodes.ros.version == 2:

@@ -1,6 +1,6 @@
-"""Writes what a node says about itself (`~/state`, `~/definition`, `/diagnostics`) to a file, until interrupted.
+"""Write the reports of a node (`~/state`, `~/definition`, `/diagnostics`) to a file until interrupted.
 
-Each is a line of JSON.
+Each report is a line of JSON.
 
 python3 reports.py 1|2 NODE FILE
 """
@@ -13,7 +13,7 @@ from topics import connect
 
 
 def array(message):
-    """What an array of diagnostics says, as nested dicts; its time in seconds."""
+    """Return an array of diagnostics as nested dicts, with its time in seconds."""
     stamp = message.header.stamp
     time = stamp.to_sec() if hasattr(stamp, "to_sec") else stamp.sec + stamp.nanosec / 1e9
     return {

@@ -1,4 +1,4 @@
-"""`robosc run` over ROS 2, and the Python modules of the interfaces that no registry has."""
+"""`robosc run` over ROS 2, and the Python modules of interfaces that no registry offers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent
 PROJECT = HERE.parents[1]
-#: The models of some packages: what a generated node does is asked of the node run from its model, too.
+#: Models of some packages. Tests of these generated nodes also run the nodes from their models.
 MODELS = {
     "line_follower_controller": PROJECT / "examples" / "line_follower" / "line_follower.rscd",
     "courier_controller": HERE.parent / "m2t" / "cpp" / "courier.rscd",
@@ -32,7 +32,7 @@ MODELS = {
 
 @dataclass(frozen=True)
 class Runner:
-    """Runs models as nodes. `interfaces` is a folder with Python modules of ROS packages, for everybody there."""
+    """Runs models as nodes. `interfaces` is a folder with Python modules of ROS packages, for all programs."""
 
     ros: Ros
     interfaces: Path
@@ -45,7 +45,7 @@ class Runner:
         configuration: str | Path | None = None,
         remappings: Sequence[str] = (),
     ) -> list[str]:
-        """The command that runs a model with parameters (`name:=value`) and remappings (`/from:=/to`)."""
+        """Return the command that runs a model with parameters (`name:=value`) and remappings (`/from:=/to`)."""
         options = ["--layer"] if layer else []
         options += ["--config", str(configuration)] if configuration else []
         arguments = ["--ros-args", *(word for parameter in parameters for word in ("-p", parameter))]
@@ -53,20 +53,20 @@ class Runner:
         return [self.ros.python, "-m", "robosc", "run", str(model), *options, *arguments]
 
     def node(self, package: str, *parameters: str) -> list[str]:
-        """The command that starts what a generated package of `MODELS` would be."""
+        """Return the command that runs the model of a generated package in `MODELS`."""
         return self.command(MODELS[package], *parameters)
 
     def environment(self) -> dict[str, str]:
-        """What the node needs, and the programs that talk to it: `ros.python` runs them; the tool of this tree."""
+        """Return the environment of the node and its partners, run by `ros.python`, with the tool of this tree."""
         found = [str(self.interfaces), str(PROJECT), self.ros.environment.get("PYTHONPATH")]
         path = os.pathsep.join(filter(None, found))
         return {**self.ros.environment, "PYTHONPATH": path, "PYTHONDONTWRITEBYTECODE": "1", "PYTHONUNBUFFERED": "1"}
 
 
 def find_rclpy() -> Found:
-    """ROS 2 as far as `robosc run` needs it: a Python that has rclpy and robosc, as `run-tests` makes one."""
+    """Find ROS 2 for `robosc run`: a Python with rclpy and robosc, such as the one that `run-tests` creates."""
     found = Found()
-    # Another installation's libraries, and its word that they are found already, are not for these wheels.
+    # These wheels must not use the libraries of another installation, nor its mark that they are initialized.
     others = ("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH", "_ROS_WHEELS_BOOTSTRAP_COMPLETE")
     environment = {name: value for name, value in os.environ.items() if name not in others}
     environment |= {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}
@@ -83,7 +83,7 @@ def find_rclpy() -> Found:
 
 
 def ros2_modules(ros: Ros, folder: Path) -> str:
-    """The Python modules of `interfaces/ros2`, made in a folder if they are not there: where they are."""
+    """Return the folder of the Python modules of `interfaces/ros2`; build them if they do not exist."""
     modules = folder / "modules"
     if not modules.exists():
         command = [ros.python, "-m", "robosc", "interfaces", "build", HERE / "interfaces" / "ros2", "-o", modules]
@@ -94,7 +94,7 @@ def ros2_modules(ros: Ros, folder: Path) -> str:
 
 @pytest.fixture(scope="session")
 def run_ros2(shared_folder: Path) -> Runner:
-    """`robosc run`, with the interfaces of `interfaces/ros2`."""
+    """`robosc run` with the interfaces of `interfaces/ros2`."""
     ros = found_or_skipped("ros2-run", find_rclpy())
     folder = Path(os.environ.get("ROBOSC_ROS2_INTERFACES") or shared_folder / "interfaces-ros2")
     return Runner(ros, Path(made_once(shared_folder, "run-ros2", lambda: ros2_modules(ros, folder))))

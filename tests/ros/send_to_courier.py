@@ -1,4 +1,4 @@
-"""Sends messages to the courier one by one, and writes down for each what the node then reports and sends.
+"""Send messages to the courier one by one, and write the resulting reports and messages of the node to a file.
 
 python3 send_to_courier.py 1|2 FILE
 """
@@ -25,7 +25,7 @@ def scan(ranges, angle_min=0.0):
     return "scan", {"ranges": ranges, "angle_min": angle_min}
 
 
-#: Name of the step, topic and fields, and an event of the batch that the node makes of it.
+#: Name of the step, topic, and fields. `EVENTS` has an event of the batch that the node makes of the topic.
 STEPS = [
     ("no angle", *scan([3.0, 0.5, 3.0, 7.0], math.nan)),
     ("ahead", *scan([0.5, 3.0, 3.0, 7.0], 1.0)),
@@ -44,7 +44,7 @@ EVENTS = {"scan": "side", "count": "size", "word": "word"}
 
 
 def lasting(seen):
-    """What was seen, but for what counts and times messages."""
+    """Return the observations without counters and times of messages."""
     sent = {topic: {**message, "header": None} for topic, message in seen["sent"].items()}
     return seen["components"], sent, {**seen["typed"], "header": None}
 
@@ -55,7 +55,7 @@ class Session:
         self.reports = []
         self.sent = {topic: [] for topic in SENT}
         self.topics.listen("/courier_controller/state", "std_msgs/String", self.report)
-        #: A node that was compiled tells its state as a message, too.
+        #: A compiled node also publishes its state as a typed message.
         self.typed = {}
         try:
             type_of("courier_msgs/State")
@@ -86,9 +86,9 @@ class Session:
             self.topics.receive(0.02)
 
     def rest(self):
-        """What is reported and sent in some ticks, as soon as that is the same in the ticks after them.
+        """Return the reports and messages of some ticks, as soon as the next ticks repeat them.
 
-        No order is promised across topics: what is heard first may have been sent before.
+        ROS does not preserve order across topics: a message may arrive before one that was sent earlier.
         """
         seen, before = self.ticks(), None
         until = time.monotonic() + PATIENCE
@@ -99,7 +99,7 @@ class Session:
         return {key: seen[key] for key in ("components", "sent", "typed")}
 
     def ticks(self):
-        """What is reported in the next ticks, what is heard until then, and on which topics the reports say it is."""
+        """Return reports and messages of the next ticks, and the topics that the reports mention."""
         start = len(self.reports)
         for messages in self.sent.values():
             messages.clear()

@@ -1,8 +1,8 @@
-"""Sends what a line follower's sensors say where the line is in view and the way is clear, until interrupted.
+"""Publish the sensors of a line follower with the line in view and a clear way, until interrupted.
 
 python3 sensors.py 1|2 HZ [--going]
 
-With `--going` also a button that is released, and somebody who presses continue.
+With `--going`, also publish a released button and repeated presses of continue.
 """
 
 import sys

@@ -1,4 +1,4 @@
-"""Hears what a node does whose parameters are set, or sets some while it runs, and writes what comes of it to a file.
+"""Record the messages of a node with preset parameters, or set parameters while it runs, and write them to a file.
 
 python3 set_parameters.py (1|2) FILE [--running]
 """
@@ -11,7 +11,7 @@ from pathlib import Path
 
 from topics import connect
 
-if sys.argv[1:2] == ["2"]:  # Nodes of ROS 1 have no services of parameters.
+if sys.argv[1:2] == ["2"]:  # Nodes of ROS 1 have no parameter services.
     from rcl_interfaces.srv import DescribeParameters, SetParameters
     from rclpy.parameter import Parameter
 
@@ -20,7 +20,7 @@ NODE = "/cruise_controller"
 
 
 class World:
-    """Sends ranges, hears the velocities, and sets parameters as `ros2 param set` does."""
+    """Publisher of ranges, listener to velocities, and client that sets parameters like `ros2 param set`."""
 
     def __init__(self, version):
         self.heard = []
@@ -46,7 +46,7 @@ class World:
         return future.result()
 
     def set(self, name, value):
-        """Sets one parameter; the reason why it was refused, None where it was not."""
+        """Set one parameter; return the reason of a rejection, or None."""
         request = SetParameters.Request(parameters=[Parameter(name, value=value).to_parameter_msg()])
         (result,) = self.call(self.setting, request).results
         return None if result.successful else result.reason
@@ -75,7 +75,7 @@ class World:
         self.expect(0.5)
         self.range(data=0.7)
         taken.append(self.set("reach", 1.0))
-        self.range(data=0.7)  # near now: no velocity goes out
+        self.range(data=0.7)  # near now: the node sends no velocity
         self.topics.receive(0.5)
         self.heard.clear()
         self.topics.receive(0.5)
@@ -84,7 +84,7 @@ class World:
         self.expect(0.5)
         lit = [self.lit]
         taken.append(self.set("Lamp.pause", 0.02))
-        self.range(data=1.5)  # starts the time anew, which is short now
+        self.range(data=1.5)  # restarts the timer, which is short now
         self.wait_until(lambda: self.lit, "the lamp is lit")
         return {"lit": [*lit, self.lit], "told": told, "refused": refused, "taken": taken, "silent": silent}
 

@@ -1,4 +1,4 @@
-"""Prints how many of 300 messages of a fast topic a node takes before a stop that came behind them."""
+"""Print the number of the 300 messages of a fast topic that a node processes before a stop sent after them."""
 
 import time
 
@@ -34,7 +34,7 @@ pulses, stops = (
 )
 while not (pulses.get_subscription_count() and stops.get_subscription_count()):
     time.sleep(0.05)
-# The node knows which topic is fast.
+# Teach the node which topic is fast.
 for number in range(20):
     pulses.publish(Int32(data=number))
 while len(taken) < 20:

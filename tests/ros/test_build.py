@@ -1,4 +1,4 @@
-"""The generated packages, built by the platform's own tool."""
+"""The generated packages build with the platform's own tool."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ import pytest
 if TYPE_CHECKING:
     from tests.ros.workspaces import Workspace
 
-#: With services, actions and a watchdog; with times, parameters and a typed state.
+#: A node with services, actions and a watchdog; one with times, parameters and a typed state.
 LARGEST = ("scout_controller", "porter_controller")
 
 
 def test_builds_without_warnings(workspace: Workspace) -> None:
-    # What rosidl itself writes for the packages of message types is not ours.
+    # rosidl's own code for the packages of message types is not under test.
     warnings = [line for line in workspace.build.splitlines() if ": warning:" in line and "/rosidl_" not in line]
     assert warnings == []
     assert "CMake Warning" not in workspace.build
@@ -24,7 +24,7 @@ def test_builds_without_warnings(workspace: Workspace) -> None:
 
 @pytest.mark.parametrize("package", LARGEST)
 def test_gcc_has_nothing_to_say(ros1_workspace: Workspace, package: str) -> None:
-    """The compiler of Debian, with nothing precompiled, of what clang builds here because it is faster."""
+    """Debian's g++, without precompiled headers, has no warnings; the other tests build with clang for speed."""
     if shutil.which("g++") is None:
         pytest.skip("no g++")
     command = ["g++", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]

@@ -1,4 +1,4 @@
-"""The generated C++ of controllers and layers with everything in them, read by clang-tidy: see `.clang-tidy`."""
+"""clang-tidy has no findings in the generated C++ of controllers and layers with all features: see `.clang-tidy`."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent
 
-#: `run-tests` does not install clang-tidy, which takes half a minute of a processor for each node.
+#: `run-tests` does not install clang-tidy, which needs half a minute of CPU time for each node.
 pytestmark = pytest.mark.matrix
 
 
-# Not `usher_layer`, whose end clang-tidy 14 does not reach with ROS 2: see docs/sanitizers.md.
+# `usher_layer` is missing: clang-tidy 14 does not finish its file with ROS 2, see docs/sanitizers.md.
 @pytest.mark.parametrize("package", ["porter_controller", "managed_porter", "guard_layer"])
 def test_clang_tidy_is_content_with_ros_2(ros2_workspace: Workspace, package: str) -> None:
     build = ros2_workspace.folder / "build" / package
@@ -33,7 +33,7 @@ def test_clang_tidy_is_content_with_ros_1(ros1_workspace: Workspace) -> None:
 
 
 def said(workspace: Workspace, package: str, options: list[str], compiler: list[str]) -> str:
-    """What clang-tidy has to say of a node and of the headers that come with it."""
+    """Return the findings of clang-tidy about a node and its generated headers."""
     if shutil.which("clang-tidy") is None:
         pytest.skip("no clang-tidy (Debian: clang-tidy)")
     headers = f"--header-filter=include/({package}|robosc_?[a-z0-9]*)/.*"

@@ -1,4 +1,4 @@
-"""Data on its way through a generated node: conversions, assignments, ranges, defaults; what is not there or no number.
+"""Data in a generated node: conversions, assignments, ranges, defaults, missing elements, numbers that are not finite.
 
 The model is `tests/m2t/cpp/courier.rscd`, the steps are those of `send_to_courier.py`.
 """
@@ -51,7 +51,7 @@ def test_starts_with_the_initial_values_of_the_model(courier: Courier) -> None:
 
 
 def test_sends_the_default_where_no_statement_provides_data(courier: Courier) -> None:
-    # A comparison with NaN is false, `!=` too; a rule that reads past the end does not match.
+    # A comparison with NaN is false, also with `!=`; a rule that reads past the end does not match.
     assert variables(courier, "no angle", "Scanner")["seen"] == "far"
     assert position(courier, "no angle") == (0, 0, 0)
 
@@ -73,7 +73,7 @@ def test_assigns_all_at_once(courier: Courier) -> None:
 
 
 def test_does_not_receive_what_reads_past_the_end_and_says_so(courier: Courier) -> None:
-    # The other event of the same message goes on.
+    # The other event of the same message still occurs.
     assert variables(courier, "short", "Scanner") == {"seen": "ahead", "first": 0.5, "before": 3.0, "fourth": 7.0}
     assert variables(courier, "empty", "Scanner")["seen"] == "far"
     assert variables(courier, "empty", "Scanner")["first"] == 0.5
@@ -105,7 +105,7 @@ def test_holds_back_what_a_requirement_forbids(courier: Courier) -> None:
 
 
 def test_stores_and_sends_any_text(courier: Courier) -> None:
-    # The node still counts more than 100 here: the report waits, the text is stored.
+    # The count is still above 100: the node withholds the report, but stores the text.
     assert variables(courier, "word", "Counter")["text"] == 'idle "ü" \\ \n'
 
 
@@ -120,7 +120,7 @@ def test_logs_events_with_their_data(courier: Courier) -> None:
     words = [entry["data"]["value"] for entry in courier.log if entry["event"] == "message_word.u_response"]
     assert words == ['idle "ü" \\ \n', "idle"]
     sides = [entry["data"] for entry in courier.log if entry["event"] == "message_side.u_response"]
-    # Each scan is sent once, when the node listens; those without enough elements have no `detail`.
+    # Each scan arrives once, after the node is connected; scans with too few elements cause no `detail`.
     assert [side["value"] for side in sides] == ["far", "ahead", "ahead", "ahead", "far", "left", "ahead"]
     details = [entry.get("data") for entry in courier.log if entry["event"] == "message_detail.u_response"]
     ranges = [(3.0, 7.0), (0.5, 7.0), (0.5, None), (3.0, 1.0), (0.5, 1.0)]

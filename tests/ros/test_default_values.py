@@ -1,4 +1,4 @@
-"""The defaults of ROS types that the tool knows are those of the installed ROS 2."""
+"""The built-in defaults of ROS types equal those of the installed ROS 2."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from robosc.base.ros_types.wire import Basic, Sequence
 if TYPE_CHECKING:
     from tests.ros.running import Runner
 
-#: Prints the fields of all installed messages and requests: package, type, section, field and its value when it is new.
+#: Prints the fields of all installed messages and requests: package, type, section, field, and its default value.
 NEW = """
 import importlib, json, site
 from pathlib import Path
@@ -38,7 +38,7 @@ for kind, parts in (("msg", {"MESSAGE": None}), ("srv", {"REQUEST": "Request", "
 
 @pytest.mark.parametrize("shipped", [False, True])
 def test_new_messages(run_ros2: Runner, monkeypatch: pytest.MonkeyPatch, *, shipped: bool) -> None:
-    """Those read from the definitions of the installation, and those of the types that the tool ships."""
+    """The defaults are equal for types from the installed definitions, and for types that the tool ships."""
     command = [run_ros2.ros.python, "-c", NEW]
     done = subprocess.run(command, env=run_ros2.ros.environment, capture_output=True, text=True, check=True)
     prefix = Path(run_ros2.ros.python).parents[1]

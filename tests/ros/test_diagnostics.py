@@ -1,4 +1,4 @@
-"""What nodes tell on `/diagnostics`, held against an engine that follows what they tell on `~/state`."""
+"""Diagnostics of nodes agree with an engine that follows their reports on `~/state`."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 
 __all__ = ["trial"]
 
-#: A time in a log and one in a message may be rounded differently.
+#: Times in a log and in a message may have different rounding errors.
 CLOCKS = 0.001
 
 
 class Witness:
-    """Follows a robot by the reports of its node, and knows what each status says then."""
+    """Engine that follows the reports of a node and predicts each status."""
 
     def __init__(self, path: Path) -> None:
         robot = robosc.load(path)
@@ -41,7 +41,7 @@ class Witness:
         ]
 
     def statuses(self, state: dict[str, Any]) -> dict[str, dict[str, str | None]]:
-        """The values of each component's status after a report on `~/state`; None: a number that is not finite."""
+        """Return the values of each component's status for a report on `~/state`; None if a number is not finite."""
         list(self.tracker.report(state))
         told: dict[str, dict[str, str | None]] = {
             name: {"state": component["state"], **{key: text(value) for key, value in component["variables"].items()}}
@@ -53,7 +53,7 @@ class Witness:
         return told
 
     def verdict(self, event: sct.Event) -> str:
-        """What is said of a command, as far as the engine knows it."""
+        """Return the status of a command, as far as the engine determines it."""
         if self.engine.enabled(event_name(event)):
             return "allowed"
         failing = [str(requirement.text) for requirement in self.engine.failing(event_name(event))]
@@ -66,12 +66,12 @@ class Witness:
 
 
 def text(value: object) -> str | None:
-    """A value of `~/state` as a status has it."""
+    """Return the text of a status for a value of `~/state`."""
     return value if isinstance(value, str | None) else json_text(value)  # type: ignore[arg-type]
 
 
 def compare(reports: list[dict[str, Any]], path: Path, node: str) -> list[dict[str, Any]]:
-    """Holds each report on `/diagnostics` against the last one on `~/state` before it; returns all their statuses."""
+    """Compare each report on `/diagnostics` with the last one on `~/state` before it; return all statuses."""
     witness, statuses, expected = Witness(path), [], None
     told = [report for report in reports if report["topic"] != "definition"]
     names = [f"{node}: {parts.name}" for parts in components(witness.graph)]
@@ -115,18 +115,18 @@ def test_a_layer_says_what_its_engine_knows_and_what_it_blocked(trial: Trial) ->
         (report["data"] for report in trial.reports if report["topic"] == "diagnostics"),
         key=lambda report: report["time"],
     ):
-        # What was blocked since the report before: nothing else.
+        # Commands blocked since the previous report, and no others.
         since = {
             f"{name.partition('.')[0].partition('_')[2]} was blocked"
             for time, name in blocked
             if before - CLOCKS <= time <= report["time"] + CLOCKS
         }
         faults = {fault for status in report["status"] for fault in status["message"].split("; ")[1:]}
-        # A goal that should have ended and has not is told, too, for as long as that lasts.
+        # A report also lists a goal that should have ended, as long as it has not.
         troubles = {fault for fault in faults if fault.startswith("/go_to: ")}
         assert all(trouble in trial.output for trouble in troubles), "the layer has warned of it"
         assert faults - troubles <= since
         told |= faults - troubles
         before = report["time"]
-    # Each of these was blocked in several steps, with reports in between.
+    # The layer blocked each of these in several steps, with reports in between.
     assert told == {"speed was blocked", "light was blocked", "go_to was blocked"}

@@ -1,4 +1,4 @@
-"""The emergency stop of the library over ROS 2: a node that is killed and restarted knows nothing of the button."""
+"""The library's emergency stop over ROS 2: a killed and restarted node does not remember the button."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from tests.ros.running import Runner
 
-#: Patient, so that a machine that is busy is not taken for a button that is silent.
+#: Long timeouts, so that a busy machine does not count as a silent button.
 ROVER = """
 robot Rover {
   component EmergencyStop from EmergencyStopLibrary import PeriodicEmergencyStop(patience: 5000)
@@ -61,7 +61,7 @@ def test_a_node_that_is_restarted_while_the_button_is_pressed_does_not_move(run_
         processes.wait_until(
             lambda: is_set_going() or len(speeds(before)) > 20, "the restarted node sends, whoever wants it to go on"
         )
-        # None of these is on its way any more when the button is released.
+        # Commands from before this point have arrived when the button is released.
         sent = len(speeds())
         processes.wait_until(lambda: len(speeds(sent)) > 20, "the node goes on sending")
         world.do("repeat", topic=BUTTON, fields={"data": False}, hz=20)

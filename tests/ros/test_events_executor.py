@@ -1,4 +1,4 @@
-"""Compiled nodes in an events executor of ROS 2: it queues the calls of timers that are up."""
+"""Compiled nodes in an events executor of ROS 2, which queues the callbacks of expired timers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The packages of ROS types that no registry has: they build, and the models that use them fit."""
+"""Packages of ROS types that no registry offers build and match the models that use them."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ def test_examples_fit(model: Path) -> None:
         ("line-follower-supervised", []),
         ("maze-solver", []),
         ("object-finder", []),
-        # A pose estimate holds the pose one level deeper; nobody reads it.
+        # A pose estimate has the pose one level deeper; the model does not read it.
         ("obstacle-navigation", [("interface-unused", 20), ("interface-unused", 21)]),
         ("simple-navigation", [("interface-unused", 20), ("interface-unused", 21)]),
-        # The detector counts pixels, the model has doubles: what comes in may be converted.
+        # The detector counts pixels in integers, the model has doubles: a received value may be converted.
         ("person-follower", []),
     ],
 )

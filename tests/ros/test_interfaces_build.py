@@ -1,4 +1,4 @@
-"""`robosc interfaces build`: modules for the wheels of ROS 2 of packages that no registry has."""
+"""`robosc interfaces build` builds modules for the ROS 2 wheels from packages that no registry offers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.ros.running import PROJECT, Runner
 if TYPE_CHECKING:
     from pathlib import Path
 
-#: Sends a message through what the middleware writes, and looks at what comes out.
+#: Serializes and deserializes a message with the middleware, and compares the results.
 ROUND_TRIP = """
 from rclpy.serialization import deserialize_message, serialize_message
 from alpha_msgs.msg import Track
@@ -29,7 +29,7 @@ print(sent.marks[0].number)
 
 @pytest.fixture
 def packages(tmp_path: Path) -> Path:
-    """Two packages: the first by its name uses a type of the second, and one of ROS."""
+    """Two packages: the first one by name uses a type of the second one and a type of ROS."""
     folder = tmp_path / "packages"
     write(folder / "alpha_msgs/msg/Track.msg", "std_msgs/Header header\nzeta_msgs/Mark[] marks\n")
     write(folder / "zeta_msgs/msg/Mark.msg", "int32 number\n")
@@ -42,7 +42,7 @@ def write(file: Path, text: str) -> None:
 
 
 def robosc(runner: Runner, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    """Calls the tool with the Python of the wheels."""
+    """Run the tool in the Python of the wheels."""
     command = [runner.ros.python, "-m", "robosc", *arguments]
     environment = {**runner.ros.environment, "PYTHONPATH": str(PROJECT)}
     return subprocess.run(command, env=environment, capture_output=True, text=True, check=False)

@@ -1,4 +1,4 @@
-"""Arrays and objects that a node keeps, over a real ROS: stored whole and in parts, handed on when they change."""
+"""Arrays and objects that a node stores, over a real ROS: whole and in parts, sent when they change."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ HERE = Path(__file__).parent
 
 
 def test_what_came_in_is_kept_and_handed_on(nodes: Workspace | Runner, tmp_path: Path) -> None:
-    """`do route := value.poses`, `provide go with { pose: Mission.route[0] }`, `send: change`.
+    """The node executes `do route := value.poses`, `provide go with { pose: Mission.route[0] }`, and `send: change`.
 
-    Of what can't be read nothing is stored; what holds a number that is not finite is withheld as a whole, and said.
-    The event log shows all of what is kept.
+    It stores nothing of unreadable data. It withholds a value with a number that is not finite as a whole, and warns.
+    The event log contains the whole stored data.
     """
     folder, log = tmp_path / "run", tmp_path / "events.jsonl"
     with middleware(nodes, folder) as processes:
@@ -48,7 +48,7 @@ def test_what_came_in_is_kept_and_handed_on(nodes: Workspace | Runner, tmp_path:
         ],
         "/stamped": [[7.0, 0.0], [1.6, 0.5], [2.0, 0.5], [2.5, 0.25]],
         "/text": ["ab", "last"],
-        # An object that nothing was stored in.
+        # An object in which nothing was stored.
         "/seated": [1.0],
         "/turn": [1.0],
     }

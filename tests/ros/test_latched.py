@@ -1,4 +1,4 @@
-"""A stop button that is published once, and kept, before the node starts. Commands wait until it is heard."""
+"""A latched stop button that publishes once, before the node starts. Commands wait until the node receives it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_what_was_kept_is_heard_before_any_command(nodes: Workspace | Runner, tm
         world.do("advertise", topic="/estop", kind="std_msgs/Bool", latched=True)
         world.do("publish", topic="/estop", fields={"data": True})
         processes.wait_until(lambda: speeds()[:1] == [0.0], "the node hears the button")
-        # Another node of the button, whose messages nobody keeps.
+        # Another publisher of the button, whose messages are not latched.
         second = Peer(processes, nodes.ros.python, nodes.ros.version, "second")
         second.do("advertise", topic="/estop", kind="std_msgs/Bool")
         processes.wait_until(lambda: second.do("listeners", topic="/estop"), "the node hears both")

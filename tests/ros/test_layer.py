@@ -1,7 +1,7 @@
-"""The supervisory layer between an unmodified controller and a robot, on a live graph.
+"""The supervisory layer between an unmodified controller and a robot, in a running ROS graph.
 
-The model is `tests/m2t/layer/usher.rscd`, the controller `usher_driver.py`, started with the remappings of the
-generated launch file; the robot and the steps are those of `usher_trial.py`.
+The model is `tests/m2t/layer/usher.rscd`. The controller is `usher_driver.py`, started with the remappings of the
+generated launch file. The robot and the steps are those of `usher_trial.py`.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ UNANSWERED = "the server does not answer the request to cancel the goal within 2
 
 @dataclass(frozen=True)
 class Trial:
-    """What reached whom in each step, what was blocked, and in which states the layer was; what it told and printed."""
+    """Messages to robot and controller, blocked commands and states of each step; log, reports and output."""
 
     steps: dict[str, Any]
     log: list[dict[str, Any]]
@@ -36,23 +36,23 @@ class Trial:
     output: str
 
     def robot(self, step: str) -> list[Any]:
-        """What the robot received."""
+        """Return the messages that the robot received in a step."""
         received: list[Any] = self.steps[step]["robot"]
         return received
 
     def controller(self, step: str) -> list[Any]:
-        """What the controller was told."""
+        """Return the messages that the controller received in a step."""
         told: list[Any] = self.steps[step]["controller"]
         return told
 
     def blocked(self, step: str) -> list[tuple[str, str, list[str]]]:
-        """What was blocked, and why."""
+        """Return the commands that the layer blocked in a step, and the reasons."""
         return [(entry["name"], entry["reason"], entry["because"]) for entry in self.steps[step]["blocked"]]
 
 
 @pytest.fixture(scope="module")
 def trial(layers: Workspace | Runner, tmp_path_factory: pytest.TempPathFactory) -> Trial:
-    """The trial, once, of the compiled layer and of the one run straight from its model."""
+    """Run the trial once with the compiled layer, and once with the layer run from its model."""
     folder = tmp_path_factory.mktemp("layer") / "run"
     results, log, reports = folder / "results.json", folder / "events.jsonl", folder / "reports.jsonl"
     python = layers.ros.python
@@ -74,7 +74,7 @@ def trial(layers: Workspace | Runner, tmp_path_factory: pytest.TempPathFactory) 
 
 
 def command(layers: Workspace | Runner, *parameters: str) -> Sequence[str | Path]:
-    """What starts the layer."""
+    """Return the command that starts the layer."""
     if isinstance(layers, Runner):
         settings = USHER / "controller-config.json"
         return layers.command(USHER / "usher.rscd", *parameters, layer=True, configuration=settings)
@@ -82,7 +82,7 @@ def command(layers: Workspace | Runner, *parameters: str) -> Sequence[str | Path
 
 
 def remapped() -> list[str]:
-    """The arguments with which the launch file starts the controller."""
+    """Return the arguments with which the launch file starts the controller."""
     text = (USHER / "ros2-layer" / "launch" / "usher_layer.launch.py").read_text()
     remaps = launched(text).of("Node")[1].named["remappings"]
     return ["--ros-args", *(word for name, other in remaps for word in ("-r", f"{name}:={other}"))]
@@ -104,7 +104,7 @@ def test_what_can_not_be_read_is_handed_on_but_counts_as_not_received(trial: Tri
 
 
 def test_what_a_requirement_forbids_is_blocked_and_told(trial: Trial) -> None:
-    # The layer sends what the model provides, once, in the place of what it blocks.
+    # The layer sends the provided data of the model, once, in place of the blocked command.
     assert trial.robot("low") == [["speed", 0.25]]
     assert trial.blocked("low") == [("Drive.speed", "requirement", ["requirement speed needs Guard.charge > 20"])]
     assert trial.steps["low"]["blocked"][0]["components"]["Guard"] == {"state": "clear", "variables": {"charge": 10}}
@@ -112,7 +112,7 @@ def test_what_a_requirement_forbids_is_blocked_and_told(trial: Trial) -> None:
 
 
 def test_the_supervisor_hears_before_the_controller(trial: Trial) -> None:
-    # The controller sends a speed as soon as it hears of the stop: twenty times.
+    # The controller sends a speed as soon as it receives the stop: twenty times.
     assert trial.robot("stops") == []
     assert trial.blocked("stops") == 20 * [("Drive.speed", "requirement", ["requirement speed needs Guard.clear"])]
     told = [(entry["direction"], entry["event"]) for entry in trial.log]
@@ -130,7 +130,7 @@ def test_a_service_is_called_and_answers(trial: Trial) -> None:
 def test_a_second_call_is_busy(trial: Trial) -> None:
     assert trial.robot("two calls") == [["light", True]]
     assert trial.blocked("two calls") == [("Lamp.light", "busy", [])]
-    # Both calls wait for their answers, and no order is promised.
+    # Both calls wait for their answers, in any order.
     assert sorted(trial.controller("two calls")) == [["light", False], ["light", True]]
 
 
@@ -164,11 +164,11 @@ def test_the_controller_may_always_cancel(trial: Trial) -> None:
 
 def test_the_layer_cancels_a_goal_whose_requirement_has_fallen(trial: Trial) -> None:
     assert trial.robot("cancelled by the layer") == [["go_to", 6.0], ["cancel", True]]
-    # ROS promises no order across topics.
+    # ROS does not preserve order across topics.
     assert sorted(trial.controller("cancelled by the layer")[:2]) == [["go_to", "CANCELED"], ["stop", True]]
     happened = events(trial, "cancelled by the layer")
     assert happened[:3] == ["action_go_to.c_trigger", "message_stop.u_response", "action_go_to.c_cancel"]
-    # The robot may be ready to go on before the goal has ended.
+    # The robot may send resume before the goal has ended.
     assert sorted(happened[3:]) == ["action_go_to.u_canceled", "message_resume.u_response"]
     assert trial.controller("the next goal") == [["go_to", "SUCCEEDED"]]
 
@@ -191,7 +191,7 @@ def test_a_goal_that_is_accepted_too_late_is_cancelled(trial: Trial) -> None:
 
 def test_a_cancel_that_the_robot_refuses_is_told(trial: Trial) -> None:
     step = "a cancel that the robot refuses"
-    # The layer asks again.
+    # The layer repeats the request.
     assert trial.robot(step)[:2] == [["go_to", 11.0], ["cancel", True]]
     assert ["go_to", "SUCCEEDED"] in trial.controller(step)
     assert "action_go_to.u_response" in events(trial, step)
@@ -235,11 +235,11 @@ def test_everything_fits_its_schema(trial: Trial) -> None:
         validator = Draft202012Validator(json.loads(locate(f"schemas/{name}.schema.json").read_text()))
         assert lines
         assert not [error for line in lines for error in validator.iter_errors(line)]
-    # Provided data is none of the layer's business.
+    # Provided data has no events in a layer.
     assert not [entry for entry in trial.log if entry["event"].startswith("data_")]
 
 
 def events(trial: Trial, step: str) -> list[str]:
-    """The events of a step, as `~/state` tells them, but for the battery's, which ends each step."""
+    """Return the events of a step by `~/state`, except those of the battery message that ends each step."""
     happened = [event for state in trial.steps[step]["states"] for event in state["transitions"]]
     return [event for event in happened if event != "message_battery.u_response"]

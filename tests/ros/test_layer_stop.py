@@ -1,4 +1,4 @@
-"""A layer blocks the stop of its controller; the robot stops all the same."""
+"""The robot stops even if the layer blocks the stop of its controller."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Times in a supervisory layer, on a live graph: what passes because of them, and what does not any more."""
+"""Times of a supervisory layer in a running ROS graph: commands that they permit, and commands that they block."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MOVE = "message_move.c_trigger"
 
 
 def test_times_let_pass_and_block(layers: Workspace | Runner, tmp_path: Path) -> None:
-    """`after 1.0 s goto rotating` lets moves pass, `after 500 ms without scan goto blind` blocks them."""
+    """`after 1.0 s goto rotating` permits moves, `after 500 ms without scan goto blind` blocks them."""
     folder, log = tmp_path / "run", tmp_path / "events.jsonl"
     parameter = f"event_log:={log}"
     with middleware(layers, folder) as processes:
@@ -61,19 +61,19 @@ def test_times_let_pass_and_block(layers: Workspace | Runner, tmp_path: Path) ->
 
 
 def lines(log: Path) -> list[dict[str, Any]]:
-    """The entries of an event log; its last line may not be whole yet."""
+    """Return the entries of an event log without an incomplete last line."""
     if not log.exists():
         return []
     return [json.loads(line) for line in log.read_text().splitlines(keepends=True) if line.endswith("\n")]
 
 
 def ended(entries: list[dict[str, Any]]) -> bool:
-    """Whether moves have passed, and are blocked now because no scan comes."""
+    """Whether the layer has forwarded moves, and now blocks them because no scan arrives."""
     moves = [entry["direction"] for entry in entries if entry["event"] == MOVE]
     silent, blind = (last(entries, event) for event in (SCAN, BLIND))
     return silent < blind and "out" in moves and any(entry["event"] == MOVE for entry in entries[blind:])
 
 
 def last(entries: list[dict[str, Any]], event: str) -> int:
-    """Where an event is last; before the first where it is not."""
+    """Return the index of the last entry of an event, or -1."""
     return max((at for at, entry in enumerate(entries) if entry["event"] == event), default=-1)

@@ -1,7 +1,7 @@
 """The line follower drives: a generated package, built by the platform's own tool, on real topics.
 
-Happenings are those of the simulator's scenario. How fast the machine is does not matter: simulated time waits for the
-controller.
+The events in the world are those of the simulator's scenario. The speed of the machine does not matter: simulated time
+waits for the controller.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from tests.scenarios.runs import moved_while_stopped, poses
 if TYPE_CHECKING:
     from tests.ros.conftest import Drive
 
-#: Seconds for a message on its way and for the ticks that answer it.
+#: Seconds for a message to arrive and for the ticks that answer it.
 TRANSPORT = 0.8
 GOING = "the robot is set going"
 OBSTACLE, CLEAR = "an obstacle is put on the line", "the obstacle is taken away"
@@ -74,7 +74,7 @@ def test_moves_only_in_states_that_allow_it(drive: Drive) -> None:
 def test_does_nothing_that_is_forbidden_in_its_scenario(drive: Drive) -> None:
     log = [*drive.log]
     while log[-1]["direction"] == "outside":
-        # At the very end, when it is shut down, the node halts the robot whatever the requirements say.
+        # When the node shuts down, it halts the robot independently of the requirements.
         log.pop()
     assert sum(entry["direction"] == "out" for entry in log) >= 3
     assert BOOKS["line_follower"]().violations(log) == []
@@ -85,7 +85,7 @@ def test_does_nothing_that_is_forbidden_in_its_scenario(drive: Drive) -> None:
 def test_what_is_received_is_what_was_decided(drive: Drive) -> None:
     received = [(linear, angular) for _, linear, angular in drive.commands()]
     decided = commands_in(drive.log)
-    # What the node sends before the world listens, and when the world has ended, nobody hears.
+    # The world misses commands from before its connection and from after its end.
     starts = [at for at in range(len(decided)) if decided[at : at + len(received)] == received]
     assert starts, "the commands on /cmd_vel are not those in the event log"
     assert len(received) > 0.9 * len(decided)
@@ -93,7 +93,7 @@ def test_what_is_received_is_what_was_decided(drive: Drive) -> None:
 
 def test_answers_in_every_tick(drive: Drive) -> None:
     sent = {entry["event"] for entry in drive.log if entry["direction"] == "out"}
-    # A report is the end of a tick.
+    # The node sends a report at the end of each tick.
     ticks = [report["data"] for report in drive.reports if report["topic"] == "state"]
     assert all(sent & set(tick["transitions"]) for tick in ticks[1:])
     periods = [later["time"] - earlier["time"] for earlier, later in pairwise(ticks)]
@@ -116,16 +116,16 @@ def test_reports_state_and_definition(drive: Drive) -> None:
         for state in component["states"]
     }
     assert seen == declared
-    # The last time somebody presses continue; the listener may have missed the first.
+    # The listener may miss the first of two messages on continue.
     assert sum(event == "message_continue.u_response" for state in states for event in state["transitions"]) in (1, 2)
     assert all(state["transitions"] for state in states[1:])
     told = [event for state in states for event in state["transitions"]]
     happened = [entry["event"] for entry in drive.log]
     first = next((at for at in range(len(happened)) if happened[at : at + len(told)] == told), None)
     assert first is not None, "from the first report on each event is told, once, in its order"
-    # ROS 2 may find the listener late.
+    # ROS 2 may discover the listener late.
     assert len(told) > len(happened) / 2
-    # In every tick something is sent, and reported. A few commands more are answers that wait for no tick.
+    # The node sends a command and a report in each tick. A few more commands are reactions, which wait for no tick.
     ticks = sum(entry["direction"] == "out" for entry in drive.log[first : first + len(told)])
     assert ticks * 0.9 < len(states) <= ticks + 2
 
@@ -151,6 +151,6 @@ def validate(instances: list[Any], schema: str) -> None:
 
 
 def moves(drive: Drive, start: float, end: float) -> bool:
-    """Whether the robot was told to move, all the time and the way the model says."""
+    """Whether all commands in an interval are moves with the velocity of the model."""
     commands = drive.commands(start, end)
     return bool(commands) and all(linear == 0.2 for _, linear, _ in commands)

@@ -1,4 +1,4 @@
-"""The second opinion itself: it must object to what it is there to object to."""
+"""The independent rules object to faulty commands of the line follower."""
 
 from __future__ import annotations
 

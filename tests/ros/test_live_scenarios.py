@@ -1,4 +1,4 @@
-"""`robosc test` with a node: scenarios of users over ROS 2, on nodes run from models and on a compiled one."""
+"""`robosc test` with a node: users' scenarios over ROS 2, on nodes run from models and on a compiled node."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ scenario "a call that fails, a pause, and another call"
 def played(
     nodes: Workspace | Runner, python: str, folder: Path, text: str, *options: str, model: Path = LINE_FOLLOWER
 ) -> tuple[int, str]:
-    """The exit status of `robosc test`, and what it said."""
+    """Run `robosc test`; return its exit status and its output."""
     scenarios = folder / "own.scenarios"
     scenarios.write_text(text, encoding="utf-8")
     command = [python, "-m", "robosc", "test", str(model), str(scenarios), "--ros2", *options]
@@ -233,7 +233,7 @@ scenario "lost"
 
 
 def test_reasons_of_errors(run_ros2: Runner, tmp_path: Path) -> None:
-    """Where no test server can bring about a reason, that is told at the line; no call fails at once."""
+    """The command reports, at its line, each reason that no test server can cause: a lost goal, a failed call."""
     model = tmp_path / "carrier.rscd"
     model.write_text(CARRIER, encoding="utf-8")
     status, said = played(run_ros2, run_ros2.ros.python, tmp_path, FAILS, model=model)
@@ -247,7 +247,7 @@ def test_reasons_of_errors(run_ros2: Runner, tmp_path: Path) -> None:
 
 
 def test_a_node_that_does_something_else_is_told_at_the_line(run_ros2: Runner, tmp_path: Path) -> None:
-    """It has forgotten its stop button."""
+    """The node ignores its stop button."""
     shutil.copytree(LINE_FOLLOWER.parent, tmp_path / "careless")
     model = tmp_path / "careless" / LINE_FOLLOWER.name
     text = model.read_text(encoding="utf-8")
@@ -309,7 +309,7 @@ scenario "a fix without a status"
 
 
 def test_data_that_is_left_out(run_ros2: Runner, tmp_path: Path) -> None:
-    """A field that a scenario leaves out has the default of its definition, here and in the node."""
+    """A field missing in a scenario has the default of its definition, in the test and in the node."""
     model = tmp_path / "route.rscd"
     model.write_text(ROUTE, encoding="utf-8")
     status, said = played(run_ros2, run_ros2.ros.python, tmp_path, LEFT_OUT, model=model)

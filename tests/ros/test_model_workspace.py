@@ -1,6 +1,6 @@
-"""A workspace with a package for a model, one for an interface and one for the simulated robot, as in the examples.
+"""A workspace with packages for a model, an interface and a simulated robot, as in the examples.
 
-One call of the platform's own tool builds it, and what has not changed is not built again: docs/workspace.md.
+One call of the platform's own tool builds it, and a second call builds only changed files: docs/workspace.md.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
-#: Where the build has put things, for each ROS.
+#: Files of the build, for each ROS version.
 NODE = "person_follower_controller"
 INSTALLED = {
     1: {
@@ -53,7 +53,7 @@ ONLOOKER = {1: "devel/lib/downstream/downstream_onlooker", 2: "install/downstrea
 
 @pytest.fixture(scope="session", params=[1, 2], ids=["ros1", "ros2"])
 def model_workspace(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Workspace:
-    """`examples/workspace`, word for word as the page says, and a package that uses what the model exports."""
+    """`examples/workspace`, built by the commands on the page, and a package that uses the exports of the model."""
     ros = with_robosc(found_or_skipped(f"ros{request.param}", {1: find_ros1, 2: find_ros2}[request.param]()))
     home = tmp_path_factory.mktemp("home")
     folder = home / {1: "catkin_ws", 2: "ros2_ws"}[ros.version]
@@ -72,7 +72,7 @@ def model_workspace(request: pytest.FixtureRequest, tmp_path_factory: pytest.Tem
 
 
 def with_robosc(ros: Ros) -> Ros:
-    """An installation beside which `robosc` is found, after its own programs."""
+    """Return an installation whose path ends with the folder of `robosc`."""
     own = ros.environment
     found = {
         "PATH": f"{own['PATH']}{os.pathsep}{Path(sys.executable).parent}",
@@ -84,14 +84,14 @@ def with_robosc(ros: Ros) -> Ros:
 
 @dataclass(frozen=True)
 class Built:
-    """How a build has ended, and all that it said."""
+    """Exit status and output of a build."""
 
     status: int
     output: str
 
 
 def build(workspace: Workspace, *arguments: str) -> Built:
-    """Builds again what was built, as its user would."""
+    """Build a workspace again, like a user."""
     colcon = ["colcon", "build", "--event-handlers", "console_direct+"]
     done = subprocess.run(
         [*(["catkin_make"] if workspace.ros.version == 1 else colcon), *arguments],
@@ -115,7 +115,7 @@ def test_the_page_shows_the_package(version: int) -> None:
 
 
 def test_it_drives(model_workspace: Workspace, tmp_path: Path) -> None:
-    """One launch file starts the controller, from where the build has put it, and the world around the robot."""
+    """One launch file starts the installed controller and the world around the robot."""
     version = model_workspace.ros.version
     folder, events, seen = tmp_path / "run", tmp_path / "events.jsonl", tmp_path / "record.jsonl"
     with middleware(model_workspace, folder, simulated=True) as processes:
@@ -131,7 +131,7 @@ def test_it_drives(model_workspace: Workspace, tmp_path: Path) -> None:
     if version == 1:
         log = lines(events)
         while log[-1]["direction"] == "outside":
-            # At the very end, when it is shut down, the node halts the robot whatever the requirements say.
+            # When the node shuts down, it halts the robot independently of the requirements.
             log.pop()
         assert sum(entry["direction"] == "out" for entry in log) >= 3
         assert BOOKS["person_follower"]().violations(log) == []
@@ -149,7 +149,7 @@ def test_a_second_build_does_nothing(model_workspace: Workspace) -> None:
 
 
 def test_what_is_installed(model_workspace: Workspace) -> None:
-    """What a node needs that runs from the installed workspace alone."""
+    """The installed workspace contains everything that a node needs."""
     version = model_workspace.ros.version
     done = build(model_workspace, *(["install"] if version == 1 else []))
     assert done.status == 0, done.output
@@ -170,7 +170,7 @@ def test_a_comment_compiles_nothing(model_workspace: Workspace) -> None:
 
 
 def test_traces_are_played(model_workspace: Workspace, tmp_path: Path) -> None:
-    """Against the node that is part of the package, by the generated test."""
+    """The generated test plays the traces against the node of the package."""
     version = model_workspace.ros.version
     prefixes = model_workspace.ros.environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
     if version == 2 and not any(
@@ -187,18 +187,18 @@ def test_traces_are_played(model_workspace: Workspace, tmp_path: Path) -> None:
         done = build(model_workspace, *(["run_tests_follower_robot"] if version == 1 else []))
         if version == 2:
             with middleware(model_workspace, tmp_path / "run") as processes:
-                # The domain, which only this run has.
+                # This run has a ROS domain of its own.
                 played(
                     ["colcon", "test", "--packages-select", "follower_robot"], model_workspace, processes.environment
                 )
         results = {1: ["catkin_test_results", "build/test_results"], 2: ["colcon", "test-result", "--verbose"]}[version]
         told = played(results, model_workspace, model_workspace.environment())
-        # The launch system counts two for each trace, CTest the program.
+        # The launch system counts two tests for each trace, CTest counts the program.
         assert f"Summary: {1 + version} tests, 0 errors, 0 failures, 0 skipped" in told, done.output + told
 
 
 def test_what_stops_a_build(model_workspace: Workspace) -> None:
-    """Each fault in its turn; afterwards all is built again at once, as a build takes seconds."""
+    """Each fault stops the build. One build at the end repairs everything, because a build takes seconds."""
     a_fault_stops_it_with_its_place(model_workspace)
     what_the_package_does_not_declare_is_listed(model_workspace)
     a_definition_that_changes_is_read_again(model_workspace)
@@ -222,7 +222,7 @@ def a_fault_stops_it_with_its_place(model_workspace: Workspace) -> None:
 
 
 def a_definition_that_changes_is_read_again(model_workspace: Workspace) -> None:
-    """The model is checked against it: what the build depends on follows from the model."""
+    """The build depends on the definitions that the model uses, and checks the model against them."""
     definition = source(model_workspace, "bboxes_ex_msgs", "msg/BoundingBox.msg")
     text = definition.read_text(encoding="utf-8")
     with touched_later(definition, text.replace("img_width", "img_breadth")):
@@ -246,12 +246,12 @@ def what_the_package_does_not_declare_is_listed(model_workspace: Workspace) -> N
 
 
 def played(command: list[str], workspace: Workspace, environment: dict[str, str]) -> str:
-    """What a command prints that plays traces, or counts the results."""
+    """Return the output of a command that plays traces or counts results."""
     return subprocess.run(
         command, cwd=workspace.folder, env=environment, capture_output=True, text=True, check=False
     ).stdout
 
 
 def lines(path: Path) -> list[dict[str, Any]]:
-    """The objects in a file of JSON lines."""
+    """Return the objects in a file of JSON lines."""
     return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]

@@ -22,14 +22,14 @@ HERE = Path(__file__).parent
 
 
 def test_they_are_set_at_the_start(nodes: Workspace | Runner, tmp_path: Path) -> None:
-    """Read at start in ROS 1: data and times have the values that are set."""
+    """Data and times have the values of the parameters from the start, also in ROS 1."""
     dot = "/" if nodes.ros.version == 1 else "."
     given = ("speed:=0.5", f"Base{dot}factor:=1.0", f"Lamp{dot}pause:=0.02")
     assert heard(nodes, tmp_path / "run", given) == {"lit": True}
 
 
 def heard(nodes: Workspace | Runner, folder: Path, given: Sequence[str], *options: str) -> Any:
-    """What `set_parameters.py` writes of a node with these parameters."""
+    """Run a node with these parameters; return the result of `set_parameters.py`."""
     with middleware(nodes, folder) as processes:
         processes.start("node", one_process(nodes, "cruise_controller", *given))
         out = folder / "heard.json"
@@ -41,7 +41,7 @@ def heard(nodes: Workspace | Runner, folder: Path, given: Sequence[str], *option
 
 
 def test_they_change_while_the_node_runs(nodes: Workspace | Runner, tmp_path: Path) -> None:
-    """Declared with range and description, changed between batches, a value that does not fit refused with why."""
+    """The node declares ranges and descriptions, applies changes between batches, and rejects unfit values."""
     if nodes.ros.version == 1:
         pytest.skip("ROS 1 reads parameters at the start")
     found = heard(nodes, tmp_path / "run", (), "--running")

@@ -1,7 +1,7 @@
-"""An obstacle stops the line follower at once, and not at the control loop's next tick.
+"""An obstacle stops the line follower at once, not at the control loop's next tick.
 
-The clock stands still meanwhile: a node that waited for a tick would never stop. How soon it stops, depends on the
-machine: `benchmarks/reaction.py` measures it.
+The clock does not run meanwhile: a node that waits for a tick would never stop. The reaction time depends on the
+machine; `benchmarks/reaction.py` measures it.
 """
 
 from __future__ import annotations

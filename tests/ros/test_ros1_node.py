@@ -1,4 +1,4 @@
-"""What only a ROS 1 node has: the arguments of its launch file, parameters of any type, ways in which it is ended."""
+"""Features of ROS 1 nodes: arguments of the launch file, parameters of any type, and kinds of shutdown."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PACKAGE = "porter_controller"
 
 @dataclass(frozen=True)
 class Graph:
-    """A workspace with a master, and a peer `world` that hears `/cmd_vel`."""
+    """A workspace with a master, and a peer `world` that listens to `/cmd_vel`."""
 
     workspace: Workspace
     processes: Processes
@@ -37,7 +37,7 @@ class Graph:
         return self.workspace.folder / f"devel/lib/{PACKAGE}/{PACKAGE}"
 
     def python(self, code: str) -> str:
-        """What a piece of code prints, with `master` and `param` at hand."""
+        """Return the output of a piece of code that may use `master` and `param`."""
         begin = "import rosgraph; master = rosgraph.Master('/test'); param = master.getParam\n"
         command = [self.workspace.ros.python, "-c", begin + code]
         done = subprocess.run(
@@ -46,7 +46,7 @@ class Graph:
         return done.stdout.strip()
 
     def ask(self, node: str, *request: str) -> str:
-        """What a node answers to a request of ROS 1's slave API."""
+        """Return a node's answer to a request of the ROS 1 slave API."""
         method, *arguments = request
         values = ", ".join(map(repr, ["/test", *arguments]))
         return self.python(
@@ -55,7 +55,7 @@ class Graph:
         )
 
     def connections(self, kind: int, topic: str) -> str:
-        """The nodes that publish (0) or listen to (1) a topic, or offer a service (2)."""
+        """Return the nodes that publish (0) or subscribe to (1) a topic, or offer a service (2)."""
         return self.python(f"print(*dict(master.getSystemState()[{kind}]).get({topic!r}, []))")
 
     def wait_for(self, kind: int, topic: str, node: str) -> None:
@@ -131,7 +131,7 @@ def test_a_wrong_parameter_keeps_the_node_from_starting(graph: Graph, parameter:
 
 
 def started(graph: Graph, name: str) -> subprocess.Popen[bytes]:
-    """A node that is at rest; whatever arrives on /cmd_vel after this is what it sends at its end."""
+    """Start a node and wait until it is connected and at rest: later messages on /cmd_vel are those of its end."""
     events = graph.folder / f"{name}.jsonl"
     parameters = ["_watchdog_stops:=false", "_period_ms:=3600000", f"_event_log:={events}"]
     node = graph.processes.start(name, [graph.executable, f"__name:={name}", *parameters])

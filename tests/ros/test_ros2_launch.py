@@ -1,4 +1,4 @@
-"""The launch files of ROS 2 in its own launch system, wherever that is installed: what they start, and with what."""
+"""The launch files of ROS 2 in the installed launch system start the right nodes with the right arguments."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.ros.installations import Ros, find_ros2
 HERE = Path(__file__).parent
 ROBOT = "supervised_line_follower"
 LAYER, CONTROLLER = f"{ROBOT}_layer", f"{ROBOT}_controller"
-#: Instead of a node: tells its arguments, and what is in the files with parameters.
+#: Stand-in for a node: prints its arguments and the content of its parameter files.
 NODE = """\
 #!/bin/sh
 echo "started ${0##*/} $*"
@@ -36,7 +36,7 @@ def ros() -> Ros:
 
 @pytest.fixture(scope="module")
 def prefix(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a layer and its controller, installed, whose nodes are stand-ins."""
+    """A folder with an installed layer and its controller, whose nodes are stand-ins."""
     folder = tmp_path_factory.mktemp("prefix")
     controller = {"launch": {"packageName": CONTROLLER, "file": f"{CONTROLLER}.launch.py"}}
     settings = Configuration.model_validate({"supervisor": {"controller": controller}})
@@ -60,7 +60,7 @@ def prefix(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def started(ros: Ros, prefix: Path, how: str, *arguments: str) -> dict[str, str]:
-    """What the layer and its controller were started with, and said, by their packages."""
+    """Start the layer and its controller; return their arguments and output, by package."""
     file = prefix / "share" / LAYER / "launch" / f"{LAYER}.launch.py"
     done = subprocess.run(
         [ros.python, HERE / "launch_ros2.py", file, how, *arguments],

@@ -1,4 +1,4 @@
-"""What only a ROS 2 node has: it is a component, may be a managed node, and describes its parameters."""
+"""Features of ROS 2 nodes: components, managed nodes, and descriptions of parameters."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from tests.ros.processes import Processes
 
 HERE = Path(__file__).parent
-#: Transitions of managed nodes, as lifecycle_msgs numbers them.
+#: Transitions of managed nodes, with the numbers of lifecycle_msgs.
 CONFIGURE, CLEAN_UP, ACTIVATE, DEACTIVATE = 1, 2, 3, 4
-#: In place of rclcpp's own: its part of a transition (activate, deactivate) ends in an error.
+#: Replacement for rclcpp's part of a transition (activate, deactivate), which fails.
 FAILING = "unsigned char _ZN16rclcpp_lifecycle13LifecycleNode{}on_{}ERKNS_5StateE(void) {{ return 99; }}"
-#: How often components come and go; a multi-threaded container without their guard does not outlive ten times.
+#: Number of rounds of loading and unloading. An unguarded component in a multi-threaded container fails within ten.
 ROUNDS = os.environ.get("ROBOSC_ROUNDS", "20")
 HALT = ("outside", "message_halt.c_trigger")
 #: Events of `managed/watch.rscd`.
@@ -38,7 +38,7 @@ SPEED, BEEP = "message_speed.c_trigger", "message_beep.c_trigger"
 
 @dataclass(frozen=True)
 class Graph:
-    """A workspace, a peer `world` that hears commands, and someone who manages nodes."""
+    """A workspace, a peer `world` that receives commands, and a manager of nodes."""
 
     workspace: Workspace
     processes: Processes
@@ -47,7 +47,7 @@ class Graph:
     nodes: list[subprocess.Popen[bytes]] = field(default_factory=list)
 
     def manage(self, *command: str | Path | int) -> Any:
-        """What `manage_ros2.py` answers."""
+        """Return the answer of `manage_ros2.py`."""
         done = subprocess.run(
             [self.workspace.ros.python, HERE / "manage_ros2.py", *map(str, command)],
             env=self.processes.environment,
@@ -62,18 +62,18 @@ class Graph:
     def start(
         self, package: str, name: str, *parameters: str, preloaded: Path | str = ""
     ) -> tuple[subprocess.Popen[bytes], Path]:
-        """A node by itself, and its event log."""
+        """Start a node in a process of its own; return the process and the event log."""
         log = self.folder / f"{name}.jsonl"
         command = ["env", f"LD_PRELOAD={preloaded}", *self.workspace.node(package, f"event_log:={log}", *parameters)]
         self.nodes.append(self.processes.start(name, [*command, "-r", f"__node:={name}"]))
         return self.nodes[-1], log
 
     def change(self, node: str, *transitions: int) -> list[Any]:
-        """Asks a managed node for transitions, one after the other; whether each succeeded."""
+        """Request transitions of a managed node in turn; return whether each succeeded."""
         return [self.manage("change", node, transition) for transition in transitions]
 
     def commands(self, topic: str) -> int:
-        """How many commands the world has heard."""
+        """Return the number of commands that the world received."""
         return sum(entry["heard"] == topic for entry in self.world.all("heard"))
 
     def until_commanded(self, topic: str) -> None:
@@ -93,7 +93,7 @@ def world(ros2_workspace: Workspace, tmp_path_factory: pytest.TempPathFactory) -
 
 @pytest.fixture
 def graph(world: Graph) -> Iterator[Graph]:
-    """The world; nodes that a test has started end with it."""
+    """The world; after a test, it stops the nodes of that test."""
     yield world
     while world.nodes:
         node = world.nodes.pop()
@@ -102,13 +102,13 @@ def graph(world: Graph) -> Iterator[Graph]:
 
 
 def last(log: Path) -> tuple[str, str]:
-    """Direction and event of the last line of an event log."""
+    """Return direction and event of the last line of an event log."""
     entry = json.loads(log.read_text().splitlines()[-1])
     return entry["direction"], entry["event"]
 
 
 def log_of(log: Path, event: str) -> list[dict[str, Any]]:
-    """What a log says of an event, each time."""
+    """Return the entries of an event in a log."""
     entries = (json.loads(line) for line in log.read_text().splitlines())
     return [entry for entry in entries if entry["event"] == event]
 
@@ -116,7 +116,7 @@ def log_of(log: Path, event: str) -> list[dict[str, Any]]:
 def start_container(graph: Graph, program: str) -> subprocess.Popen[bytes]:
     prefixes = map(Path, graph.processes.environment["AMENT_PREFIX_PATH"].split(":"))
     containers = [prefix / "lib/rclcpp_components" / program for prefix in prefixes]
-    # It is not built with the sanitizer that what it loads may need.
+    # The container is built without the sanitizer of its components, so the sanitizer may need a preload.
     preloaded = f"LD_PRELOAD={os.environ.get('ROBOSC_PRELOAD', '')}"
     return graph.processes.start(program, ["env", preloaded, next(path for path in containers if path.exists())])
 
@@ -130,7 +130,7 @@ def test_two_components_in_one_container(graph: Graph) -> None:
     for log in logs.values():
         graph.processes.wait_until(lambda log=log: log.exists() and log.stat().st_size > 0, "events happen")
     assert graph.manage("unload", loaded["left"]["number"])
-    # It stops its robot while the other one goes on.
+    # The component stops its robot while the other one continues.
     assert last(logs["left"]) == HALT
     size = logs["right"].stat().st_size
     graph.processes.wait_until(lambda: logs["right"].stat().st_size > size, "the other component goes on")
@@ -169,7 +169,7 @@ def test_a_managed_node_acts_while_it_is_active(graph: Graph) -> None:
     assert silent == 0
     assert change(DEACTIVATE) == [True]
     assert last(log) == HALT
-    # It takes a while to ask the node: what was on its way has come, and there would be ten commands a second.
+    # The request takes so long that pending messages have arrived; an active node would send ten commands a second.
     assert change(CLEAN_UP) == [True]
     heard = graph.commands("/cmd_vel")
     assert change(CONFIGURE) == [True]
@@ -202,7 +202,7 @@ def test_a_managed_node_that_fails_is_still_and_can_be_configured_again(graph: G
 
 
 def test_a_managed_node_is_not_activated_while_a_goal_of_its_own_has_not_ended(graph: Graph) -> None:
-    """Nor cleaned up: it would forget the goal."""
+    """The node is not cleaned up either, because it would forget the goal."""
     server = Peer(graph.processes, graph.workspace.ros.python, 2, "server")
     server.do("accept_at_once", accept=True)
     server.do("on_cancel", answer="refuse")
@@ -239,7 +239,7 @@ def test_a_managed_node_that_is_not_active_ends_without_a_word(graph: Graph) -> 
 
 @dataclass(frozen=True)
 class Watch:
-    """The node of `managed/watch.rscd`, and what may be done with it."""
+    """The node of `managed/watch.rscd`, with operations on it."""
 
     graph: Graph
     node: subprocess.Popen[bytes]
@@ -255,7 +255,7 @@ class Watch:
         return len(log_of(self.log, event))
 
     def order(self, *numbers: float) -> None:
-        """Waits until it is heard."""
+        """Publish an order, and wait until the node receives it."""
         before, world = self.times(ORDER), self.graph.world
         self.graph.processes.wait_until(lambda: world.do("listeners", topic="/errand") == 1, "the node listens")
         world.do("publish", topic="/errand", fields={"data": numbers})
@@ -266,7 +266,7 @@ class Watch:
 
     @property
     def speeds(self) -> list[float]:
-        """What went out."""
+        """Return the speeds that the node sent."""
         return [entry["data"]["value"] for entry in log_of(self.log, SPEED)]
 
     def until_last(self, speed: float) -> None:
@@ -275,7 +275,7 @@ class Watch:
 
 @pytest.fixture
 def watch(graph: Graph) -> Watch:
-    """Configured, and not active yet."""
+    """The node, configured but not active yet."""
     (graph.folder / "watch.jsonl").unlink(missing_ok=True)
     graph.world.do("advertise", topic="/errand", kind="std_msgs/Float64MultiArray")
     watch = Watch(graph, *graph.start("managed_watch", "watch", "pause:=0.02"))
@@ -297,7 +297,7 @@ def test_no_time_is_up_while_a_managed_node_is_not_active(watch: Watch) -> None:
 
 
 def test_times_of_a_managed_node_start_anew_where_it_is_activated(watch: Watch) -> None:
-    """As long as the parameter says by then; one that runs keeps its length."""
+    """A restarted timer uses the current value of the parameter; a running one keeps its duration."""
     watch.change(ACTIVATE)
     watch.give("pause", 600.0)
     watch.order(0.5)
@@ -311,7 +311,7 @@ def test_times_of_a_managed_node_start_anew_where_it_is_activated(watch: Watch) 
 
 
 def test_a_managed_node_keeps_its_data_until_it_is_cleaned_up(watch: Watch) -> None:
-    """And sends on change what differs from what was sent last, once it is active; all of it, where it begins anew."""
+    """After activation the node sends values that differ from the last ones sent; after cleanup, every value."""
     watch.change(ACTIVATE)
     watch.until_last(0.0)
     watch.order(0.5, 2.0)
@@ -346,7 +346,7 @@ def test_a_managed_node_that_can_not_be_configured_is_connected_to_nothing(graph
     assert not graph.manage("change", "/unfit", CONFIGURE)
     assert "not configured: " in (graph.folder / "unfit.log").read_text()
     graph.processes.wait_until(lambda: graph.world.do("listeners", topic="/order") == 0, "nobody listens")
-    # Where it is unconfigured, it can be asked to try again.
+    # An unconfigured node accepts another attempt.
     assert not graph.manage("change", "/unfit", CONFIGURE)
     assert graph.processes.stop(node) == 0
 

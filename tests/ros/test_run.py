@@ -1,4 +1,4 @@
-"""Nodes run straight from their models: the same as the compiled ones, and what keeps them from starting."""
+"""Nodes run from their models behave like compiled ones; faults prevent them from starting."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ NAVIGATION = HERE.parents[1] / "examples" / "simple_navigation" / "simple_naviga
 
 
 def delivered(nodes: Workspace | Runner, folder: Path) -> tuple[dict[str, Any], set[str]]:
-    """What the courier reports and sends after each of the same inputs, and its log's different lines without time."""
+    """Return the courier's reports and messages after each input, and the distinct lines of its log without times."""
     steps, log = folder / "steps.json", folder / "events.jsonl"
     with middleware(nodes, folder) as processes:
         processes.start("node", nodes.node(PACKAGE, f"event_log:={log}"))
@@ -36,7 +36,7 @@ def delivered(nodes: Workspace | Runner, folder: Path) -> tuple[dict[str, Any], 
     for step in results.values():
         header = step["sent"].get("target", {}).get("header", {})
         header.pop("stamp", None)
-        step.pop("typed", None)  # only packages that are built have its type
+        step.pop("typed", None)  # only built packages have its type
     return results, {line.partition(",")[2] for line in log.read_text(encoding="utf-8").splitlines()}
 
 

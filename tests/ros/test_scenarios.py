@@ -1,8 +1,8 @@
-"""The scenarios over a real ROS: each goal is reached, and nothing forbidden was ever sent.
+"""The scenarios over a real ROS: each robot reaches its goal, and the controllers send no forbidden command.
 
-In simulated time, as fast as the controllers answer: how busy the machine is does not matter much. What the controller
-did is read from its own event log by the second opinions of `tests/scenarios/rules`. The line follower's scenario is
-that of `test_line_follower.py`, which asks for the same and more.
+The scenarios run in simulated time, as fast as the controllers answer, so the load of the machine matters little. The
+independent rules of `tests/scenarios/rules` judge each controller by its event log. The line follower's scenario is in
+`test_line_follower.py`, which checks the same and more.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-#: How many times as fast as real time the world runs, where the controllers keep up.
+#: Maximum speed of the world relative to real time.
 SPEED = 4
-#: Seconds of the world for a command on its way, and for the robot to come to rest.
+#: Seconds of the world for a command to arrive and for the robot to come to rest.
 ALLOWANCE = 1.0
-#: The scenario with a supervisory layer: its package, that of the controller behind it, and that one's model.
+#: The scenario with a supervisory layer: its package, the package of its controller, and the controller's model.
 LAYERS = {
     "supervised_line_follower": (
         "supervised_line_follower_layer",
@@ -36,14 +36,14 @@ LAYERS = {
         "controller/line_stepper.rscd",
     )
 }
-#: With topics, with an action, and behind a layer: these run over ROS 2, the others over ROS 1. `benchmarks/matrix.py`
-#: runs all over both, but for the layer, which is one of ROS 2.
+#: Scenarios with topics, with an action, and with a layer run over ROS 2, the others over ROS 1. `benchmarks/matrix.py`
+#: runs all over both, except for the layer, which needs ROS 2.
 OVER_ROS_2 = ("maze_solver", "simple_navigation", "supervised_line_follower")
 
 
 @dataclass(frozen=True)
 class LiveRun:
-    """What the world saw of a scenario, and what the node did."""
+    """A run of a scenario: the record of the world, and the log and output of the node."""
 
     status: int
     said: str
@@ -71,7 +71,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 @pytest.fixture(scope="session")
 def kind(request: pytest.FixtureRequest) -> Workspace | Runner:
-    """Nodes of each ROS: compiled; in ROS 2 run straight from their models where there is no rclcpp to build with."""
+    """Compiled nodes of each ROS version; over ROS 2 nodes run from models if there is no rclcpp to build with."""
     compiled = request.param == "ros1" or find_ros2().ros is not None
     made: Workspace | Runner = request.getfixturevalue(f"{request.param}_workspace" if compiled else "run_ros2")
     return made
@@ -79,7 +79,7 @@ def kind(request: pytest.FixtureRequest) -> Workspace | Runner:
 
 @pytest.fixture(scope="session")
 def run(kind: Workspace | Runner, name: str, tmp_path_factory: pytest.TempPathFactory) -> LiveRun:
-    """A scenario from start to end."""
+    """Run a scenario from start to end."""
     folder = tmp_path_factory.mktemp(name) / "run"
     events, record = folder / "events.jsonl", folder / "record.jsonl"
     with middleware(kind, folder, simulated=True) as processes:
@@ -97,7 +97,7 @@ def run(kind: Workspace | Runner, name: str, tmp_path_factory: pytest.TempPathFa
 
 
 def node_commands(kind: Workspace | Runner, name: str, log: str) -> list[list[str | Path]]:
-    """What starts the controller of a scenario, or the layer and the controller behind it."""
+    """Return the commands that start the controller of a scenario, or the layer and the controller behind it."""
     clock = ["use_sim_time:=true"] if kind.ros.version == 2 else []
     model = EXAMPLES / name / f"{name}.rscd"
     if name not in LAYERS:
@@ -116,7 +116,7 @@ def node_commands(kind: Workspace | Runner, name: str, log: str) -> list[list[st
 
 
 def lines(path: Path) -> list[dict[str, Any]]:
-    """The objects in a file of JSON lines."""
+    """Return the objects in a file of JSON lines."""
     return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
 
 
@@ -127,7 +127,7 @@ def test_reaches_its_goal(run: LiveRun) -> None:
 def test_sends_nothing_forbidden(run: LiveRun, name: str) -> None:
     log = [*run.log]
     while name not in LAYERS and log[-1]["direction"] == "outside":
-        # At the very end, when it is shut down, a controller halts the robot whatever the requirements say.
+        # When a controller shuts down, it halts the robot independently of the requirements.
         log.pop()
     assert sum(entry["direction"] == "out" for entry in log) >= 3
     assert BOOKS[name]().violations(log) == []

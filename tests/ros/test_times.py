@@ -1,4 +1,4 @@
-"""Times over a real ROS. How late they are depends on the machine: `benchmarks/expiry.py` measures it."""
+"""Times over a real ROS. Their delays depend on the machine; `benchmarks/expiry.py` measures them."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ GUARD = HERE.parent / "run" / "runtime" / "guard.rscd"
 
 
 def test_a_time_is_never_up_early(nodes: Workspace | Runner, tmp_path: Path) -> None:
-    """`after 200 ms`: from before the message that starts it to after what is sent then, no less goes by."""
+    """With `after 200 ms`, at least 200 ms pass between the message that starts the timer and the resulting message."""
     found = expiries(nodes, tmp_path / "run", TRIALS, 30)
     assert len(found) == TRIALS
     assert min(found) >= DURATION
 
 
-#: A program that comes late: the package, its class, and what its scans are.
+#: Programs with a delayed executor: the package, its class, and the type of its scans.
 LATE = {"patience_controller": ("Controller", "sensor"), "guard_layer": ("Layer", "empty")}
 
 
@@ -49,7 +49,7 @@ def test_what_arrived_before_a_time_was_up_is_handled_before_it_where_compiled(
 
 @pytest.mark.parametrize("kind", ["controller", "layer"])
 def test_what_arrived_before_a_time_was_up_is_handled_before_it(run_ros2: Runner, kind: str, tmp_path: Path) -> None:
-    """Whatever the executor of ROS 2 would ask first."""
+    """The order does not depend on the order in which the executor of ROS 2 polls."""
     log = tmp_path / "events.jsonl"
     with middleware(run_ros2, tmp_path / "run") as processes:
         command = [run_ros2.ros.python, HERE / "late_ros2.py", kind, GUARD]
@@ -60,7 +60,7 @@ def test_what_arrived_before_a_time_was_up_is_handled_before_it(run_ros2: Runner
 
 
 def first_of_late(output: Path, log: Path) -> str:
-    """Whether a scan or its absence came first when a program went on, as it says itself."""
+    """Return the event, a scan or its timeout, that occurred first after the time that the program printed."""
     (on,) = re.findall(r"^on at (\S+)$", output.read_text(), re.MULTILINE)
     entries = [json.loads(line) for line in log.read_text().splitlines()]
     late = [str(entry["event"]) for entry in entries if entry["time"] >= float(on)]

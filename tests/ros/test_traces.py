@@ -1,4 +1,4 @@
-"""Packages with tests: `rostest` and `launch_testing` play traces against nodes, or the player does it by itself."""
+"""Packages with tests: `rostest`, `launch_testing` or the player alone play traces against nodes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MODELS = {
 
 
 def rostest(workspace: Workspace, package: str, folder: Path, trace: str = "tour_1") -> tuple[int, str]:
-    """The exit status of `rostest`, and what the tests that failed say."""
+    """Return the exit status of `rostest`, and the messages of failed tests."""
     folder.mkdir(exist_ok=True)
     results = folder / "results"
     command = ["rostest", "--results-base-dir", results, package, "play_trace.test", f"trace:={trace}"]
@@ -59,12 +59,12 @@ def test_a_node_that_dropped_a_requirement_does_not(ros1_workspace: Workspace, t
 
 
 def test_the_log_of_a_drive_is_a_trace(ros1_workspace: Workspace, tmp_path: Path) -> None:
-    """Until the robot drives; another kind of controller has written it. Later its ticks are late."""
+    """The log of a simulated controller is a trace until the robot drives; its later ticks are late."""
     package = "line_follower_controller"
     log = ros1_workspace.folder / "src" / package / "test" / "traces" / "drive.jsonl"
     log.unlink(missing_ok=True)
     command = [sys.executable, EXAMPLES / "simulator", "--scenario", "line_follower", "--until", "1.2", "--log", log]
-    subprocess.run(command, check=False, capture_output=True)  # it does not get to its goal
+    subprocess.run(command, check=False, capture_output=True)  # the robot does not reach its goal
     events = [json.loads(line)["event"] for line in log.read_text(encoding="utf-8").splitlines()]
     assert "message_move.c_trigger" in events[events.index("message_halt.c_trigger") :]
     assert rostest(ros1_workspace, package, tmp_path, "drive") == (0, "")
@@ -120,7 +120,7 @@ def test_launch_testing_fails_where_the_node_leaves_the_trace(ros2_workspace: Wo
     package = ros2_workspace.folder / "src" / "line_follower_controller" / "test"
     lines = (package / "traces" / "tour_1.jsonl").read_text(encoding="utf-8").splitlines()
     events = [json.loads(line) for line in lines]
-    # The player notices a missing line at the next one only if that one differs.
+    # The player notices a missing line only if the next line differs.
     pairs = enumerate(itertools.pairwise(events))
     sent = next(at for at, (line, later) in pairs if line["direction"] == "out" and line["event"] != later["event"])
     trace = tmp_path / "wrong.jsonl"
@@ -143,7 +143,7 @@ def test_colcon_knows_the_tests(ros2_workspace: Workspace, package: str, tmp_pat
 
 
 def with_launch_testing(workspace: Workspace) -> None:
-    """Skips where it is not installed: it does not come with rclcpp."""
+    """Skip the test without launch_testing, which is not part of rclcpp."""
     found = subprocess.run(
         [workspace.ros.python, "-c", "import launch_ros, launch_testing"],
         env=workspace.environment(),
@@ -155,10 +155,10 @@ def with_launch_testing(workspace: Workspace) -> None:
 
 
 def launch_test(workspace: Workspace, test: Path, folder: Path, trace: Path | None = None) -> tuple[int, str]:
-    """The exit status of `launch_test`, and what it printed."""
+    """Return the exit status and the output of `launch_test`."""
     with_launch_testing(workspace)
     with middleware(workspace, folder / "run") as processes:
-        # The domain, which only this run has.
+        # This run has a ROS domain of its own.
         done = subprocess.run(
             ["launch_test", test, *([f"trace:={trace}"] if trace else [])],
             env=processes.environment,
@@ -172,7 +172,7 @@ def launch_test(workspace: Workspace, test: Path, folder: Path, trace: Path | No
 
 
 def parameters(test: Path, folder: Path) -> list[str]:
-    """What the launch file would give the node."""
+    """Return the parameters that the launch file gives the node."""
     known = json.loads((test / "connections.json").read_text(encoding="utf-8"))
     found = {"use_sim_time": "true", "watchdog_stops": "false", "event_log": str(folder / "events.jsonl")}
     for kind in ("services", "actions"):

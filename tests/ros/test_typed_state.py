@@ -1,4 +1,4 @@
-"""The package with the type of a robot's state, made by the generators of ROS 2; ROS 1 builds it with the courier."""
+"""The generators of ROS 2 process the package with the type of a robot's state; ROS 1 builds it with the courier."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The page of `robosc view` beside a robot of ROS 2: what it shows is what the node has decided."""
+"""The page of `robosc view` beside a ROS 2 robot shows the decisions of the node."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ SIMULATOR = PROJECT / "examples" / "simulator"
 
 
 def view(processes: Processes, runner: Runner, folder: Path, *others: Path) -> tuple[str, subprocess.Popen[bytes]]:
-    """The address of the page beside the robot, and those of other models."""
+    """Start the page for the robot and other models; return its address and the process."""
     path = os.pathsep.join(filter(None, (str(PROJECT), processes.environment.get("PYTHONPATH"))))
     command = ["env", f"PYTHONPATH={path}", runner.ros.python, "-m", "robosc", "view", MODEL, *others, "--ros2"]
     process, log = processes.start("view", command), folder / "view.log"
@@ -46,7 +46,7 @@ def view(processes: Processes, runner: Runner, folder: Path, *others: Path) -> t
 
 
 def told(address: str, number: int) -> list[dict[str, Any]]:
-    """The moments that the page is told, so many of them."""
+    """Return the first `number` moments that the page receives."""
     moments: list[dict[str, Any]] = []
     with urlopen(f"{address}moments", timeout=60) as stream:  # noqa: S310
         while len(moments) < number:
@@ -57,13 +57,13 @@ def told(address: str, number: int) -> list[dict[str, Any]]:
 
 
 def says(processes: Processes, page: Any, part: str) -> None:
-    """Waits until the page says something of where its moments come from; "": nothing."""
+    """Wait until the page shows a certain status of its source; "" means no status."""
     status = page.locator("#status")
     processes.wait_until(lambda: (part or "@") in (status.text_content() or "@"), f"the page says: {part or 'nothing'}")
 
 
 def moment(page: Any) -> int:
-    """The number of the moment that the page shows."""
+    """Return the number of the moment that the page shows."""
     return int(page.locator("body").get_attribute("data-moment"))
 
 
@@ -97,7 +97,7 @@ def test_it_shows_what_the_node_decides(run_ros2: Runner, chromium: Any, tmp_pat
 
 
 def compare(moments: list[dict[str, Any]], log: list[dict[str, Any]]) -> None:
-    """What the page was told, with what the log of the node's events says that happened."""
+    """Compare the moments of the page with the event log of the node."""
     robot = robosc.load(MODEL)
     model = robosc.to_sct(robot)
     robosc.synthesize(model)
@@ -107,7 +107,7 @@ def compare(moments: list[dict[str, Any]], log: list[dict[str, Any]]) -> None:
     seen = [moment["event"] for moment in moments if "event" in moment]
     first = next((at for at in range(len(names)) if names[at : at + len(seen)] == seen), None)
     assert first is not None, "each event is shown, once, in its order"
-    # The last output of a node that ends may be lost.
+    # The last output of an ending node may be lost.
     assert len(seen) > 0.9 * len(names)
     components = [plant.name for plant in model.plants if plant.kind == sct.PlantKind.behaviour]
     at = 0
@@ -121,11 +121,11 @@ def compare(moments: list[dict[str, Any]], log: list[dict[str, Any]]) -> None:
             if "event" in seen_then:
                 assert simulation.perform(seen_then["event"], happened[at].get("data", {})).accepted
                 at += 1
-        # The last of a report has the state that the node told.
+        # The last moment of a report has the state that the node reported.
         engine = simulation.engine
         state = whole_state(engine)
         assert {name: whole["state"][name] for name in components} == {name: state[name] for name in components}
-        # And the number that the node keeps beside its supervisor.
+        # It also has the number that the node stores beside its supervisor.
         offsets = [
             entry["data"]["value"] for entry in happened[:at] if entry["event"] == "message_correction.u_response"
         ]

@@ -1,23 +1,23 @@
-"""Topics of ROS 1 or ROS 2 for the scripts that tests run under a ROS installation's own Python."""
-# ruff: noqa: PLC0415  # which of the two is there is known when it is asked for
+"""Topics of ROS 1 or ROS 2 for the scripts that tests run in the Python of a ROS installation."""
+# ruff: noqa: PLC0415  # only one of the two is installed
 
 import importlib
 import time
 
 
 def connect(version, name):
-    """The topics of ROS 1 or 2, for a node of that name."""
+    """Return the topics of ROS 1 or 2 for a node with this name."""
     return Ros1(name) if version == "1" else Ros2(name)
 
 
 def type_of(name):
-    """The Python class of a type such as `std_msgs/Int16`."""
+    """Return the Python class of a type such as `std_msgs/Int16`."""
     package, kind = name.split("/")
     return getattr(importlib.import_module(f"{package}.msg"), kind)
 
 
 def fill(message, fields):
-    """Sets fields of a message, in nested dicts."""
+    """Set fields of a message from nested dicts."""
     for name, value in fields.items():
         if isinstance(value, dict):
             fill(getattr(message, name), value)
@@ -27,13 +27,13 @@ def fill(message, fields):
 
 
 def plain(value):
-    """A message as nested dicts."""
+    """Return a message as nested dicts."""
     if hasattr(value, "__slots__"):
         names = (slot.lstrip("_") for slot in value.__slots__ if slot != "_check_fields")
         return {name: plain(getattr(value, name)) for name in names}
     if isinstance(value, list):
         return [plain(element) for element in value]
-    if isinstance(value, bytes):  # what ROS 2 calls a byte
+    if isinstance(value, bytes):  # the Python value of a ROS 2 byte
         return int.from_bytes(value, "little")
     return value if isinstance(value, (bool, int, float, str)) else str(value)
 

@@ -1,4 +1,4 @@
-"""Runs `robosc` for each list of arguments of a JSON list, in one process: loading it takes as long as most runs."""
+"""Run `robosc` for each list of arguments in a JSON list, in one process: loading takes as long as most runs."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""A controller that knows of no supervisory layer, with the names of `tests/m2t/layer/usher.rscd`.
+"""A controller without knowledge of the supervisory layer, with the names of `tests/m2t/layer/usher.rscd`.
 
-It does what `/do` tells it (a JSON object: a name and a value) and tells on `/told` what it hears. Whenever it hears
-`/stop` it sends a speed at once, which a supervisor that has heard of the stop does not let pass.
+It executes the commands on `/do` (a JSON object: a name and a value) and publishes all its inputs on `/told`. After
+each `/stop` it sends a speed at once, which a supervisor that has received the stop must block.
 """
 
 import json

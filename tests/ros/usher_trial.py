@@ -1,7 +1,7 @@
-"""The robot behind the supervisory layer of `tests/m2t/layer/usher.rscd`, and what it asks of the controller.
+"""The robot behind the supervisory layer of `tests/m2t/layer/usher.rscd`, and the orders to its controller.
 
-Run as `usher_trial.py RESULTS`, beside the layer and its controller. After each step it writes down what
-reached the robot, what reached the controller, what was blocked and in which states the layer was.
+Run as `usher_trial.py RESULTS`, beside the layer and its controller. After each step it records the messages to the
+robot and to the controller, the blocked commands, and the states of the layer.
 """
 
 import json
@@ -19,12 +19,12 @@ from std_srvs.srv import SetBool
 from topics import connect
 
 LAYER = "/usher_layer"
-#: Seconds for what takes a moment, on a machine that is busy with twenty other programs.
+#: Seconds for a quick operation on a machine with twenty other busy programs.
 PATIENCE = 120
 
 
 class Robot:
-    """Its service and its action, which do what they are told; what it received."""
+    """Service and action servers of the robot, with configurable answers, and the messages that it received."""
 
     def __init__(self):
         self.received = []
@@ -32,10 +32,10 @@ class Robot:
         self.answering = threading.Event()
         self.answering.set()
         self.accepts = True
-        self.deciding = threading.Event()  # whether it accepts a goal, or a request to cancel it
+        self.deciding = threading.Event()  # set while the robot answers goals and requests to cancel
         self.deciding.set()
-        self.deaf = False  # whether it goes on with a goal that it shall cancel
-        self.ending = None  # how the goal at hand ends; None: not yet
+        self.deaf = False  # whether it continues a goal in spite of a cancel
+        self.ending = None  # end of the current goal, or None
         self.lock = threading.Lock()
         self.node = rclpy.create_node("robot")
         self.group = ReentrantCallbackGroup()
@@ -68,7 +68,7 @@ class Robot:
 
     def leave(self):
         self.action.destroy()
-        self.executor.wake()  # it still holds the server
+        self.executor.wake()  # the executor still holds the server
 
     def on_call(self, request, response):
         response.success = self.light(request.data)
@@ -126,7 +126,7 @@ class Trial:
         )
 
     def tell(self, what, value):
-        """Hears what the controller tells. It is asked for the server until it answers: once more is nothing new."""
+        """Record a message from the controller, except repeated answers to the question about the server."""
         if [what, value] != ["server", True] or not self.steps:
             self.told.append([what, value])
 
@@ -138,23 +138,23 @@ class Trial:
             self.ros.receive(0.02)
 
     def heard(self, *expected):
-        """Waits until the controller has told so."""
+        """Wait until the controller has published a message."""
         self.wait(lambda: list(expected) in self.told, f"the controller tells {expected}")
 
     def got(self, *expected):
-        """Waits until the robot has received it."""
+        """Wait until the robot has received a message."""
         self.wait(lambda: list(expected) in self.robot.received, f"the robot receives {expected}")
 
     def was_blocked(self, name, count=1):
-        """Waits until something of that name was blocked so often."""
+        """Wait until the layer has blocked a command a number of times."""
         self.wait(lambda: sum(entry["name"] == name for entry in self.blocked) >= count, f"{name} is blocked")
 
     def happened(self, event, since=0):
-        """Waits until the layer has told of an event."""
+        """Wait until the layer has reported an event."""
         self.wait(lambda: any(event in state["transitions"] for state in self.states[since:]), f"{event} happens")
 
     def charged(self, charge):
-        """The battery tells its charge, and the controller hears of it."""
+        """Publish the charge of the battery, and wait until the controller receives it."""
         self.charge = charge
         self.battery(data=charge)
         self.heard("battery", charge)
@@ -166,13 +166,13 @@ class Trial:
         return {"robot": list(self.robot.received), "controller": list(self.told), "blocked": list(self.blocked)}
 
     def step(self, name):
-        """Ends a step, once all that was on its way has come: a last message passes layer and controller after it."""
+        """End a step after all its messages have arrived; a last message passes layer and controller behind them."""
         told, states = len(self.told), len(self.states)
         last = ["battery", self.charge]
         self.battery(data=self.charge)
         self.wait(lambda: last in self.told[told:], "the last message of a step is told")
         self.happened("message_battery.u_response", states)
-        self.ros.receive(0.2)  # no order is promised across topics
+        self.ros.receive(0.2)  # ROS does not preserve order across topics
         self.told.pop(max(at for at, entry in enumerate(self.told) if entry == last))
         self.steps[name] = {**self.seen(), "states": list(self.states)}
         for received in (self.robot.received, self.told, self.blocked, self.states):
@@ -184,9 +184,7 @@ class Trial:
             self.ask("server")
             self.battery(data=self.charge)
             self.ros.receive(0.5)
-            if {"server", "battery"} <= {
-                topic for topic, _ in self.told
-            }:  # what was told while nobody listened was lost
+            if {"server", "battery"} <= {topic for topic, _ in self.told}:  # earlier messages may have been lost
                 break
         self.heard("server", True)
         self.heard("battery", self.charge)
@@ -207,7 +205,7 @@ class Trial:
         Path(self.results).write_text(json.dumps(self.steps))
 
     def qualities(self):
-        """How reliably the layer hears what the configuration says something of, and how it hands it on."""
+        """Return the reliability of the layer's subscriptions and publishers with a configured quality of service."""
         inside, feedback = f"{LAYER}/controller", "/go_to/_action/feedback"
         ends = {
             "hears": (self.ros.node.get_subscriptions_info_by_topic, [f"{inside}/speed", "/resume", feedback]),
@@ -368,14 +366,14 @@ class Trial:
         self.step("cancels that the robot does not answer")
 
     def leave_with(self, place):
-        """The robot's action server goes, and then the controller sends a goal."""
+        """Destroy the action server of the robot, then let the controller send a goal."""
         self.robot.leave()
         self.ros.receive(0.5)
         self.ask("go_to", place)
         self.happened("action_go_to.c_trigger")
 
     def ended(self):
-        """Waits until the controller knows the end of its goal."""
+        """Wait until the controller knows the end of its goal."""
         self.wait(lambda: "go_to" in [topic for topic, _ in self.told], "the goal ends")
 
     def start(self, place):

@@ -1,4 +1,4 @@
-"""Workspaces of generated packages, built by the platform's own tool, and what it takes to run what is in them."""
+"""Workspaces of generated packages, built by the platform's own tool, with the environment to run their programs."""
 
 from __future__ import annotations
 
@@ -30,35 +30,35 @@ SUPERVISED = EXAMPLES / "supervised_line_follower"
 USHER, DRIVER = HERE.parent / "m2t" / "layer", HERE / "usher_driver.py"
 #: Two generated controllers in one process.
 TWO_IN_ONE = HERE / "faults" / "two_in_one"
-#: A base behind a layer that sends a stop in the place of blocked ones.
+#: A base behind a layer that sends a stop in place of blocked commands.
 BLOCKED = HERE / "blocked"
-#: A robot whose stop button is published once, and kept.
+#: A robot with a latched stop button.
 LATCHED = HERE / "latched"
-#: A component in an executor that comes late; components in one that queues the calls of timers.
+#: A component in a delayed executor, and components in an executor that queues the callbacks of timers.
 LATE = HERE / "late_arrival"
 QUEUED = HERE / "events_executor"
-#: A managed node with times, kept data, parameters and what is sent on change.
+#: A managed node with times, stored data, parameters, and a command that it sends on change.
 MANAGED = HERE / "managed"
 CPP = HERE.parent / "m2t" / "cpp"
 
 
 @dataclass(frozen=True)
 class Package:
-    """A package to generate: its name in ROS, its model, the target that writes it; else the model's own settings."""
+    """A package to generate: ROS name, model, target, configuration (by default, that of the model)."""
 
     name: str
     model: Path
     target: str
     configuration: Path | None = None
     with_tests: bool = False
-    #: Whether the node publishes its state as a message, whose package is built beside it.
+    #: Whether the node publishes its state as a typed message, from a package built beside it.
     typed: bool = False
-    #: A fault to put into it: a file of the package, what stands there, what shall.
+    #: A fault to inject: a file of the package, a text in it, and its replacement.
     fault: tuple[str, str, str] | None = None
 
 
 def _packages(target: str) -> list[Package]:
-    """The controllers of the examples and of the models of the tests, for one ROS."""
+    """Return the controllers of the examples and of the test models for one ROS version."""
     examples = (
         "line_follower",
         "maze_solver",
@@ -89,12 +89,12 @@ def _packages(target: str) -> list[Package]:
     ]
 
 
-#: Which of the packages are built, by their names; else all.
+#: Names of the packages to build; empty for all.
 CHOSEN = os.environ.get("ROBOSC_PACKAGES", "").split()
-#: The packages of the one workspace of each ROS, beside those of `interfaces`.
+#: The packages of the only workspace of each ROS version, beside those of `interfaces`.
 ROS1_PACKAGES = [
     *_packages("ros1"),
-    # It has forgotten that it must not move while its stop button is pressed.
+    # This controller may move while its stop button is pressed.
     Package(
         "careless_controller",
         EXAMPLES / "line_follower" / "line_follower.rscd",
@@ -125,32 +125,32 @@ ROS2_PACKAGES = [
 
 @dataclass(frozen=True)
 class Workspace:
-    """A folder in which packages were built, and what the build said."""
+    """A folder with built packages, and the output of the build."""
 
     ros: Ros
     folder: Path
     build: str
 
     def node(self, package: str, *parameters: str) -> list[str | Path]:
-        """The command that starts a node with parameters (`name:=value`): for ROS 1 by its launch file."""
+        """Return the command that starts a node with parameters (`name:=value`), in ROS 1 by its launch file."""
         if self.ros.version == 1:
             return ["roslaunch", "--wait", package, f"{package}.launch", *parameters]
         options = [word for parameter in parameters for word in ("-p", parameter)]
         return [self.folder / f"install/{package}/lib/{package}/{package}", "--ros-args", *options]
 
     def source(self, package: str) -> Path:
-        """The C++ of a node."""
+        """Return the C++ file of a node."""
         return self.folder / "src" / package / "src" / f"{package}_node.cpp"
 
     def compiler_options(self, package: str) -> list[str]:
-        """What a compiler needs to find what a node of ROS 1 includes, as catkin has it: ROS's own is of the system."""
+        """Return the include options of a ROS 1 node, as in catkin; the headers of ROS are system headers."""
         prefix = Path(self.ros.environment["ROS_PACKAGE_PATH"].partition(":")[0]).parent
         folders = [self.folder / "devel/include", prefix / "include", prefix / "include/xmlrpcpp"]
         system = [f"-isystem{folder}" for folder in folders if folder != Path("/usr/include")]
         return ["-std=c++17", f"-I{self.folder / 'src' / package / 'include'}", *system]
 
     def environment(self) -> dict[str, str]:
-        """What programs need to find the packages and the Python modules of their interfaces."""
+        """Return the environment in which programs find the packages and the Python modules of their interfaces."""
         environment = {**self.ros.environment, "PYTHONDONTWRITEBYTECODE": "1"}
         if self.ros.version == 1:
             return environment | {
@@ -171,7 +171,7 @@ class Workspace:
 
 @pytest.fixture(scope="session")
 def ros1_build(shared_folder: Path) -> Iterator[Future[Workspace]]:
-    """`ros1_workspace`, built while the tests before its own run: they leave a core idle, and it takes minutes."""
+    """Build `ros1_workspace` in the background: the build takes minutes, and the earlier tests leave a core idle."""
     others = [*sorted((HERE / "interfaces" / "ros1").iterdir()), TWO_IN_ONE]
     with ThreadPoolExecutor(1) as executor:
         yield executor.submit(_workspace, shared_folder, found_or_skipped("ros1", find_ros1()), ROS1_PACKAGES, others)
@@ -181,7 +181,7 @@ def ros1_build(shared_folder: Path) -> Iterator[Future[Workspace]]:
 def ros1_workspace(request: pytest.FixtureRequest) -> Workspace:
     """The packages of `ROS1_PACKAGES` and `interfaces/ros1`.
 
-    `ROBOSC_ROS1_WORKSPACE` names a folder that is kept: what has not changed is not built again.
+    `ROBOSC_ROS1_WORKSPACE` names a permanent folder, in which only changed packages are built again.
     """
     future: Future[Workspace] = request.getfixturevalue("ros1_build")
     return future.result()
@@ -189,20 +189,20 @@ def ros1_workspace(request: pytest.FixtureRequest) -> Workspace:
 
 @pytest.fixture(scope="session")
 def ros2_workspace(shared_folder: Path) -> Workspace:
-    """The packages of `ROS2_PACKAGES` and `interfaces/ros2`; `ROBOSC_ROS2_WORKSPACE` likewise."""
+    """The packages of `ROS2_PACKAGES` and `interfaces/ros2`; `ROBOSC_ROS2_WORKSPACE` names a permanent folder."""
     others = [*sorted((HERE / "interfaces" / "ros2").iterdir()), LATE, QUEUED]
     return _workspace(shared_folder, found_or_skipped("ros2", find_ros2()), ROS2_PACKAGES, others)
 
 
 def _workspace(shared: Path, ros: Ros, packages: Sequence[Package], others: Sequence[Path]) -> Workspace:
-    """A workspace that is built once in each run of the tests."""
+    """Return a workspace that is built once in each run of the tests."""
     name = f"ros{ros.version}"
     folder = Path(os.environ.get(f"ROBOSC_{name.upper()}_WORKSPACE") or shared / f"{name}-workspace")
     return Workspace(ros, folder, made_once(shared, name, lambda: build(ros, folder, packages, others)))
 
 
 def found_or_skipped(name: str, found: Found) -> Ros:
-    """The installation; without one the test is skipped, or fails where `ROBOSC_REQUIRE` asks for it."""
+    """Return the installation; without one, skip the test, or fail if `ROBOSC_REQUIRE` lists its name."""
     if found.ros is None:
         reason = f"{name}: {', '.join(found.missing)}"
         if name in os.environ.get("ROBOSC_REQUIRE", "").split(","):
@@ -212,7 +212,7 @@ def found_or_skipped(name: str, found: Found) -> Ros:
 
 
 def build(ros: Ros, folder: Path, packages: Sequence[Package], others: Sequence[Path]) -> str:
-    """Generates packages into a workspace, puts others beside them, and builds all; what the build said."""
+    """Generate packages into a workspace, link others beside them, and build all; return the output of the build."""
     source = folder / "src"
     source.mkdir(parents=True, exist_ok=True)
     chosen = [package for package in packages if not CHOSEN or package.name in CHOSEN]
@@ -235,7 +235,7 @@ def build(ros: Ros, folder: Path, packages: Sequence[Package], others: Sequence[
 
 
 def _transform(package: Package, out: Path) -> list[str]:
-    """The arguments of `robosc` that generate a package into a folder."""
+    """Return the arguments of `robosc` that generate a package into a folder."""
     settings = ["--config", str(package.configuration)] if package.configuration else []
     settings += ["--with-tests"] if package.with_tests else []
     settings += ["--typed-state"] if package.typed else []
@@ -244,9 +244,10 @@ def _transform(package: Package, out: Path) -> list[str]:
 
 @contextmanager
 def middleware(workspace: Workspace, folder: Path, *, simulated: bool = False) -> Iterator[Processes]:
-    """Programs in the workspace's environment, on loopback and away from all others; for ROS 1 with a master.
+    """Run programs in the environment of a workspace, on loopback and isolated from others; for ROS 1 with a master.
 
-    Their logs and ROS's own (`log/`) are in `folder`, which must not exist. `simulated`: time comes from `/clock`.
+    `folder` must not exist; it receives the logs of the programs and of ROS (`log/`). With `simulated`, time comes from
+    `/clock`.
     """
     folder.mkdir()
     environment = workspace.environment() | {"ROS_LOG_DIR": str(folder / "log")}
@@ -260,11 +261,11 @@ def middleware(workspace: Workspace, folder: Path, *, simulated: bool = False) -
         "ROS_IP": "127.0.0.1",
         "ROS_HOSTNAME": "127.0.0.1",
         "ROS_HOME": str(folder),
-        # What a compiled node prints is to be seen at once, in a file, too.
+        # Output of a compiled node must reach a log file at once.
         "ROSCONSOLE_STDOUT_LINE_BUFFERED": "1",
     }
     with Processes(environment, folder) as processes:
-        # What `roscore` starts, too, without what takes it seconds of the processor for each test.
+        # `roscore` starts the same master, but takes seconds of CPU time for each test.
         processes.start("rosmaster", ["rosmaster", "--core", "-p", str(port)])
         master = ServerProxy(environment["ROS_MASTER_URI"])
         processes.wait_until(lambda: _answers(master, simulated=simulated), "the master is online")
@@ -272,9 +273,9 @@ def middleware(workspace: Workspace, folder: Path, *, simulated: bool = False) -
 
 
 def _answers(master: ServerProxy, *, simulated: bool) -> bool:
-    """Whether a master of ROS 1 is there, and has been told where its nodes have their time from."""
+    """Whether a ROS 1 master is online and has the source of time for its nodes."""
     try:
-        master.setParam("/test", "/run_id", "test")  # without it `roslaunch --wait` waits for ever
+        master.setParam("/test", "/run_id", "test")  # without it, `roslaunch --wait` never ends
         master.setParam("/test", "/use_sim_time", simulated)
     except OSError:
         return False

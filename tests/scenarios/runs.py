@@ -1,4 +1,4 @@
-"""Runs of scenarios without a middleware, each played once, and what they must show."""
+"""Runs of scenarios without a middleware, each executed once, and measures of their results."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Entry = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Run:
-    """A simulation that is over, and what its controller logged."""
+    """A finished simulation, and the log of its controller."""
 
     simulation: Simulation
     log: Sequence[Entry]
@@ -37,14 +37,14 @@ class Run:
 
 
 def played(name: str, seed: int = 0, until: float | str = "end", **changes: Any) -> Run:
-    """A run of a scenario from its start on; `until` is that of `over`, `changes` are those of `play`."""
+    """Run a scenario from its start; `until` is the argument of `over`, `changes` are those of `play`."""
     simulation = Simulation(SCENARIOS[name], seed)
     log = play(simulation, over(simulation, until), quiet=True, **changes)
     return Run(simulation, log)
 
 
 def violations_of(name: str, models: Models) -> list[str]:
-    """What the rule book of a scenario finds in a run of its world with these models, until it finds anything."""
+    """Run a scenario with these models until its rule book finds a fault; return the faults."""
     simulation, book, found = Simulation(SCENARIOS[name]), BOOKS[name](), list[str]()
     is_over, judged = over(simulation), 0.0
     with TemporaryDirectory() as folder:
@@ -64,22 +64,22 @@ def violations_of(name: str, models: Models) -> list[str]:
 
 @cache
 def run_of(name: str) -> Run:
-    """The run of a scenario, as it is in the pictures."""
+    """Return the run of a scenario that the pictures show."""
     return played(name)
 
 
 def poses(record: Iterable[Entry], start: float = 0.0, end: float = math.inf) -> list[Mapping[str, Any]]:
-    """Where the robot was in a span of time."""
+    """Return the poses of the robot in an interval."""
     return [entry["data"] for entry in record if entry["topic"] == "pose" and start <= entry["time"] < end]
 
 
 def times_of(record: Iterable[Entry], topic: str) -> list[float]:
-    """When something was sent to a topic."""
+    """Return the times of the messages on a topic."""
     return [entry["time"] for entry in record if entry["topic"] == topic]
 
 
 def stops(record: Iterable[Entry]) -> list[tuple[float, float]]:
-    """From when to when the robot was stopped: from a press of the button to the `continue` after its release."""
+    """Return the intervals from a press of the button to the `continue` after its release."""
     entries = [entry for entry in record if entry["topic"] in (STOP, GO_ON)]
     found, pressed = list[tuple[float, float]](), None
     for entry in entries:
@@ -92,9 +92,9 @@ def stops(record: Iterable[Entry]) -> list[tuple[float, float]]:
 
 
 def moved_while_stopped(record: Sequence[Entry], allowance: float) -> float:
-    """How far the robot got, or turned in radians, at most, from so many seconds after a stop until continue.
+    """Return the largest movement or turn (in radians) of a stopped robot, from `allowance` seconds after the stop on.
 
-    It stands before somebody sets it going, too.
+    The robot also stands before its first `continue`.
     """
     most = 0.0
     begins = (-allowance, times_of(record, GO_ON)[0])

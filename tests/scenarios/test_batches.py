@@ -1,4 +1,4 @@
-"""A laser scan that feeds several enums is seen whole: the maze solver never turns on half of it."""
+"""A laser scan that feeds several enums is one batch: the maze solver never turns on half of it."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from robosc.model import rosgraph
 
 
-#: With all who look at the same runs.
+#: The group shares the runs of the scenarios.
 pytestmark = pytest.mark.xdist_group("scenarios")
 
 
 class HalfSeeing(Controller):
-    """A controller in which each event of a message is a batch of its own: what a node must not be."""
+    """A wrong controller, which makes each event of a message a batch of its own."""
 
     def receive(self, subscription: rosgraph.Subscription, message: Any) -> None:
         for reception in subscription.receptions:
@@ -37,7 +37,7 @@ class HalfSeeing(Controller):
 
 
 def on_half(log: list[dict[str, Any]]) -> list[str]:
-    """The violations that say that something was sent while only a part of a scan had been heard."""
+    """Return the violations by commands after only a part of a scan."""
     return [violation for violation in BOOKS["maze_solver"]().violations(log) if "half of a scan" in violation]
 
 
@@ -55,12 +55,12 @@ def test_a_controller_that_breaks_scans_up_is_noticed() -> None:
     ("kind", "turn"), [pytest.param(Controller, "right", id="whole"), pytest.param(HalfSeeing, "left", id="half")]
 )
 def test_a_corner_that_comes_up_together_with_a_wall_ahead(kind: type[Controller], turn: str, tmp_path: Path) -> None:
-    """Whole, the second scan says: round the corner to the right. Its first part, with the old rest, says: left."""
+    """The whole second scan means a turn to the right. Its first part with the rest of the old scan means the left."""
     simulation = Simulation(SCENARIOS["maze_solver"])
     log = tmp_path / "events.jsonl"
     node = connected(simulation, load(model_of(simulation.scenario)), log, kind)
     along, corner = [5.0] * 360, [5.0] * 360
-    # Nothing can be said of the way ahead: the robot stands.
+    # The robot stands because the way ahead is unknown.
     along[0] = math.nan
     for ray in (270, 240, 225):
         along[ray] = 0.5

@@ -1,4 +1,4 @@
-"""Each robot reaches its goal (of the thesis' scenarios: section 6.2), and nothing forbidden is sent on the way."""
+"""Each robot reaches its goal (thesis, section 6.2, for its scenarios) and sends nothing forbidden on the way."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from tests.searching import matrix_but, slow_but
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-#: With all who look at the same runs.
+#: The group shares the runs of the scenarios.
 pytestmark = pytest.mark.xdist_group("scenarios")
 EACH = pytest.mark.parametrize("name", slow_but(["line_follower", "push_ball", "supervised_line_follower"], SCENARIOS))
-#: Where a run is made once more.
+#: Scenarios with a second run.
 SOME = pytest.mark.parametrize("name", matrix_but(["line_follower", "maze_solver", "simple_navigation"], SCENARIOS))
 
 
@@ -66,7 +66,7 @@ def test_errors_of_sensors_change_the_way_but_not_its_end(name: str) -> None:
 
 @SOME
 def test_a_run_is_always_the_same(name: str) -> None:
-    """A third of it in each detail, after another run; that the rest comes out the same, the pictures show."""
+    """A third of a run is identical in each detail; the pictures cover the rest."""
     first = run_of(name)
     until = first.simulation.time / 3
     second = played(name, until=until)
@@ -93,7 +93,7 @@ def test_the_line_follower_halts_before_the_obstacle() -> None:
 @pytest.mark.slow
 def test_the_navigators_get_around_what_is_on_no_map() -> None:
     run = run_of("obstacle_navigation")
-    # Nearer than Nav2 keeps only to what was moved before the robot.
+    # Only an obstacle placed in front of the robot comes nearer than the distance that Nav2 keeps.
     assert min(pose["gap"] for pose in poses(run.record)) > 0.02
     feedback = [entry["data"]["value"] for entry in run.log if entry["event"] == "action_navigate.u_feedback"]
     assert {value["number_of_recoveries"] if isinstance(value, dict) else value for value in feedback} == {0, 1}
@@ -142,7 +142,7 @@ def test_the_layer_blocks_steps_of_a_controller_that_knows_no_danger() -> None:
     blocked = [entry["time"] for entry in run.log if entry["direction"] == "blocked"]
     ((stop, go),) = stops(run.record)
     assert sum(stop < time < go for time in blocked) > 10
-    # Before the obstacle, too: where the robot stood for seconds.
+    # The layer also blocks steps before the obstacle, where the robot stood for seconds.
     waiting = [pose["travelled"] for pose in poses(run.record, 8.0, 11.0)]
     assert max(waiting) - min(waiting) < 0.01
     assert sum(8.0 < time < 11.0 for time in blocked) > 20
@@ -167,7 +167,7 @@ def test_the_warehouse_robot_is_slow_where_it_comes_near_to_something() -> None:
 def test_the_sprayer_leaves_out_what_has_been_sprayed() -> None:
     boom = run_of("sprayer").simulation.device(Boom)
     assert len(boom.sprayed) > 60
-    # At the edges of squares, and where a route begins within one.
+    # Overlaps occur at the edges of squares, and where a route begins within a square.
     assert boom.twice < 0.1 * len(boom.sprayed)
 
 

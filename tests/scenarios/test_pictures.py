@@ -1,4 +1,4 @@
-"""The pictures in the docs are those of the runs, and are shown."""
+"""The pictures in the docs match the runs, and pages show all of them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.scenarios.runs import run_of
 from tests.searching import slow_but
 
 ROOT = Path(__file__).parents[2]
-#: With all who look at the same runs.
+#: The group shares the runs of the scenarios.
 pytestmark = pytest.mark.xdist_group("scenarios")
 EACH = pytest.mark.parametrize("name", slow_but(["line_follower", "push_ball", "supervised_line_follower"], SCENARIOS))
 

@@ -1,4 +1,4 @@
-"""The second opinions themselves: they object to controllers of models that lack something."""
+"""The rule books object to controllers from models with a missing requirement."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.scenarios.runs import violations_of
 if TYPE_CHECKING:
     from pathlib import Path
 
-#: Something that a model demands, without which its controller goes wrong in the scenario, and what is left instead.
+#: Scenario, a part of its model that the rule book needs, and the replacement of that part.
 DEMANDS = [
     ("line_follower", " and EmergencyStop.in_service", ""),
     ("line_follower", " and Lidar.free", ""),
@@ -67,7 +67,7 @@ DEMANDS = [
 ]
 
 
-#: The first of each robot is left out in a run of all tests; `benchmarks/matrix.py` leaves out the others.
+#: A run of all tests omits the first part of each robot; `benchmarks/matrix.py` omits the others.
 FIRST = {name: demand for name, demand, _ in reversed(DEMANDS)}
 
 

@@ -1,4 +1,4 @@
-"""Each rule of the showcases objects to a recording that breaks it, and to nothing before that."""
+"""Each rule of the showcases objects to a recording that violates it, and not earlier."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def limit(speed: float) -> dict[str, Any]:
 
 
 def with_button(log: Log) -> Log:
-    """A recording of a robot that was set going, with a button that repeats whether it is pressed."""
+    """Prefix a recording with `continue`, and repeat the state of the button in it."""
     pressed, time, found = False, 0.0, Log()
     for entry in [GO_ON, *log]:
         if entry["time"] > time:
@@ -70,7 +70,7 @@ WAREHOUSE = [
     ([*IN_AISLE, *scans(0.4)], sent("navigate", {}), "something is in the way"),
     ([*IN_AISLE, *scans()], sent("navigate", {}), "something is in the way"),
     (IN_AISLE, sent("navigate", {}, 1.6 + SLACK), "a lidar is silent"),
-    # Before it has set off it would turn back.
+    # Before its departure, the robot would turn back.
     ([*UNDER_WAY, heard("charge", {"percentage": 0.19})], sent("navigate", {}), "out with little power"),
     ([*UNDER_WAY, heard("charge", {"percentage": 0.19})], STOP, "the journey has not been cancelled"),
     ([*UNDER_WAY, STOP], STOP, "the journey has not been cancelled"),
@@ -130,7 +130,7 @@ ROUTE = [*READY, heard("route", {"poses": [{}]})]
 AUTOMATIC = [*ROUTE, heard("automatic", True)]
 DRIVING = [*AUTOMATIC, sent("drive", {})]
 BY_HAND = [*READY, heard("wish", {})]
-#: The stick is held while the mode is switched.
+#: The operator holds the stick during a change of the mode.
 HELD = [*READY, heard("automatic", True), heard("wish", {}), heard("automatic", False), heard("wish", {})]
 
 SPRAYER = [

@@ -1,4 +1,4 @@
-"""`after` in all views of a model: each test holds a sentence of the language's page."""
+"""`after` in all views of a model: each test checks a sentence of the page on the language."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def timeouts(model: sct.SupervisoryControlModel) -> Iterator[sct.Event]:
 
 
 def test_to_synthesis_it_is_an_uncontrollable_event(model: sct.SupervisoryControlModel) -> None:
-    """To synthesis an `after` is an uncontrollable event `component_X.u_after1…` (text order)."""
+    """In the sct model, an `after` is an uncontrollable event `component_X.u_after1…`, numbered in text order."""
     found = list(timeouts(model))
     assert [(event.name, event.controllable, event.kind.name) for event in found] == [
         ("u_after1", False, "timeout"),
@@ -85,7 +85,7 @@ def test_to_synthesis_it_is_an_uncontrollable_event(model: sct.SupervisoryContro
 
 
 def test_it_is_possible_while_its_state_lasts(model: sct.SupervisoryControlModel) -> None:
-    """Possible at any time while its state lasts, and nowhere else."""
+    """A timeout is possible at any time in its state, and in no other state."""
     where = {
         edge.event.name: location.name
         for location in model.plants[3].locations
@@ -100,7 +100,7 @@ def test_it_is_possible_while_its_state_lasts(model: sct.SupervisoryControlModel
 
 
 def test_what_is_proven_holds_for_all_durations(path: Path, model: sct.SupervisoryControlModel) -> None:
-    """Two models that differ in durations only have the same supervisor."""
+    """Two models that differ only in durations have the same supervisor."""
     path.write_text(GATE.replace("3.0 s", "2 min").replace("500 ms", "1 ms"))
     other = robosc.to_sct(robosc.load(path))
     robosc.synthesize(other)
@@ -142,7 +142,7 @@ def test_the_definition_tells_the_time(path: Path) -> None:
     Draft202012Validator(schema).validate(told)
 
 
-#: What is wrong with the times of a generated engine.
+#: Faults in the times of a generated engine.
 MUTANTS = [
     ("    500U", "    501U"),
     (

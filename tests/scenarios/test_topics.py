@@ -1,4 +1,4 @@
-"""The world has what a scenario's controller is connected to (thesis tables 6.1 to 6.7), with the same types."""
+"""The world has all connections of a scenario's controller (thesis, tables 6.1 to 6.7), with the same types."""
 
 from __future__ import annotations
 

@@ -1,11 +1,11 @@
-"""Models that the literature knows the supervisors of."""
+"""Models from the literature with known supervisors."""
 
 from robosc.model import sct
 from tests.sct_models import edge, model, needs, plant
 
 
 def machine(number: int):
-    """A machine that starts when told and is done when it likes."""
+    """Return a machine that starts on command and finishes at any time."""
     start, done = f"start{number}", f"done{number}"
     return plant(
         f"M{number}",
@@ -16,7 +16,7 @@ def machine(number: int):
 
 
 def machine_buffer_machine() -> sct.SupervisoryControlModel:
-    """Ramadge and Wonham's small factory: M1 must not be done while the one place of the buffer is taken."""
+    """Return Ramadge and Wonham's small factory: M1 must not finish while the buffer's only place is taken."""
     buffer = plant(
         "B",
         {
@@ -29,7 +29,7 @@ def machine_buffer_machine() -> sct.SupervisoryControlModel:
 
 
 def counting_buffer() -> sct.SupervisoryControlModel:
-    """The same with three places and a requirement; what comes in beyond is lost."""
+    """Return the same factory with a buffer of three places and a requirement; further parts are lost."""
     buffer = plant(
         "B",
         {"only": [edge("done1", do={"n": "n + 1"}), edge("start2", do={"n": "n - 1"})]},
@@ -39,10 +39,10 @@ def counting_buffer() -> sct.SupervisoryControlModel:
 
 
 def philosophers(number: int) -> sct.SupervisoryControlModel:
-    """Philosophers who take their forks in any order and put both down at once.
+    """Return philosophers who take their forks in any order and put both down at once.
 
-    Each fork is free, with its left or with its right philosopher, and that tells what each philosopher does: 3^number
-    states. Two of them are deadlocks: all have their left, or all their right fork.
+    Each fork is free or is held by its left or right philosopher, which determines the state of each philosopher:
+    3^number states. Two of them are deadlocks: all philosophers have their left fork, or all have their right fork.
     """
     philosophers_ = [
         plant(

@@ -1,4 +1,4 @@
-"""Synthesis by the definition: one state at a time, over sets. Slow on purpose, and of the same mind as nobody else."""
+"""Synthesis by the definition: one state at a time, over sets. Deliberately slow and independent of the tool."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,13 +9,13 @@ from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.semantics.edges import edges_from, edges_of
 
-#: For each plant its location, for each variable its value, in the order of the model.
+#: The location of each plant and the value of each variable, in the order of the model.
 State = tuple[Any, ...]
 
 
 @dataclass(frozen=True)
 class Oracle:
-    """What synthesis is to find out about a model."""
+    """The expected results of synthesis for a model."""
 
     model: sct.SupervisoryControlModel
 
@@ -25,7 +25,7 @@ class Oracle:
 
     @cached_property
     def places(self) -> dict[Any, int]:
-        """Where in a state an element's value is."""
+        """The index of each element's value in a state."""
         return {e: index for index, e in enumerate(e for plant in self.model.plants for e in (plant, *plant.variables))}
 
     @cached_property
@@ -38,7 +38,7 @@ class Oracle:
         )
 
     def value(self, expression: ex.Expression | None, state: State, inputs: dict[sct.Input, Any]) -> Any:  # noqa: C901, PLR0912
-        """The value of an expression; an enumeration's is the literal itself. An absent one is true."""
+        """Return the value of an expression: for an enumeration the literal itself, for None true."""
 
         def of(child: ex.Expression) -> Any:
             return self.value(child, state, inputs)
@@ -94,16 +94,16 @@ class Oracle:
         raise TypeError(expression)
 
     def inputs(self, event: sct.Event) -> list[dict[sct.Input, Any]]:
-        """All that an event may come with."""
+        """Return all combinations of input values of an event."""
         values = product(*(values_of(parameter.type) for parameter in event.inputs))
         return [dict(zip(event.inputs, chosen, strict=True)) for chosen in values]
 
     def enabled(self, event: sct.Event, state: State) -> bool:
-        """Whether the plants let the event happen with some data."""
+        """Return whether the plants permit the event with some data."""
         return any(self.edges(event, state, inputs) is not None for inputs in self.inputs(event))
 
     def edges(self, event: sct.Event, state: State, inputs: dict[sct.Input, Any]) -> list[sct.Edge] | None:
-        """The edges that the plants take together; None where the event is not enabled with this data."""
+        """Return the edges that the plants take together, or None if the event is not enabled with this data."""
         taken = []
         for plant in self.model.plants:
             if not any(edge.event is event for edge in edges_of(plant)):
@@ -119,7 +119,7 @@ class Oracle:
         return taken
 
     def successors(self, event: sct.Event, state: State) -> dict[State, dict[sct.Input, Any]]:
-        """The states after the event, each with input values that lead there."""
+        """Return the states after the event, each with input values that lead to it."""
         reached: dict[State, dict[sct.Input, Any]] = {}
         for inputs in self.inputs(event):
             if self.edges(event, state, inputs) is not None:
@@ -127,7 +127,7 @@ class Oracle:
         return reached
 
     def successor(self, event: sct.Event, state: State, inputs: dict[sct.Input, Any]) -> State:
-        """The state after an enabled event."""
+        """Return the state after an enabled event."""
         after = list(state)
         for edge in self.edges(event, state, inputs) or ():
             after[self.places[edge.target.eContainer()]] = edge.target
@@ -137,7 +137,7 @@ class Oracle:
         return tuple(after)
 
     def required(self, event: sct.Event, state: State) -> bool:
-        """Whether the requirements let the event happen."""
+        """Return whether the requirements permit the event."""
         return all(
             self.value(requirement.condition, state, {}) == (requirement.kind == sct.RequirementKind.needs)
             for requirement in self.model.requirements
@@ -145,7 +145,7 @@ class Oracle:
         )
 
     def violates(self, state: State) -> bool:
-        """Whether some invariant does not hold, or something can come that is forbidden."""
+        """Return whether an invariant is violated or a forbidden uncontrollable event is enabled."""
         forbidden = (event for event in self.events if not event.controllable and not self.required(event, state))
         return any(self.enabled(event, state) for event in forbidden) or not all(
             self.value(invariant.condition, state, {}) for invariant in self.model.invariants
@@ -155,7 +155,7 @@ class Oracle:
         return all(state[self.places[plant]].marked for plant in self.model.plants)
 
     def reach(self, start: State, *, requirements: bool, within: set[State] | None = None) -> set[State]:
-        """All states that can be reached from one."""
+        """Return all states that are reachable from a state."""
         seen, pending = {start}, [start]
         while pending:
             state = pending.pop()
@@ -174,7 +174,7 @@ class Oracle:
 
     @cached_property
     def uncontrolled_states(self) -> int:
-        """How many states of the plants there are, wherever requirement automata are."""
+        """The number of states of the plants, without requirement automata."""
         kept = [
             index
             for place, index in self.places.items()
@@ -213,7 +213,7 @@ class Oracle:
         return self.reach(self.initial, requirements=True, within=good) if self.initial in good else set()
 
     def allows(self, event: sct.Event, state: State) -> bool:
-        """Whether the event can happen in a controlled state under the supervisor."""
+        """Return whether the event can happen in a controlled state under the supervisor."""
         after = self.successors(event, state)
         return (
             bool(after) and self.required(event, state) and all(state_after in self.controlled for state_after in after)
@@ -221,7 +221,7 @@ class Oracle:
 
 
 def values_of(kind: ex.Type) -> list[Any]:
-    """All values of a type."""
+    """Return all values of a type."""
     match kind:
         case ex.BooleanType():
             return [False, True]

@@ -1,4 +1,4 @@
-"""Wide integers: acceleration comes to the same end as single steps, and soon."""
+"""Wide integers: acceleration reaches the same result as single steps, in few steps."""
 
 from unittest.mock import patch
 
@@ -35,7 +35,7 @@ def test_they_are_taken(monkeypatch):
 
 
 def counter(integer=INTEGER):
-    """Counts for ever, and may go while it has not counted to three."""
+    """Return a plant that counts without end; `go` may happen until the count is three."""
     return model(
         [
             plant(
@@ -51,7 +51,7 @@ def counter(integer=INTEGER):
 
 
 def turning(number, integer=INTEGER):
-    """Counters that stop and go on after every count."""
+    """Return counters that stop after every count and then continue."""
     return [
         plant(
             f"P{i}",
@@ -93,7 +93,7 @@ def test_counters_that_go_together():
 
 
 def test_a_counter_of_answers():
-    """What counts and what waits for it are different plants."""
+    """The counter and the plant that waits for it are different plants."""
     service = plant(
         "S",
         {
@@ -117,7 +117,7 @@ def test_a_counter_of_answers():
 
 
 def test_what_must_not_happen_after_a_million_counts():
-    """The supervisor lets it count as long as it may stop: its guard knows the number."""
+    """The supervisor permits counting until spilling becomes possible: its guard has the number."""
     tank = plant(
         "T",
         {

@@ -1,4 +1,4 @@
-"""Synthesis over decision diagrams against synthesis by the definition, on random models."""
+"""Symbolic synthesis against synthesis by the definition, on random models."""
 
 from unittest.mock import patch
 
@@ -21,7 +21,7 @@ RANDOM_MODELS = settings(
 
 
 def check(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:
-    """Everything that synthesis says of a model is what the definition says."""
+    """Compare every result of synthesis with the definition."""
     oracle = Oracle(model)
     assert synthesis.uncontrolled_states == oracle.uncontrolled_states
     assert synthesis.controlled_states == count(model).controlled_states == len(oracle.controlled)
@@ -47,7 +47,7 @@ def check_guards(oracle: Oracle, supervisor: sct.Supervisor) -> None:
 
 
 def check_parts_say_something(oracle: Oracle, guard: sct.EventGuard) -> None:
-    """A part is absent where it would be true in every state that the rest leaves."""
+    """Check that a part is absent if it is true in every state that the other parts permit."""
     states = [state for state in oracle.controlled if oracle.enabled(guard.event, state)]
     if guard.requirement is not None:
         assert not all(oracle.required(guard.event, state) for state in states), describe(guard)

@@ -1,4 +1,4 @@
-"""Vectors of decision diagrams compute what integers compute."""
+"""Arithmetic on vectors of decision diagrams equals integer arithmetic."""
 
 import operator
 

@@ -1,4 +1,4 @@
-"""Supervisors that are known, down to the text of their guards."""
+"""Known supervisors, compared down to the text of their guards."""
 
 import pytest
 
@@ -14,7 +14,7 @@ TEXT = SctPrinter()
 
 
 def guards(synthesis):
-    """For each guard that says something the text of its requirement and synthesis part."""
+    """Return the requirement and synthesis parts of each nontrivial guard as text."""
     assert synthesis.supervisor is not None
     return {
         event_name(guard.event): tuple(part and TEXT(part) for part in (guard.requirement, guard.synthesis))
@@ -110,7 +110,7 @@ def test_requirements_keep_their_conditions():
 
 
 def filling(*, minimum=0):
-    """A tank that fills and spills by itself once told to; its level can be anything when measured."""
+    """Return a tank that fills and spills by itself after a command; a measurement can give any level."""
     return model(
         [
             plant(

@@ -1,8 +1,8 @@
-"""Operations and peak nodes of synthesis are pinned: they are the same on every run and on every machine.
+"""Operations and peak nodes of synthesis are pinned: they are the same on every run and every machine.
 
 `pytest tests/synthesis/test_costs.py --accept` accepts new numbers. ROBOSC_ESCET_BENCHMARKS names the folder with the
-models that Eclipse ESCET times for synthesis (`benchmarks/cif_models.py` says where they are); they are not part of
-this repository.
+models that Eclipse ESCET uses to time synthesis. They are not part of this repository; `benchmarks/cif_models.py` gives
+their source.
 """
 
 import os

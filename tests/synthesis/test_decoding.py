@@ -1,4 +1,4 @@
-"""From sets of codes to expressions that a person reads, and back."""
+"""Convert sets of codes to readable expressions and back."""
 
 from itertools import pairwise
 
@@ -35,7 +35,7 @@ CHOICES = st.sampled_from(sorted(DOMAINS)).flatmap(
 
 
 def ranges_of(chosen):
-    """Ascending ranges with gaps between them."""
+    """Draw ascending ranges with gaps between them."""
     ordered = sorted(chosen)
     ends = [ordered[0], *(end for a, b in pairwise(ordered) if b > a + 1 for end in (a, b)), ordered[-1]]
     return list(zip(ends[::2], ends[1::2], strict=True))

@@ -1,4 +1,4 @@
-"""The arithmetic of decision diagrams is that of expressions, for all values of small ranges with signs."""
+"""Arithmetic on decision diagrams equals that of expressions, for all values of small signed ranges."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from robosc.synthesis.encoding import Encoding
 
 RANGES = {"a": range(-5, 7), "b": range(-3, 5), "p": range(2), "q": range(2)}
-#: Divisors: constants above zero.
+#: Divisors: positive constants.
 DIVISORS = (1, 2, 3, 5, 16)
 MODEL = model(
     [
@@ -33,7 +33,7 @@ MODEL = model(
     ]
 )
 VARIABLES = {variable.name: variable for variable in MODEL.plants[0].variables}
-#: The rows that an sct model may have.
+#: The operators that an sct model may have.
 ROWS = [
     row for row in (*BY_CLASS.values(), *FUNCTIONS.values()) if row.is_supervised and row.metaclass != engine.Remainder
 ]
@@ -49,9 +49,9 @@ def constant(value: int) -> ex.Expression:
 
 
 def expressions(row: Operator) -> Iterator[ex.Expression]:
-    """An operator or function of variables and of constants, with operands that it takes."""
+    """Return applications of an operator or function to variables and constants of matching types."""
     names = ("p", "q") if row.rule is Rule.LOGICAL else ("a", "b")
-    if row.metaclass is sct.Quotient:  # of what is not negative
+    if row.metaclass is sct.Quotient:  # the dividend is not negative
         for divisor in DIVISORS:
             left = ex.Addition(left=reference("a"), right=constant(5))
             yield sct.Quotient(left=left, right=constant(divisor))
@@ -69,7 +69,7 @@ def expressions(row: Operator) -> Iterator[ex.Expression]:
 
 
 def assert_equal(expression: ex.Expression) -> None:
-    """The value in decision diagrams is that of the interpreter, for all values of the variables."""
+    """Check that decision diagrams and the interpreter agree for all values of the variables."""
 
     def look(encoding: Encoding) -> list[tuple[dict[str, int], object, object]]:
         vector = encoding.vector(expression)
@@ -102,7 +102,7 @@ def test_an_operator(row: Operator) -> None:
 
 
 def test_operators_in_operators() -> None:
-    """What one gives is an operand of the next, of more bits than a variable has."""
+    """The result of one operator is an operand of the next and has more bits than a variable."""
 
     def negated() -> ex.Expression:
         return ex.UnaryMinus(operand=ex.Multiplication(left=reference("a"), right=reference("b")))

@@ -1,4 +1,4 @@
-"""Which events are followed as one."""
+"""Grouping of events into one step."""
 
 import pytest
 
@@ -11,7 +11,7 @@ ROBOTS = range(4)
 
 
 def warehouse(after_entering):
-    """Robots that enter and leave by an aisle; in the order of variables it stands between them."""
+    """Return robots that enter and leave by an aisle, which the variable order places between them."""
     enter, leave = ([f"{action}{i}" for i in ROBOTS] for action in ("enter", "leave"))
     aisle = {
         "free": [*(edge(event, to=after_entering) for event in enter), edge("close", to="taken")],
@@ -25,7 +25,7 @@ def warehouse(after_entering):
 
 
 def changed(given):
-    """What each step changes."""
+    """Return the elements that each step changes."""
 
     def look(encoding):
         merged = fixpoint._merged(steps(required_moves(event_relations(given, encoding))))

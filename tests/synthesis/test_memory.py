@@ -1,4 +1,4 @@
-"""Memory is bounded as a whole, and its lack is told in a sentence."""
+"""Memory is bounded as a whole, and exhaustion is reported in one sentence."""
 
 import subprocess
 import sys
@@ -46,7 +46,7 @@ def test_too_few_addresses_are_told():
         capture_output=True,
         text=True,
         check=False,
-        preexec_fn=limited,  # it forks on one thread
+        preexec_fn=limited,  # safe: the process forks with one thread
     )
     assert done.returncode == 2
     assert "decision diagrams need" in done.stderr

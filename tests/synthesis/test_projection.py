@@ -1,4 +1,4 @@
-"""Sets of states, seen from a few elements."""
+"""Projections of sets of states onto a few elements."""
 
 from unittest.mock import patch
 

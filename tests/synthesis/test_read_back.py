@@ -1,4 +1,4 @@
-"""Synthesis, exploration state by state and the generated CIF, read back, agree on how many states there are."""
+"""Synthesis, explicit exploration and the generated CIF, read back, agree on the number of states."""
 
 import pytest
 from hypothesis import event, given
@@ -36,19 +36,23 @@ def test_state_counts_agree(model):
 
 
 def read(text: str) -> sct.SupervisoryControlModel:
-    """The model in a CIF text. CIF does not say which event carries an input: it is one whose updates read it."""
+    """Return the model of a CIF text.
+
+    CIF does not name the event of an input: events whose guards or updates read the input get it.
+    """
     model = rebuild(text)
     for plant in model.plants:
         for location in plant.locations:
             for edge in edges_from(location):
-                for _, part in (found for update in edge.updates for found in tree(update)):
+                reads = [edge.guard] if edge.guard is not None else []
+                for _, part in (found for read in [*reads, *edge.updates] for found in tree(read)):
                     if isinstance(part, sct.InputReference) and part.input not in edge.event.inputs:
                         edge.event.inputs.append(part.input)
     return model
 
 
 def supervised_states(supervised: sct.SupervisoryControlModel) -> int:
-    """The states that the plants reach under the guards of the supervisor, which take the place of requirements."""
+    """Return the states that the plants reach under the supervisor's guards, which replace the requirements."""
     for guard in supervised.supervisor.guards:
         for part in (guard.requirement, guard.synthesis):
             if part is not None:

@@ -1,4 +1,4 @@
-"""What synthesis keeps of its promises besides the right supervisor."""
+"""Properties of synthesis other than the correctness of the supervisor."""
 
 import os
 import subprocess
@@ -99,7 +99,7 @@ def test_memory_is_bounded():
 
 
 def products(number):
-    """A variable that is the product of two others: every order needs very many nodes."""
+    """Return a variable that is the product of two others: every order needs very many nodes."""
     return model(
         [
             plant(

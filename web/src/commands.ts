@@ -1,10 +1,10 @@
-// Commands with their verdicts, what can happen besides, requirements.
+// Commands with their verdicts, other enabled events, and requirements.
 
 import type { Beside, Description, Event, Explanation, Input, Place, Value } from "./data";
 import { byId, html, worded } from "./elements";
 import { verdictOf, type Whole } from "./run";
 
-/** What the page can ask of the server; where there is none, nothing. */
+/** Requests of the page to the server. `perform` is null if the server accepts no actions. */
 export interface Asking {
   perform: ((event: string, inputs: Record<string, Value>, kept: [string[], Value][]) => void) | null;
   explain(event: string): Promise<Explanation>;
@@ -48,7 +48,7 @@ export class CommandsView {
     byId("events-section", HTMLElement).hidden = asking === null;
   }
 
-  /** `isLast`: only there something can happen. */
+  /** `isLast`: whether this is the last moment, the only one in which events can be performed. */
   show(whole: Whole, isLast: boolean): void {
     for (const [name, shown] of this.commands) {
       const verdict = whole.commands.get(name) ?? null;
@@ -68,7 +68,7 @@ export class CommandsView {
     }
   }
 
-  /** Brings a command into view, and marks it. */
+  /** Scrolls to a command and marks it. */
   find(event: string): void {
     for (const [name, { item }] of this.commands) {
       item.classList.toggle("found", name === event);
@@ -112,7 +112,7 @@ export class CommandsView {
     return html("button", { type: "button", class: "link", onclick: () => this.goTo(event.place) }, event.words);
   }
 
-  /** A button that lets an event happen, with a field for each of its inputs. */
+  /** A button that performs an event, with a field for each of its inputs. */
   private performer(name: string, event: Event): HTMLElement {
     const fields = event.inputs.map((input) => [input, field(input)] as const);
     const others = event.kept.map((kept) => [kept, free(kept)] as const);

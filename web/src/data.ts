@@ -1,6 +1,6 @@
-// What the server tells: see robosc/tools/view/description.py and robosc/tools/view/record.py.
+// Types of the server's data, defined in robosc/tools/view/description.py and robosc/tools/view/record.py.
 
-/** null: nobody knows it, or it is no finite number. */
+/** null: unknown, or not a finite number. */
 export type Value = string | number | boolean | null;
 
 export interface Place {
@@ -51,7 +51,7 @@ export interface Input {
   maximum?: number;
 }
 
-/** Data that the node keeps: the fields on the way to it. */
+/** Data that the node stores; `path` contains the names of the fields. */
 export interface Beside {
   path: string[];
   label: string;
@@ -63,7 +63,7 @@ export interface Event {
   controllable: boolean;
   owner: string;
   place: Place | null;
-  /** It comes when a time is up. */
+  /** Whether the event is the expiry of a timer. */
   timer?: boolean;
   inputs: Input[];
   kept: Beside[];
@@ -86,9 +86,9 @@ export interface Endpoint {
 
 export interface Description {
   robot: string;
-  /** The names of all robots that the server has. */
+  /** The names of all robots on the server. */
   robots?: string[];
-  /** Whether actions can be asked for. */
+  /** Whether the server accepts actions. */
   acts?: boolean;
   automata: Automaton[];
   events: Record<string, Event>;
@@ -115,7 +115,7 @@ export interface Moment {
   commands: Record<string, Verdict | null>;
   enabled: Record<string, boolean>;
   timers: Record<string, number | false>;
-  /** It says all, not what has changed. */
+  /** Whether the moment contains the complete state instead of changes. */
   whole?: boolean;
 }
 

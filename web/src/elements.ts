@@ -1,4 +1,4 @@
-// Elements are made here, and nowhere from markup: what a model says is text.
+// Only this module creates elements, and never from markup, so that the contents of a model remain text.
 
 type Attributes = Record<string, string | number | boolean | ((event: never) => void)>;
 
@@ -11,7 +11,7 @@ export function html<Name extends keyof HTMLElementTagNameMap>(
   return filled(document.createElement(name), attributes, children);
 }
 
-/** An SVG element, alike. */
+/** An SVG element with attributes, listeners and children. */
 export function svg<Name extends keyof SVGElementTagNameMap>(
   name: Name,
   attributes: Attributes = {},
@@ -20,7 +20,7 @@ export function svg<Name extends keyof SVGElementTagNameMap>(
   return filled(document.createElementNS("http://www.w3.org/2000/svg", name), attributes, children);
 }
 
-/** A text in which backticks enclose what the model says, as the children of an element. */
+/** A text as the children of an element. Backticks enclose parts from the model. */
 export function worded(text: string): (Node | string)[] {
   return text.split("`").map((part, number) => (number % 2 === 1 ? html("code", {}, part) : part));
 }
@@ -42,7 +42,7 @@ function filled<Kind extends Element>(element: Kind, attributes: Attributes, chi
   return element;
 }
 
-/** Lets a click or the keys Enter and Space do something. */
+/** Calls a function on a click and on the keys Enter and Space. */
 export function pressed(element: Element, act: () => void): void {
   element.addEventListener("click", (event) => {
     event.stopPropagation();

@@ -1,9 +1,9 @@
-// Where the states and transitions of an automaton, or the ends of a graph, are drawn: computed by ELK, in a worker.
+// Layout of the states and transitions of an automaton, or of the endpoints of a graph. ELK computes it in a worker.
 
 import ELK, { type ElkExtendedEdge, type ElkNode } from "elkjs/lib/elk-api";
 
 declare global {
-  // Set where the page came from files, and no worker may be started: see worker.ts.
+  // Only set in a page from files, which may not start a worker: see worker.ts.
   var layoutWorker: (new (url: string | undefined) => Worker) | undefined;
 }
 
@@ -38,7 +38,7 @@ export interface Drawing {
 const OPTIONS = {
   "elk.algorithm": "layered",
   "elk.direction": "DOWN",
-  // States stand in the order of the text, so the initial one first.
+  // States keep the order of the text, so the initial state is first.
   "elk.layered.considerModelOrder.strategy": "NODES_AND_EDGES",
   "elk.layered.cycleBreaking.strategy": "MODEL_ORDER",
   "elk.edgeRouting": "SPLINES",
@@ -55,7 +55,7 @@ const OPTIONS = {
 let engine: InstanceType<typeof ELK> | null = null;
 const drawings = new Map<string, Promise<Drawing>>();
 
-/** Starts the worker, which takes a while. */
+/** Starts the worker early, because the start takes time. */
 export function begin(): InstanceType<typeof ELK> {
   const Layouter = globalThis.layoutWorker;
   engine ??= new ELK({
@@ -65,7 +65,7 @@ export function begin(): InstanceType<typeof ELK> {
   return engine;
 }
 
-/** Boxes on both sides of a high one, each with a level line to it: ELK takes seconds for two hundred. */
+/** Boxes on both sides of a high one, each with a horizontal line to it. ELK would need seconds for 200 boxes. */
 export function columns(middle: Box, left: Box[], right: Box[]): Drawing {
   const [apart, between, margin] = [70, 10, 12];
   const sides = [left, right].map((side) => {
@@ -96,7 +96,7 @@ export function columns(middle: Box, left: Box[], right: Box[]): Drawing {
   return drawing;
 }
 
-/** Rejects where ELK can't lay it out. What is alike but for its words, as instances of a template, is laid out once. */
+/** Lays out a graph once for all graphs that differ only in their texts, such as instances of a template. Rejects if ELK fails. */
 export function layout(boxes: Box[], lines: Line[]): Promise<Drawing> {
   const graph: ElkNode = {
     id: "root",
@@ -138,7 +138,7 @@ function size(texts: string[], besides: number, above: number): { width: number;
   return { width: longest * LETTER + besides, height: texts.length * LINE + above };
 }
 
-/** The path of a line: splines as ELK gives them, three points a piece. */
+/** The path of a line with the splines of ELK, three points for each piece. */
 export function path(points: Point[]): string {
   const [start, ...rest] = points;
   if (start === undefined) return "";

@@ -1,4 +1,4 @@
-// The page of `robosc view`: a robot, and the moments of its run, from a server or from a file beside it.
+// The page of `robosc view`: a robot and the moments of its run, from a server or from a file in the same folder.
 
 import { CommandsView } from "./commands";
 import type { Description, Explanation, Exported, Moment, Value } from "./data";
@@ -10,7 +10,7 @@ import { stands, TextView } from "./text";
 import { TimelineView } from "./timeline";
 
 declare global {
-  // What `robosc view --export` writes.
+  // The data that `robosc view --export` writes.
   var robosc: Exported | undefined;
 }
 
@@ -23,10 +23,10 @@ const ALL_BUTTONS: [string, Record<string, unknown>][] = [
   ["Start again", { action: "restart" }],
 ];
 
-/** Milliseconds from one drawing to the next: nobody reads more than 30 a second, and the robot may run on the same machine. */
+/** Milliseconds between drawings. More than 30 a second are unreadable and take time from a robot on the same machine. */
 const DRAWING = 32;
 
-/** Which of the server's robots the page shows. */
+/** The number of the shown robot on the server. */
 const ROBOT = new URLSearchParams(location.search).get("robot") ?? "0";
 
 function asked(what: string, given: Record<string, string> = {}): string {
@@ -76,7 +76,7 @@ class Page {
     window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.schedule());
   }
 
-  /** Lets another of several robots be chosen. */
+  /** Shows a choice of the robots, if there are several. */
   private offer(robots: string[]): void {
     const choice = byId("robots-choice", HTMLSelectElement);
     choice.append(...robots.map((name, number) => html("option", { value: number, selected: String(number) === ROBOT }, name)));
@@ -90,7 +90,7 @@ class Page {
     this.schedule();
   }
 
-  /** Takes in moments, from a number on. */
+  /** Replaces the moments from a number on. */
   tell(from: number, moments: Moment[]): void {
     this.run.replace(from, moments);
     const { first, end } = this.run;
@@ -103,7 +103,7 @@ class Page {
     this.say(this.ofSource);
   }
 
-  /** How it stands with what the moments come from. */
+  /** Shows a changed status of the source of the moments. */
   saysOfSource(status: string): void {
     if (status === this.ofSource) return;
     this.ofSource = status;
@@ -122,7 +122,7 @@ class Page {
     this.schedule();
   }
 
-  /** However much comes, it is drawn 30 times a second at most; what somebody has chosen, in the next frame. */
+  /** Draws in the next frame: new moments at most 30 times a second, a choice of the user always. */
   private schedule(): void {
     if (this.drawing) return;
     this.drawing = true;
@@ -154,7 +154,7 @@ class Page {
     document.body.dataset["moment"] = String(this.shown);
   }
 
-  /** Shows what stands in a line of the text: a state, a transition, a component; else the requirement's command. */
+  /** Shows the element in a line of the text: the command of a requirement, else a state, a transition or a component. */
   private find(file: number, line: number): void {
     const requirement = this.description.requirements.find(({ place }) => place !== null && stands(place, file, line));
     if (requirement === undefined) this.robot.find(file, line);
@@ -197,7 +197,7 @@ async function start(): Promise<void> {
   const answer = await fetch(asked("description"));
   const page = new Page((await answer.json()) as Description, true);
   let source: EventSource | null = null;
-  // A hidden page lets its stream go: a browser opens six connections to one server, for all of its pages.
+  // A hidden page closes its stream, because a browser opens at most six connections to one server for all pages.
   const listen = (): void => {
     if (document.hidden) {
       source?.close();
@@ -211,7 +211,7 @@ async function start(): Promise<void> {
   await page.draw();
 }
 
-/** Shows what the server reports, from the first moment that it keeps. */
+/** Shows the moments from the server, from the first that it stores. */
 function moments(page: Page): EventSource {
   const source = new EventSource(asked("moments"));
   source.addEventListener("message", (event) => {

@@ -1,4 +1,4 @@
-// The robot: a card for each automaton with its picture, the state it is in lit, the last transition traced.
+// The robot: a card for each automaton with its picture, the current state highlighted, the last transition traced.
 
 import type { Automaton, Description, Endpoint, Moment, Place } from "./data";
 import { byId, html, pressed, svg } from "./elements";
@@ -6,7 +6,7 @@ import { type Box, columns, type Drawing, layout, type Line, LINE, path } from "
 import type { Whole } from "./run";
 import { stands } from "./text";
 
-/** Above so many lines a transition says how many more there are. */
+/** Greatest number of lines on a transition. A transition with more shows their number. */
 const MOST_LINES = 3;
 const EVERYWHERE = "in every state";
 
@@ -20,7 +20,7 @@ interface Picture {
   now: HTMLElement;
   variables: Map<string, HTMLElement>;
   states: SVGGElement[];
-  /** By the number of a transition: what is drawn for it. */
+  /** The drawn element of each transition, by number. */
   transitions: Map<number, SVGGElement>;
   lit: number;
   traced: SVGGElement[];
@@ -46,7 +46,7 @@ export class RobotView {
     byId("zoom-out", HTMLButtonElement).addEventListener("click", () => this.scale(0.8));
   }
 
-  /** Lays out and draws everything; resolves when it is there. */
+  /** Lays out and draws all cards; resolves when they are complete. */
   async draw(): Promise<void> {
     const jobs = this.description.automata.map((automaton) => this.card(automaton));
     if (this.description.communication.length > 0) this.graph(this.description.communication);
@@ -165,7 +165,7 @@ export class RobotView {
     if (picture.lit >= 0) this.light(picture, picture.lit, true);
   }
 
-  /** A transition that stays, as a line of the text in a box. */
+  /** A transition without a change of state, as a line of text in a box. */
   private row(picture: Picture, row: Row, box: { x: number; y: number }, line: number): SVGGElement {
     const text = svg("text", { x: box.x + 12, y: box.y + line * LINE + 2, class: "row" }, row.text);
     const group = svg("g", { class: "transition" }, text);
@@ -174,7 +174,7 @@ export class RobotView {
     return group;
   }
 
-  /** Lets what is drawn lead to a place in the text. */
+  /** Links a drawn element to a place in the text. */
   private leads(element: SVGGElement, name: string, place: Place | null): void {
     for (const [attribute, value] of [["tabindex", "0"], ["role", "button"], ["aria-label", name]] as const)
       element.setAttribute(attribute, value);
@@ -188,7 +188,7 @@ export class RobotView {
       { class: "transition" },
       svg("path", { d: path(drawn.points), class: "line", "marker-end": "url(#tip)" }),
     );
-    // A space between the texts: a screen reader, and who compares the name with what is seen, read them as one.
+    // A space separates the texts for screen readers and for comparisons of the name with the visible text.
     line.texts.forEach((text, index) =>
       group.append(svg("text", { x: drawn.label.x + 3, y: drawn.label.y + (index + 1) * LINE - 3, class: "label" }, text), " "),
     );
@@ -231,7 +231,7 @@ export class RobotView {
     drawn.append(image);
   }
 
-  /** Brings what stands in a line of the text into view, and marks it: a state, a transition, or else a whole card. */
+  /** Scrolls to the element in a line of the text and marks it: a state, a transition, or else a whole card. */
   find(file: number, line: number): void {
     for (const element of this.holder.querySelectorAll(".found")) element.classList.remove("found");
     let [found, length]: [Element | null, number] = [null, Infinity];
@@ -263,7 +263,7 @@ export class RobotView {
     byId("fold", HTMLButtonElement).textContent = open ? "Fold all" : "Unfold all";
   }
 
-  /** Zooms; what is in the middle stays there. */
+  /** Zooms around the center of the view. */
   private scale(factor: number): void {
     const { scrollTop, scrollLeft, clientHeight, clientWidth } = this.holder;
     this.zoom = Math.min(3, Math.max(0.3, this.zoom * factor));
@@ -319,7 +319,7 @@ interface Joined extends Line {
   transitions: number[];
 }
 
-/** What is drawn of an automaton: transitions that stay are rows of their state, those between two one line. */
+/** Boxes, lines and rows of an automaton. Self-loops are rows of their state; all transitions between two states share one line. */
 function contents(automaton: Automaton): { boxes: Box[]; lines: Joined[]; rows: Map<number, Row[]> } {
   const rows = new Map<number, Row[]>();
   const between = new Map<string, Joined>();

@@ -1,4 +1,4 @@
-// The moments of a run; each says what has changed, and any of them can be looked at whole.
+// The moments of a run. Each contains changes; `at` returns the complete state of a moment.
 
 import type { Moment, Value, Verdict } from "./data";
 
@@ -9,17 +9,21 @@ export interface Whole {
   timers: Map<string, number>;
 }
 
-/** What becomes of a command: it is allowed, forbidden, or the robot is not ready for it. */
+/** Verdict on a command: allowed, forbidden, or the robot is not ready for it. */
 export function verdictOf(verdict: Verdict | null): "allowed" | "forbidden" | "unready" {
   return verdict === null ? "allowed" : verdict.by === "plant" ? "unready" : "forbidden";
 }
 
-/** From one moment that is kept whole to the next. */
+/** Number of moments between two stored complete states. */
 const APART = 64;
-/** So many moments of a robot that runs; what is played is never so long, and can be taken back. */
+/** Greatest number of stored moments of a running robot. A simulation is shorter, so that all its steps can be undone. */
 export const MOST = 40_000;
 
-/** Of more than so many moments the older half goes. Moments are numbered from the beginning of the run, also where the oldest are not kept. */
+/**
+ * The stored moments of a run. Above the limit, the older half is deleted.
+ *
+ * The number of a moment counts from the beginning of the run, including deleted moments.
+ */
 export class Run {
   first = 0;
   private moments: Moment[] = [];
@@ -39,7 +43,7 @@ export class Run {
     return this.moments[number - this.first]!;
   }
 
-  /** Replaces all moments from a number on; those before are forgotten where some between are missing. */
+  /** Replaces all moments from a number on. Deletes earlier moments if there is a gap. */
   replace(from: number, moments: Moment[]): void {
     if (from < this.first || from > this.end + 1) {
       this.clear([]);
@@ -53,7 +57,7 @@ export class Run {
     if (this.moments.length > this.most) this.forget(this.moments.length - (this.most >> 1));
   }
 
-  /** Everything at a moment. What it returns is not to be changed. */
+  /** The complete state at a moment. The caller must not change it. */
   at(number: number): Whole {
     const index = number - this.first;
     if (this.last !== null && this.last.index === index) return this.last.whole;

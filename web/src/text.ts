@@ -1,9 +1,9 @@
-// The text of the model: coloured, with places in it that other panels point to, and that point back.
+// The text of the model with syntax colors. Places in it and elements of other panels link to each other.
 
 import type { Description, Place } from "./data";
 import { byId, html } from "./elements";
 
-/** Whether a place is of a line, or has it in it. */
+/** Whether a place contains a line. */
 export function stands(place: Place, file: number, line: number): boolean {
   return place.file === file && place.line <= line && line <= place.endLine;
 }
@@ -13,10 +13,10 @@ export class TextView {
   private readonly chosen = byId("file", HTMLSelectElement);
   private shown = -1;
   private marked: Element[] = [];
-  /** The line, from 1, that the arrow keys have come to. */
+  /** The line that the arrow keys selected, counted from 1. */
   private line = 1;
 
-  /** `show`: shows what stands in a line of a file. */
+  /** `show`: shows the element in a line of a file. */
   constructor(
     private readonly description: Description,
     private readonly show: (file: number, line: number) => void,
@@ -65,7 +65,7 @@ export class TextView {
     if (!isSeen) this.lines.scrollTop = top - height / 3;
   }
 
-  /** Marks the lines of what has just happened. */
+  /** Marks the lines of the last event. */
   happened(places: (Place | null)[]): void {
     for (const line of this.lines.querySelectorAll(".last")) line.classList.remove("last");
     for (const place of places) {

@@ -1,15 +1,15 @@
-// The time line: a lane for each component with its states, for each command with its verdicts, and for what was refused;
-// what happened; numbers and times over time.
+// The time line: lanes for the states of each component, the verdicts of each command, and refused commands; the list of
+// events; plots of numbers and times.
 
 import type { Description, Moment, Value } from "./data";
 import { byId, html } from "./elements";
 import { type Run, verdictOf, type Whole } from "./run";
 
-/** So many moments are drawn, those up to the shown one and some after it. */
+/** Number of drawn moments: those up to the shown one and some after it. */
 const WINDOW = 400;
 const LANE = 16;
 const NAMES = 150;
-/** So many events are listed on each side of the shown one. */
+/** Number of listed events on each side of the shown one. */
 const AROUND = 8;
 
 export class TimelineView {
@@ -59,7 +59,7 @@ export class TimelineView {
     return html("li", { "data-key": key }, html("span", {}, title, ": ", now, " ", range), canvas);
   }
 
-  /** Chooses the moment under the pointer; what is drawn is still that of when it was pressed. */
+  /** Chooses the moment under the pointer, among the moments drawn when the pointer was pressed. */
   private drag(event: PointerEvent): void {
     const [first, last] = this.dragged;
     const along = (event.offsetX - NAMES) / (this.canvas.clientWidth - NAMES);
@@ -162,7 +162,7 @@ export class TimelineView {
 }
 
 interface Plot {
-  /** A number (NaN: there is none), or of what is no number its text. */
+  /** A number (NaN if there is none), or the text of another value. */
   value: (whole: Whole) => number | string;
   said: (whole: Whole) => string;
   canvas: HTMLCanvasElement;
@@ -174,14 +174,14 @@ function number(value: Value | undefined): number {
   return typeof value === "number" ? value : NaN;
 }
 
-/** The same for the same text. */
+/** Hash of a text. */
 function hash(text: string): number {
   let found = 0;
   for (const letter of text) found = (31 * found + letter.codePointAt(0)!) >>> 0;
   return found;
 }
 
-/** How wide texts are: the same ones are drawn in every frame. */
+/** Cached widths of texts, because every frame draws the same ones. */
 const widths = new Map<string, number>();
 const MOST_WIDTHS = 5000;
 
@@ -194,7 +194,7 @@ function widthOf(context: CanvasRenderingContext2D, text: string): number {
   return width;
 }
 
-/** A text, cut where it is wider than its place. */
+/** A text, shortened to a width. */
 function shortened(context: CanvasRenderingContext2D, text: string, width: number): string {
   if (widthOf(context, text) <= width) return text;
   let length = Math.min(text.length, Math.floor(width / 4));
@@ -202,7 +202,7 @@ function shortened(context: CanvasRenderingContext2D, text: string, width: numbe
   return length === 0 ? "" : `${text.slice(0, length)}…`;
 }
 
-/** Draws texts over time, neighbours that are alike as one; `text`: the colour in which they are written, if they are. */
+/** Draws texts over time, equal neighbors as one. `text`: the color of the lettering, or null for bars without text. */
 function drawLane(
   context: CanvasRenderingContext2D,
   texts: string[],
@@ -224,10 +224,10 @@ function drawLane(
   }
 }
 
-/** The colours of what becomes of a command. */
+/** The color of each verdict on a command. */
 const VERDICTS: Record<string, string> = { allowed: "allowed-lane", forbidden: "forbidden-lane", unready: "unready-lane" };
 
-/** Draws numbers as steps; from where to where they go, as a text. */
+/** Draws numbers as steps and returns their range as a text. */
 function drawPlot(canvas: HTMLCanvasElement, values: number[], shown: number, line: string, here: string): string {
   const context = prepared(canvas, 40);
   const known = values.filter((value) => !Number.isNaN(value));

@@ -1,4 +1,4 @@
-// ELK's worker. In a worker it answers messages; in a page from files it is called as if it were one.
+// ELK's worker. In a worker it answers messages; a page from files calls it directly.
 
 import * as worker from "elkjs/lib/elk-worker.min.js";
 

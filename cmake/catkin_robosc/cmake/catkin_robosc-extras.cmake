@@ -2,8 +2,9 @@ include(${CMAKE_CURRENT_LIST_DIR}/find-robosc.cmake)
 
 # robosc_generate_controller(<model> [CONFIG <file>] [LIBRARY_PATH <folder>...] [INTERFACE_PATH <folder>...] [TESTS])
 #
-# Makes the node that controls the robot of a model a part of this package: executable, launch file, parameters. Before
-# catkin_package(), which exports its engine, and after generate_messages() of types of this package that the model uses.
+# Adds the controller node of a model's robot to this package: executable, launch file, parameters. Call it before
+# catkin_package(), which exports its engine. If the model uses types of this package, call it after
+# generate_messages().
 #
 # @public
 macro(robosc_generate_controller)
@@ -18,9 +19,9 @@ macro(robosc_generate_controller)
   _robosc_generate_controller(${ARGV})
 endmacro()
 
-# A function, so that what it finds is not what the package has found for itself.
+# A function, so that the packages it finds do not replace those of the calling package.
 function(_robosc_generate_controller)
-  # The definitions in this package count before others, then those of a workspace that catkin_make builds as one project.
+  # Definitions in this package take precedence, then those of a workspace that catkin_make builds as one project.
   robosc_generate(fragment ros1 ${PROJECT_NAME} ${ARGV} INTERFACE_PATH
     "${CMAKE_CURRENT_SOURCE_DIR}" "${CMAKE_SOURCE_DIR}")
   include("${fragment}")

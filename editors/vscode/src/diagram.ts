@@ -1,4 +1,4 @@
-// The diagram of a model beside its text, drawn anew when the text is saved.
+// The diagram of a model beside its text, redrawn on save.
 
 import { dirname } from "node:path";
 import * as vscode from "vscode";
@@ -38,14 +38,14 @@ export class Diagrams {
     const options = ["diagram", file.fsPath, "--kind", kind, "--format", "svg", ...searched(file)];
     const text = await printed(tool, options, dirname(file.fsPath)).catch(String);
     const panel = this.panels.get(key);
-    // With errors in the text the picture before them stays.
+    // If the text has errors, the previous picture remains.
     if (panel !== undefined && (text.startsWith("<svg") || panel.webview.html === "")) {
       panel.webview.html = page(text);
     }
   }
 }
 
-/** The picture as an image: nothing in it runs, and nothing is fetched. What is no picture is shown as it is. */
+/** The picture as an image, which cannot run scripts or load files. Any other output is shown as text. */
 function page(text: string): string {
   const policy = "default-src 'none'; img-src data:; style-src 'unsafe-inline'";
   const shown = text.startsWith("<svg")

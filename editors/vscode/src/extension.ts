@@ -10,7 +10,7 @@ import { findTool, needTool, printed, searched, setUp } from "./tool";
 const targets = ["ros2", "ros1", "supervisor", "cif", "ros2-layer", "xmi"];
 
 let client: LanguageClient | undefined;
-/** The last start of the language server, which the next one waits for. */
+/** The last start of the language server. The next start waits for it. */
 let serving: Promise<void> = Promise.resolve();
 
 export async function activate(context: vscode.ExtensionContext): Promise<void> {
@@ -39,7 +39,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
       },
     }),
     vscode.debug.registerDebugConfigurationProvider("robosc", {
-      // F5 without a launch.json.
+      // F5 in a workspace without a launch.json.
       resolveDebugConfiguration: (_folder, configuration) =>
         configuration.type ? configuration : configurationFor("${file}"),
     }),
@@ -57,7 +57,7 @@ export async function deactivate(): Promise<void> {
   await client?.stop();
 }
 
-/** Starts the language server, anew where it runs, after those starts that have begun. */
+/** Starts or restarts the language server after all pending starts. */
 function serve(context: vscode.ExtensionContext): Promise<void> {
   serving = serving.then(
     () => restart(context),
@@ -82,7 +82,7 @@ async function restart(context: vscode.ExtensionContext): Promise<void> {
       commands: true,
     },
     middleware: {
-      // The server would forget the folder when the editor ends: it goes to the settings, which start it anew.
+      // The server would lose the folder at the end of the session, so it goes to the settings; their change restarts the server.
       executeCommand: (command, parameters, next) =>
         command === "robosc.addLibraryFolder"
           ? addLibraryFolder(vscode.Uri.parse(String(parameters[0])))
@@ -96,7 +96,7 @@ async function restart(context: vscode.ExtensionContext): Promise<void> {
   });
 }
 
-/** Does something with the model in the active editor, saved. */
+/** Saves the model in the active editor and calls a function with it. */
 async function onModel(
   context: vscode.ExtensionContext,
   action: (tool: string, file: vscode.Uri, editor: vscode.TextEditor) => unknown,
@@ -123,7 +123,7 @@ async function transform(tool: string, file: vscode.Uri): Promise<void> {
   }
 }
 
-/** Runs the controller as a node, until the task is ended. */
+/** Runs the controller as a node until the task ends. */
 async function run(tool: string, file: vscode.Uri): Promise<void> {
   await start(tool, "run", file, []);
 }

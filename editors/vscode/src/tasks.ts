@@ -1,4 +1,4 @@
-// Tasks: commands of the tool on a model, their findings among the problems.
+// Tasks: commands of the tool on a model, with their findings in the Problems view.
 
 import { relative } from "node:path";
 import * as vscode from "vscode";
@@ -37,7 +37,7 @@ export function taskFor(tool: string, definition: Definition, folder: vscode.Wor
   return task;
 }
 
-/** The definition of a command on a file, and the folder that it is of. */
+/** The definition of a command on a file, and the workspace folder of the file. */
 export function definitionFor(
   command: string,
   file: vscode.Uri,

@@ -1,4 +1,4 @@
-// Which robosc the extension starts, and how it gets one.
+// Search for the robosc command, and its installation.
 
 import { execFile } from "node:child_process";
 import { access, constants } from "node:fs/promises";
@@ -26,7 +26,7 @@ function ownEnvironment(context: vscode.ExtensionContext): string {
   return join(context.globalStorageUri.fsPath, "venv");
 }
 
-/** The command: the one that is set, of a `.venv` in the workspace, on the PATH, or set up before; none of these: null. */
+/** The command from the settings, a `.venv` in the workspace, the PATH, or an earlier setup, in this order; else null. */
 export async function findTool(context: vscode.ExtensionContext): Promise<string | null> {
   const set = settings().get<string>("path", "");
   if (set) {
@@ -46,7 +46,7 @@ export async function findTool(context: vscode.ExtensionContext): Promise<string
   return null;
 }
 
-/** The same; where there is none, offers to set one up. */
+/** The command as in `findTool`. If there is none, offers to set one up. */
 export async function needTool(context: vscode.ExtensionContext): Promise<string | null> {
   const found = await findTool(context);
   if (found !== null) {
@@ -66,7 +66,7 @@ export async function needTool(context: vscode.ExtensionContext): Promise<string
   return null;
 }
 
-/** Installs the package into an environment of the extension's own; the command, or null where that fails. */
+/** Installs the package into the extension's own environment. Returns the command, or null on failure. */
 export async function setUp(context: vscode.ExtensionContext): Promise<string | null> {
   const place = ownEnvironment(context);
   const python = join(place, programs, windows ? "python.exe" : "python");
@@ -87,7 +87,7 @@ export async function setUp(context: vscode.ExtensionContext): Promise<string | 
   });
 }
 
-/** The options that say where libraries and ROS packages lie, for a file. */
+/** The options with the search paths for libraries and ROS packages of a file. */
 export function searched(file?: vscode.Uri): string[] {
   const set = vscode.workspace.getConfiguration("robosc", file ?? null);
   return [
@@ -96,7 +96,7 @@ export function searched(file?: vscode.Uri): string[] {
   ];
 }
 
-/** What a call of the tool printed; its exit status does not matter. Rejects where it can't be started. */
+/** The output of the tool with any exit status. Rejects if the tool cannot start. */
 export async function printed(tool: string, options: string[], folder: string): Promise<string> {
   return new Promise((resolve, reject) => {
     execFile(tool, options, { cwd: folder, maxBuffer: 64 * 1024 * 1024 }, (error, output, errors) => {

@@ -1,5 +1,5 @@
-// The debugger, driven by the client that the debug adapters of VS Code themselves are tested with: `npm test`.
-// ROBOSC is the command line of the tool, if that is not `robosc`.
+// Tests of the debugger with the test client for debug adapters of VS Code: `npm test`.
+// The environment variable ROBOSC contains the command line of the tool; default: `robosc`.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -24,9 +24,9 @@ async function children(reference) {
 before(() => client.start());
 after(() => client.stop());
 
-test("it stops where a requirement begins to forbid, and says why", async () => {
+test("the debugger stops when a requirement forbids a command, and shows the reason", async () => {
   const requirement = line("requirement Passage");
-  // The breakpoint is at the requirement, the robot stops at the transition that makes it forbid.
+  // The breakpoint is at the requirement. The robot stops at the transition after which the requirement forbids its command.
   await client.hitBreakpoint(launched, { path: program, line: requirement }, { path: program, line: line("on response from weight if value >") });
   const { body } = await client.scopesRequest({ frameId: 1 });
   const scopes = new Map(body.scopes.map((scope) => [scope.name, scope.variablesReference]));
@@ -37,7 +37,7 @@ test("it stops where a requirement begins to forbid, and says why", async () => 
   assert.ok([...reasons.keys()].includes(`cart.rscd:${requirement}:3`), [...reasons.keys()].join());
 });
 
-test("what the console asks for happens, and is taken back", async () => {
+test("the console performs an event, and a step back undoes it", async () => {
   const asked = { expression: 'message_weight.u_response {"value": 5.0}', context: "repl" };
   const moved = client.waitForEvent("stopped");
   await client.evaluateRequest(asked);
@@ -49,7 +49,7 @@ test("what the console asks for happens, and is taken back", async () => {
   assert.equal((await client.evaluateRequest({ expression: "Load", context: "repl" })).body.result, "heavy");
 });
 
-test("the script goes on to its end", async () => {
+test("the script continues to its end", async () => {
   const refused = client.waitForEvent("stopped");
   await client.continueRequest({ threadId: 1 });
   assert.equal((await refused).body.reason, "exception");

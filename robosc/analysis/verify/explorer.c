@@ -1,11 +1,12 @@
-/* Plays a generated supervisor against what its model says of each event, and tells the first difference.
+/* Compares a generated supervisor with the predictions of its model for each event, and prints the first difference.
  *
  *     explorer REFERENCE STATES STEPS WALK
  *
- * REFERENCE is the file with the decision diagrams. It explores all states breadth first; where these are more than
- * STATES, or the events in them with all values of their inputs more than STEPS, it walks WALK random steps instead.
+ * REFERENCE is the file with the decision diagrams. The program explores all states breadth first. If there are more
+ * than STATES states, or more than STEPS events in them with all values of their inputs, it walks WALK random steps
+ * instead.
  *
- * A value is told as its code: how far it is from the least value, the position of a location or literal.
+ * A value is printed as its code: its distance from the least value, or the position of a location or literal.
  */
 #include <inttypes.h>
 #include <stdbool.h>
@@ -13,15 +14,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the model decides. The header includes that of the supervisor and has
+/* Declarations for the model. The header includes that of the supervisor and has
  *
- *     CELLS, INPUTS, EVENTS        how many cells (locations and variables), inputs and events the model has
+ *     CELLS, INPUTS, EVENTS        the numbers of cells (locations and variables), inputs and events of the model
  *     EVENT_NAMES                  the initializers of the events' names
  *     FOR_CELLS(DO), FOR_INPUTS(DO)  DO(number, member of the struct, least value) for all of them
- *     ENGINE(name), ENGINE_EVENTS  `name` with the supervisor's prefix; how many events the supervisor has
- *     FOR_DURATIONS(DO)            DO(number, member of the settings) for the times that are set on the robot
- *     TIMES                        where the model has timers, so that the supervisor takes the time
- *     STEPWISE                     where the supervisor has no control loop
+ *     ENGINE(name), ENGINE_EVENTS  `name` with the supervisor's prefix; the number of events of the supervisor
+ *     FOR_DURATIONS(DO)            DO(number, member of the settings) for the durations that are set on the robot
+ *     TIMES                        if the model has timers, so that functions of the supervisor take the time
+ *     STEPWISE                     if the supervisor has no control loop
  */
 #include "model.h"
 
@@ -32,10 +33,10 @@ static uint32_t now;
 #define NOW
 #endif
 
-enum { RESTART = 1000 }; /* Steps of a walk until it begins anew. */
+enum { RESTART = 1000 }; /* Steps of a walk before a restart. */
 
-/* A finite domain: the levels of its bits in the decision diagrams, the least significant first, and where a state
- * keeps them. */
+/* A finite domain: the levels of its bits in the decision diagrams, the least significant first, and its place in a
+ * state. */
 typedef struct domain {
     uint64_t last;
     unsigned bits, *level, word, shift;
@@ -66,7 +67,7 @@ static ENGINE(supervisor) robot, placed;
 #define GET_CELL(number, member, least) code[number] = (uint64_t)(int64_t)robot.state.member - UINT64_C(least);
 #define PUT_INPUT(number, member, least) robot.inputs.member = (int64_t)(chosen[number] + UINT64_C(least));
 
-/* Puts the robot into a state; `placed` keeps it as it is then. */
+/* Puts the robot into a state. `placed` keeps a copy. */
 static void put(const uint64_t *code)
 {
     (void)code;
@@ -102,7 +103,7 @@ static void assume(const domain *one, uint64_t code)
     }
 }
 
-/* Robot and model go into a state. */
+/* Puts robot and model into a state. */
 static void enter(const uint64_t *code)
 {
     put(code);
@@ -131,7 +132,7 @@ static void differ(const event *one, const uint64_t *state, bool possible, bool 
     exit(0);
 }
 
-/* Whether the event is possible in the state in which the robot and the model are. Where it is not, nothing happens. */
+/* Whether the event is possible in the current state of robot and model. If it is not, it must change nothing. */
 static bool asked(const event *one, const uint64_t *state)
 {
     const bool possible = holds(one->enabled);
@@ -146,7 +147,7 @@ static bool asked(const event *one, const uint64_t *state)
     return possible;
 }
 
-/* The state after a possible event with the chosen inputs; the robot goes back. */
+/* Computes the state after a possible event with the chosen inputs. Restores the robot. */
 static void perform(const event *one, const uint64_t *state, uint64_t *after)
 {
     for (unsigned position = 0U; position < one->inputs; ++position) {
@@ -174,7 +175,7 @@ static void perform(const event *one, const uint64_t *state, uint64_t *after)
 
 static uint64_t *states;
 static size_t words = 1U, count, room, places;
-static uint32_t *table; /* One more than the index of a state, 0 where the place is free. */
+static uint32_t *table; /* One more than the index of a state; 0 marks a free place. */
 
 static void *enough(void *memory)
 {
@@ -251,7 +252,7 @@ static bool next_choice(const event *one)
     return false;
 }
 
-/* Whether all of it was seen. */
+/* Explores all states. Returns false if a limit was reached. */
 static bool explore(uint64_t most_states, uint64_t most_steps)
 {
     uint64_t steps = 0U, now[CELLS + 1], after[CELLS + 1];
@@ -289,7 +290,7 @@ static uint64_t random_number(void)
     return state * UINT64_C(0x2545F4914F6CDD1D) >> 11;
 }
 
-/* Any code, every other time one near an end. */
+/* A random code. Half of the codes are close to an end of the range. */
 static uint64_t random_code(uint64_t last)
 {
     const uint64_t number = random_number() << 11 | random_number();
@@ -357,8 +358,8 @@ static unsigned *numbers(unsigned length)
     return values;
 }
 
-/* Levels and nodes; each domain with its last code and its levels; the initial state; the events, each with its
- * condition, its inputs, and the bits of what it changes. */
+/* Reads the levels and nodes, the last code and levels of each domain, the initial state, and the events. Each event
+ * has its condition, its inputs, and the bits of its effects. */
 static void load(void)
 {
     truth = enough(calloc((size_t)number() + 1U, sizeof *truth));
@@ -400,7 +401,7 @@ static void load(void)
     }
 }
 
-/* Finds each event of the model by its name, and compares the initial states. */
+/* Finds each event of the model by its name and compares the initial states. */
 static bool begin(void)
 {
     uint64_t code[CELLS + 1];

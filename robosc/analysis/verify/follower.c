@@ -1,16 +1,16 @@
-/* Does with a generated control loop what its input says, and tells what happens.
+/* Executes the operations in its input with a generated control loop, and prints the results.
  *
- * Each operation of the loop is told as a letter, the events that happened, whether what was asked for did, in models
- * with times when the next is up, and the state after it. `k` ends the line:
+ * A result consists of the letter of the operation, the events that happened, whether the requested event happened, the
+ * time of the next expiry in models with timers, and the state after the operation. `k` ends the line:
  *
- *     n EVENTS REACTIONS REACT RESOLUTION NOW   begins anew with these settings
- *     p EVENT   b   e   t   s   x   r   performs; a batch begins, ends; a tick; settling; a time ends; times start anew
- *     i INPUT CODE   w EVENT   d DURATION MILLISECONDS   c NOW   what holds from now on
- *     k   keeps how the loop is; says under which number, and which is the first that is like it
- *     g NUMBER   goes back there
+ *     n EVENTS REACTIONS REACT RESOLUTION NOW   starts again with these settings
+ *     p EVENT   b   e   t   s   x   r   performs; begins, ends a batch; ticks; settles; expires, restarts timers
+ *     i INPUT CODE   w EVENT   d DURATION MILLISECONDS   c NOW   sets values that hold from now on
+ *     k   saves the loop and prints its number, and the number of the first equal one
+ *     g NUMBER   restores that loop
  *
- * Two loops are alike where all bytes are, times counted from now. A value is told as its code: how far it is from the
- * least value, the position of a location or literal.
+ * Two loops are equal if all their bytes are, with times relative to now. A value is printed as its code: its distance
+ * from the least value, or the position of a location or literal.
  */
 #ifndef _WIN32
 #define _POSIX_C_SOURCE 200809L
@@ -22,7 +22,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model.h" /* What the model decides; `explorer.c` says what that is. */
+#include "model.h" /* Declarations for the model, as in `explorer.c`. */
 
 #ifdef TIMES
 static uint32_t now;
@@ -32,7 +32,7 @@ static uint32_t now;
 #endif
 
 #ifndef PATIENCE
-#define PATIENCE 120 /* So many seconds an operation may take until the loop is taken to be an endless one. */
+#define PATIENCE 120 /* Maximum duration of an operation in seconds; a longer one counts as an endless loop. */
 #endif
 
 typedef struct moment {
@@ -47,7 +47,7 @@ static bool withheld[ENGINE_EVENTS + 1];
 static ENGINE(supervisor) robot;
 static moment *moments;
 static size_t count, room, places;
-static size_t *table; /* One more than the number of a moment, 0 where the place is free. */
+static size_t *table; /* One more than the number of a moment; 0 marks a free place. */
 
 #define GET_CELL(place, member, least) printf(" %" PRIu64, (uint64_t)(int64_t)robot.state.member - UINT64_C(least));
 #define SET_DURATION(place, member) if (duration == (place)) robot.settings.member = milliseconds;
@@ -89,9 +89,9 @@ static void livelock(void *context)
     printf(" !");
 }
 
-/* ---- What is kept ---- */
+/* ---- Saved loops ---- */
 
-/* The loop as it is compared: at the time 0. */
+/* A loop in the form for comparison: at the time 0. */
 static void compared(const moment *one, ENGINE(supervisor) *loop)
 {
     memcpy(loop, &one->loop, sizeof *loop);
@@ -281,7 +281,7 @@ int main(void)
         while (found < ENGINE_EVENTS && strcmp(ENGINE(event_name)((ENGINE(event))found), names[position]) != 0) {
             ++found;
         }
-        events[position] = (ENGINE(event))found; /* One that is missing is none of those that can be performed. */
+        events[position] = (ENGINE(event))found; /* For a missing event, none of the events that can be performed. */
     }
     while (scanf(" %c", &operation) == 1) {
 #ifndef _WIN32

@@ -151,7 +151,7 @@ class _Reader:
         self.findings: list[Diagnostic] = []
 
     def read(self, text: str, line: Line) -> None:
-        word, _, rest = text.partition(" ")
+        word, *rest = text.split(maxsplit=1)
         if word == "scenario":
             named = _SCENARIO.fullmatch(text)
             if named is None:
@@ -165,7 +165,7 @@ class _Reader:
         if word == "wait":
             steps += self._wait(text, line)
         elif word == "expect":
-            steps += self._expected(rest.strip(), line)
+            steps += self._expected("".join(rest), line)
         else:
             steps += self._step(text, line)
 

@@ -1,4 +1,4 @@
-"""What is explained, on random models, against the engine that runs the supervisor and against the definitions."""
+"""Explanations of random models, against the engine that runs the supervisor and against the definitions."""
 
 import json
 from collections.abc import Iterator, Sequence
@@ -35,7 +35,7 @@ SOME_MODELS = settings(RANDOM_MODELS, max_examples=examples(4))
 
 
 def supervised(model: sct.SupervisoryControlModel) -> Engine:
-    """Its engine; where it has no supervisor, all locations are marked first, and then it has one."""
+    """Return the engine of a model; if its supervisor is empty, mark all locations first."""
     model.supervisor = synthesize(model).supervisor
     if model.supervisor is None:
         for plant in model.plants:
@@ -46,9 +46,10 @@ def supervised(model: sct.SupervisoryControlModel) -> Engine:
 
 
 def add_gate(model: sct.SupervisoryControlModel, kind: str | None) -> None:
-    """A gate, open only in states of the plants that the supervisor never lets the robot get to.
+    """Add a gate that opens only in states of the plants that the supervisor excludes.
 
-    A requirement of this kind keeps it shut, or synthesis, since there is no way back to where it is marked.
+    A requirement of this kind keeps it shut. Without a kind synthesis does, since the open gate never reaches a marked
+    state.
     """
     opening = sct.Event(name="c_trigger", controllable=True, kind=sct.EventKind.trigger)
     shut, opened = sct.Location(name="shut", initial=True, marked=True), sct.Location(name="open")
@@ -56,7 +57,7 @@ def add_gate(model: sct.SupervisoryControlModel, kind: str | None) -> None:
     gate = sct.Plant(name="gate", kind=sct.PlantKind.behaviour, events=[opening], locations=[shut, opened])
     model.plants.append(gate)
     if kind is not None:
-        # What a requirement keeps the robot from need be no trap.
+        # A state that a requirement excludes need not be a trap.
         opened.marked = True
         condition = sct.LocationReference(location=opened if kind == "needs" else shut)
         requirement = sct.Requirement(event=opening, kind=getattr(sct.RequirementKind, kind), condition=condition)
@@ -64,7 +65,7 @@ def add_gate(model: sct.SupervisoryControlModel, kind: str | None) -> None:
 
 
 def add_pit(model: sct.SupervisoryControlModel) -> None:
-    """Where the robot may fall into from its first state, and never gets out again."""
+    """Add a pit: the robot may fall into it from its first state and never leaves it."""
     fall = sct.Event(name="u_response", controllable=False, kind=sct.EventKind.response)
     edge, bottom = sct.Location(name="edge", initial=True, marked=True), sct.Location(name="bottom")
     edge.edges.append(sct.Edge(event=fall, target=bottom))
@@ -72,13 +73,13 @@ def add_pit(model: sct.SupervisoryControlModel) -> None:
 
 
 def input_values(asked: sct.Event) -> Iterator[dict[str, Value]]:
-    """All that may come with an event."""
+    """Yield all data that an event may carry."""
     for values in product(*(values_of(own.type) for own in asked.inputs)):
         yield {own.name: getattr(value, "name", value) for own, value in zip(asked.inputs, values, strict=True)}
 
 
 def making_it_possible(engine: Engine, state: State, name: str) -> set[str]:
-    """The events after which, with some data, another is possible that is not now."""
+    """Return the events after which, with some data, a currently impossible event is possible."""
     found = set()
     for asked in engine.roles.events:
         for data in input_values(asked):
@@ -95,7 +96,7 @@ def run(engine: Engine, steps: Sequence[TraceStep]) -> None:
 
 
 def some_states(engine: Engine, number: int = 12):
-    """States that the engine comes to, breadth first."""
+    """Yield states that the engine reaches, breadth first."""
     inputs = {event_name(event): bool(event.inputs) for event in engine.roles.events}
     seen = {engine.state: None}
     pending = [engine.state]
@@ -138,7 +139,7 @@ def test_an_event_in_a_state_is_what_the_engine_says(model):
 
 
 def check(engine: Engine, state, told: Explanation) -> None:
-    """Its traces can be run and end where they claim to; its reasons are there where they are due."""
+    """Check that its traces run and end in the claimed states, and that its reasons are complete."""
     name = event_name(told.event)
     fresh = Engine(engine.model)
     run(fresh, told.situation.trace)
@@ -191,7 +192,7 @@ def test_states_out_of_the_supervisors_reach_are_told_apart(model, requirement, 
     assert told.situation.reach is Reach.UNSUPERVISED
     assert not told.allowed
     assert told.way is None
-    # Whoever goes this way is stopped by the supervisor, and first there.
+    # The supervisor stops a robot on this path at this event, and at none before it.
     refusal = told.refusal
     assert refusal is not None
     run(engine, refusal.situation.trace)
@@ -201,7 +202,7 @@ def test_states_out_of_the_supervisors_reach_are_told_apart(model, requirement, 
     assert engine.blocked_by(stopped.event) == refusal.by
     assert refusal.by in {Blocked.REQUIREMENT, Blocked.SYNTHESIS}
     assert Replay(model, told.situation.trace).after(len(told.situation.trace), requirements=False) == state
-    # What the plants and the requirements say is true there, too.
+    # The facts on plants and requirements are also true in this state.
     assert bool(told.plants) == (not oracle.enabled(chosen, state))
     assert bool(told.requirements) == (not oracle.required(chosen, state))
 
@@ -240,7 +241,7 @@ def test_what_never_happens(model):
 
 
 def check_beyond(oracle: Oracle, chosen: sct.Event, beyond: Explanation | None) -> None:
-    """It is there where plants and requirements allow the event in no controlled state, but in some other."""
+    """Check that `beyond` exists if plants and requirements permit the event only in uncontrolled states."""
     willing = [
         state for state in oracle.uncontrolled if oracle.enabled(chosen, state) and oracle.required(chosen, state)
     ]
@@ -253,7 +254,7 @@ def check_beyond(oracle: Oracle, chosen: sct.Event, beyond: Explanation | None) 
 
 
 def check_conflict(oracle: Oracle, asked: sct.Event, told: Possibility) -> None:
-    """It is there where the requirements on the event allow it nowhere; what it names suffices for that."""
+    """Check that a conflict exists if the requirements permit the event nowhere, and that it is sufficient."""
     willing = [state for state in oracle.uncontrolled if oracle.enabled(asked, state)]
     assert bool(told.conflict) == (told.nearest.by is Blocked.REQUIREMENT and told.beyond is None)
     if told.conflict:
@@ -271,7 +272,7 @@ def possible(name: str, model: sct.SupervisoryControlModel) -> bool:
 
 
 def check_loosenings(model, loosenings, helps) -> None:
-    """Each requirement that is said to help does so if it is left out, and no other does."""
+    """Check that exactly the reported requirements help if they are left out."""
     requirements = list(model.requirements)
     helpful = []
     for left_out in requirements:
@@ -323,7 +324,7 @@ def test_why_there_is_no_supervisor(model):
             for state in onwards
         )
     }
-    # What forbids an event that changes nothing keeps the robot from nowhere.
+    # Forbidding an event without effect excludes no state.
     at_fault = {note.element for note in told.blamed if changes_something(model, note.element.event)}
     if before:
         at_fault = {

@@ -1,4 +1,4 @@
-"""What a robot could do without one of its requirements is what its text without it means."""
+"""The states without one requirement are those of the model's text without it."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from robosc.synthesis import synthesize
 from tests.searching import slow_but
 
 EXAMPLES = sorted((Path(__file__).parents[3] / "examples").glob("*/*.rscd"))
-#: An action that is cancelled where one of two requirements no longer holds.
+#: An action that is canceled if one of two requirements no longer holds.
 USHER = Path(__file__).parents[2] / "m2t" / "layer" / "usher.rscd"
 
 
@@ -42,7 +42,7 @@ def test_without_each_requirement(path: Path) -> None:
 
 
 def states_without(robot: rsc.Robot, left_out: rsc.Requirement) -> int:
-    """The states where the requirement asks for nothing, though it still reads what it reads."""
+    """Count the states if the requirement is always true but keeps its references."""
     condition = left_out.condition
     if isinstance(left_out, rsc.DisablesRequirement) or getattr(left_out, "kind", None) == rsc.InvariantKind.never:
         left_out.condition = ex.Conjunction(left=condition, right=ex.BooleanLiteral(value=False))

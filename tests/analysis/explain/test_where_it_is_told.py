@@ -1,4 +1,4 @@
-"""Why synthesis forbids something stands on the supervisor, and is told wherever that matters."""
+"""The supervisor stores why synthesis forbids an event, and every relevant output shows this."""
 
 import json
 from pathlib import Path
@@ -37,7 +37,7 @@ def test_the_supervisor_knows(porter: rosgraph.RosGraph) -> None:
     guards = {event_name(guard.event): guard for guard in porter.model.supervisor.guards}
     assert {name for name, guard in guards.items() if guard.explanation} == {"message_enter.c_trigger"}
     assert guards["message_enter.c_trigger"].explanation == WHY
-    # What no requirement ever forbids is not among those behind a guard.
+    # Events that no requirement forbids have no requirements behind their guards.
     behind = {name: [requirement.text for requirement in guard.requirements] for name, guard in guards.items()}
     assert behind == {
         "message_open.c_trigger": [],
@@ -59,7 +59,7 @@ def test_a_saved_supervisor_knows_it_still(porter: rosgraph.RosGraph, tmp_path: 
 
 
 def flowing(text: str) -> str:
-    """A text without the line breaks and signs of comments."""
+    """Return a text without line breaks and comment signs."""
     return " ".join(text.replace("//", " ").replace("*", " ").replace("-", " ").split())
 
 

@@ -1,4 +1,4 @@
-"""The properties by their definition, one state at a time. Slow on purpose, and of the same mind as nobody else."""
+"""The properties by their definition, one state at a time. Deliberately slow and independent of the tool."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from tests.synthesis.oracle import Oracle, State, values_of
 _SILENT = (sct.EventKind.tau, sct.EventKind.reset)
 _INPUTS = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.cancel)
 Move = tuple[sct.Event, State]
-#: A state; in a batch also its number, and how many of its events have had their turn.
+#: A state; within a batch also the batch's number and the number of its handled events.
 Configuration = tuple[State, tuple[int, int] | None]
 
 
@@ -58,11 +58,11 @@ class Explicit:
     def silent(self, state: State) -> list[Move]:
         return [move for move in self.moves(state) if move[0].kind in _SILENT]
 
-    # The control loop, in configurations: a state, and where in a batch it is
+    # The control loop, in configurations: a state, and a position in a batch
 
     @cached_property
     def batches(self) -> list[list[sct.Event]]:
-        """What happens with nothing in between: the events of a topic, the cancels."""
+        """The groups of events that happen without interruption: the events of a topic, the cancels."""
         sources: dict[object, list[sct.Event]] = {}
         for event in self.oracle.events:
             plant = plant_of(event)
@@ -71,7 +71,7 @@ class Explicit:
         return [*sources.values(), [event for event in self.oracle.events if event.kind == sct.EventKind.cancel]]
 
     def failed(self, event: sct.Event, state: State) -> bool:
-        """Whether the event is the reset of what has failed."""
+        """Return whether the event is a reset after an error."""
         edges = [edge for location in plant_of(event).locations for edge in location.edges]
         failed = {edge.target for edge in edges if edge.event.kind == sct.EventKind.error}
         return event.kind == sct.EventKind.reset and state[self.oracle.places[plant_of(event)]] in failed
@@ -81,11 +81,11 @@ class Explicit:
 
     @cached_property
     def overruns(self) -> bool:
-        """Whether silent events can happen more often than the loop lets them."""
+        """Whether silent events can happen more often than the loop permits."""
         return bool(self.divergent()) or self.longest_run() > Roles(self.model).settling_bound
 
     def loop_moves(self, here: Configuration) -> list[tuple[sct.Event | None, Configuration]]:
-        """What can happen next; a batch can end, without an event, at any place."""
+        """Return the next moves; a batch can end, without an event, at any position."""
         state, place = here
         if place is not None:
             batch, done = place
@@ -121,7 +121,7 @@ class Explicit:
         return {state for state, place in known if place is None}
 
     def loop_blocked(self) -> set[State]:
-        """The states of the loop from which it comes to no marked one in which it rests; it waits only at rest."""
+        """Return the loop's states that reach no marked state at rest; the loop waits only at rest."""
         alive: set[Configuration] = {
             (state, None) for state in self.loop_states if self.oracle.is_marked(state) and self.rests(state)
         }
@@ -144,7 +144,7 @@ class Explicit:
         return {state for state in self.loop_states if (state, None) not in alive}
 
     def is_run_of_the_loop(self, trace: Iterable[TraceStep]) -> bool:
-        """Whether the control loop can let these events happen."""
+        """Return whether the control loop permits these events."""
         events = {event_name(event): event for event in self.oracle.events}
         here: set[Configuration] = {(self.oracle.initial, None)}
         for number, step in enumerate(trace := list(trace)):
@@ -159,7 +159,7 @@ class Explicit:
         return bool(here)
 
     def torn(self) -> set[State]:
-        """The states of the loop that end in several, whatever resets of what has failed are held back meanwhile."""
+        """Return the loop's states that have several ends, for any set of withheld resets after errors."""
         resets = [event for event in self.oracle.events if event.kind == sct.EventKind.reset]
         found = set()
         for size in range(len(resets) + 1):
@@ -174,7 +174,7 @@ class Explicit:
         return {distance for distance in self.distances(silent, state) if not silent(distance)}
 
     def distances(self, moves: Callable[[State], list[Move]], start: State) -> dict[State, int]:
-        """All states that the moves lead to, with the least number of them."""
+        """Return all states that the moves reach, with the minimum number of moves."""
         known, front = {start: 0}, [start]
         for state in front:
             for _, after in moves(state):
@@ -205,7 +205,7 @@ class Explicit:
         }
 
     def deaf(self) -> set[State]:
-        """Where a plant has no edge for what the one that declares it lets happen."""
+        """Return the states in which a plant has no edge for an event that its declaring plant permits."""
         return {
             state
             for state in self.states
@@ -231,7 +231,10 @@ class Explicit:
         }
 
     def uncanceled(self) -> set[State] | None:
-        """Where a running action is not cancelled though what its start needs does not hold; None: of no action."""
+        """Return the states in which a running action is not canceled although a requirement of its start is violated.
+
+        Return None if this concerns no action.
+        """
         needed: dict[sct.Event, list[sct.Requirement]] = {}
         for cancel in self.oracle.events:
             starts = [event for event in plant_of(cancel).events if event.kind == sct.EventKind.trigger]
@@ -279,7 +282,7 @@ class Explicit:
         }
 
     def divergent(self) -> set[State]:
-        """From where silent events can happen for ever: as often as there are states, and once more."""
+        """Return the states from which silent events can happen forever: more often than there are states."""
         left = set(self.states)
         while True:
             kept = {state for state in left if any(after in left for _, after in self.silent(state))}
@@ -288,7 +291,7 @@ class Explicit:
             left = kept
 
     def longest_run(self) -> int:
-        """How many silent events can happen in a row, if they come to rest."""
+        """Return the maximum number of silent events in a row, if they come to rest."""
         left, length = set(self.states), -1
         while left:
             left = {state for state in left if any(after in left for _, after in self.silent(state))}
@@ -296,7 +299,7 @@ class Explicit:
         return length
 
     def after(self, trace: Iterable[TraceStep], state: State | None = None) -> State:
-        """The state to which a trace leads: what it leaves open makes no difference."""
+        """Return the state after a trace, which must be the same for all values of unnamed inputs."""
         state = self.oracle.initial if state is None else state
         events = {event_name(event): event for event in self.oracle.events}
         for step in trace:

@@ -1,4 +1,4 @@
-"""Faults that are put into the product: a function or class of a module is made anew from a changed text."""
+"""Seed faults into the product: compile a function or class of a module again from a changed text."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 def seed(monkeypatch: pytest.MonkeyPatch, name: str, before: str, after: str) -> None:
-    """Replaces `before` in the text of a module of `robosc`, and all that it defines, wherever the product imports it.
+    """Replace `before` in the text of a module of `robosc`, and its definitions in all modules that import them.
 
-    Raises AssertionError where the text does not stand there once.
+    Raises AssertionError unless the text occurs exactly once.
     """
     module = import_module(f"robosc.{name}")
     assert module.__file__ is not None

@@ -1,4 +1,4 @@
-"""The properties over decision diagrams against the properties by their definition, on random supervised models."""
+"""The properties over decision diagrams against their definition, on random supervised models."""
 
 from unittest.mock import patch
 
@@ -21,7 +21,7 @@ pytestmark = pytest.mark.slow
 
 @st.composite
 def supervised_models(draw: st.DrawFn) -> sct.SupervisoryControlModel:
-    """Random models with a supervisor that is right, or one in which parts of guards are missing or change places."""
+    """Draw models with a correct supervisor, or with one whose guards lack parts or are swapped."""
     model = draw(sct_models())
     supervisor = synthesize(model).supervisor
     if supervisor is None:
@@ -75,7 +75,7 @@ def test_random_models_accelerated() -> None:
 
 
 def check(explicit: Explicit, verdict: Verdict, faults: set[State], *, appended: bool = False) -> None:
-    """It is refuted where there are faults, by a shortest trace to one; with the event at fault `appended`."""
+    """Check that faults are refuted by a shortest trace to one; with the event at fault if `appended`."""
     if not faults:
         assert verdict == Verdict(verdict.property, Outcome.PROVED, verdict.evidence, seconds=verdict.seconds)
         return
@@ -132,7 +132,7 @@ def check_control_loop(explicit: Explicit, verdict: Verdict) -> None:
 
 @st.composite
 def internal_models(draw: st.DrawFn) -> sct.SupervisoryControlModel:
-    """Models whose silent events mostly lead downhill, and meet: under conditions on each other's locations."""
+    """Draw models whose silent events mostly go to later locations and meet, under conditions on other plants."""
     names = [f"p{index}" for index in range(draw(st.integers(1, 3)))]
     locations = [f"l{index}" for index in range(4)]
     anywhere = [

@@ -1,4 +1,4 @@
-"""`cif-translation` of a model from CIF: the written CIF, run as CIF's tools run it, against the model."""
+"""`cif-translation` of a model from CIF: the written CIF, executed as CIF's tools do, against the model."""
 
 import re
 from pathlib import Path
@@ -39,7 +39,7 @@ requirement P.n != 2 or P.a;
 
 
 def written(path: Path) -> tuple[sct.SupervisoryControlModel, dict[str, str]]:
-    """The model of a specification with its supervisor, and what is generated from it."""
+    """Return the model of a specification with its supervisor, and the files generated from it."""
     model = read(path).model
     assert model is not None
     supervise(model)
@@ -59,7 +59,7 @@ def test_the_written_cif_does_what_the_model_does(specification: Path) -> None:
 
 
 def changed(specification: Path, pattern: str, replacement: str) -> tuple[str, list[str]]:
-    """What is refuted of a changed text, and the way there."""
+    """Return the explanation and the trace that refute a changed text."""
     model, files = written(specification)
     [(name, text)] = files.items()
     assert len(re.findall(pattern, text)) == 1, text

@@ -1,6 +1,6 @@
-"""The reader of CIF refuses what CIF refuses, with the place, and reads what CIF takes.
+"""The reader rejects what CIF rejects, with the position, and accepts what CIF accepts.
 
-All of these texts were tried on CIF's own parser, type checker and data-based synthesis (ESCET 5.0-dev).
+CIF's own parser, type checker and data-based synthesis (ESCET 5.0-dev) agree on all of these texts.
 """
 
 import re
@@ -16,7 +16,7 @@ from robosc.model import expression as ex
 def whole(
     before: str = "", members: str = "", first: str = "    edge c_a;", second: str = "  location b;", after: str = ""
 ) -> str:
-    """A specification with more in some of its places; `first` is what its first location has further."""
+    """Return a specification with additions; `first` extends its first location."""
     return (
         f"{before}\nenum E = red, blue;\nplant q:\n  uncontrollable u_r;\n  input int[0..9] i;\n"
         "  location: initial; marked; edge u_r;\nend\nplant p:\n  controllable c_a, c_b;\n  disc int[0..3] x = 0;\n"
@@ -33,7 +33,7 @@ def guard(text: str) -> str:
     return edge(f"c_a when {text};")
 
 
-#: What CIF refuses, for which reason, and where it says so.
+#: Texts that CIF rejects, with the reason and the position.
 REFUSED = {
     # Its lexical syntax
     "an umlaut in a comment": (whole("// größer"), "line 1, column 6: '\\xf6' is no ASCII"),
@@ -240,7 +240,7 @@ REFUSED = {
     "documentation without a text": (whole("@@doc()"), "line 1, column 1: @@doc says nothing"),
 }
 
-#: What CIF's type checker takes, and its data-based synthesis does not.
+#: Texts that CIF's type checker accepts and its data-based synthesis rejects.
 REFUSED_BY_SYNTHESIS = {
     "no plant": ("enum E = red;", "line 1, column 1: there is no plant"),
     "a difference in a condition": (
@@ -267,7 +267,7 @@ REFUSED_BY_SYNTHESIS = {
     "an automaton without a kind": (whole(after="automaton r: location: initial; end"), "line 21, column 1: Expected"),
 }
 
-#: What CIF takes, and no generated file has.
+#: Texts that CIF accepts and no generated file contains.
 NEVER_GENERATED = {
     "no initial location": ("plant p: location a: marked; end", "line 1, column 1: 'p' has no initial location"),
     "two initial locations": (

@@ -1,4 +1,4 @@
-"""`property`: proved or refuted by `verify`, never enforced."""
+"""`verify` proves or refutes a `property` and never enforces it."""
 
 from pathlib import Path
 
@@ -89,7 +89,7 @@ def test_it_is_refuted_with_a_shortest_trace(tmp_path: Path, claimed: str, expla
 
 
 def test_from_every_reachable_supervised_state(tmp_path: Path) -> None:
-    """What the supervisor forbids counts: without the requirement it is proved."""
+    """Only states under the supervisor count: without the requirement the property is proved."""
     made = supervised(tmp_path, HOME)
     assert verdict(made).outcome is Outcome.PROVED
     made = supervised(tmp_path, HOME, "requirement home needs Battery.full")

@@ -1,4 +1,4 @@
-"""Each construct of the language's second edition, as C and as CIF: where one is printed otherwise, that is refuted."""
+"""Each construct of the second edition, as C and as CIF: `verify` refutes every wrong translation."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ C = {
     "a transition of an automaton": (r"state->requirement_Turns = gate_requirement_Turns_yours;", ""),
     "never": (r"            && state->component_Base == gate_component_Base_still /\* added", "/*"),
 }
-#: What is wrong in the control loop.
+#: Faults in the control loop.
 TIMES = {
     "a time's length": (r"^    2000U,$", "    2001U,"),
     "a time that starts anew": (

@@ -1,4 +1,4 @@
-"""The generated control loop does what the one in Python does; wherever it is changed, that is found."""
+"""The generated control loop behaves like the Python one; every change to it is refuted."""
 
 import re
 from functools import cache
@@ -23,12 +23,12 @@ from tests.searching import examples, long_but
 
 pytestmark = pytest.mark.build
 
-#: A topic with two messages, two that are sent on one topic, an action that is cancelled, what takes turns, and times.
+#: A robot with a topic of two messages, a topic with two senders, a canceled action, fair turns, and timers.
 PATROL = Path(__file__).parent / "patrol.rscd"
 EXPLORED = LoopEffort(explored=12_000, walked=2_000)
 
 
-#: Two times that are up at once.
+#: Two timers that expire at once.
 TIES = """\
 robot Ties {
   component First {
@@ -68,7 +68,7 @@ def _c_of(made: sct.SupervisoryControlModel, _polled: int) -> dict[str, str]:
 
 
 def changed(made: sct.SupervisoryControlModel, pattern: str, replacement: str) -> Verdict:
-    """The verdict where one place of the engine, or several alike, are changed."""
+    """Return the verdict after a change to one place of the engine or to several similar ones."""
     files = c_of(made)
     name = next(name for name in files if name.endswith("_supervisor.c"))
     text, count = re.subn(pattern, replacement, files[name], flags=re.MULTILINE)
@@ -76,7 +76,7 @@ def changed(made: sct.SupervisoryControlModel, pattern: str, replacement: str) -
     return validate_loop(made, {**files, name: text}, EXPLORED)
 
 
-#: What is wrong with the loop of a small robot; the first seven once went through `verify` unseen.
+#: Faults in the loop of a small robot; the first seven are regressions that `verify` once missed.
 SMALL = {
     "a turn without asking the guard": (r"event\]\] && guard\(&self->state, event\);$", "event]];"),
     "another event is reported": (r"after\(self->hooks\.context, event\)", "after(self->hooks.context, (PREFIX_event)0)"),
@@ -110,7 +110,7 @@ SMALL = {
     "one more silent event": (r"if \(left == 0U\) \{", "if (left > BOUND) {"),
     "a livelock is told again": (r"if \(!self->livelocked && ", "if ("),
 }  # fmt: skip
-#: What shows where something is provided with data, and where silent events never rest.
+#: Faults that need provided data to show, and faults that need endless silent events.
 OF_DOCK = {name for name in SMALL if "data" in name or "others" in name or "owed for ever" in name}
 OF_ENDLESS = {"one more silent event", "a livelock is told again"}
 LARGE = {
@@ -141,7 +141,7 @@ TIMES = {
 }  # fmt: skip
 
 
-#: What a run of all tests tries: the first seven, and of each part of the loop one.
+#: Faults for a run of all tests: the first seven, and one for each part of the loop.
 TRIED = {
     *list(SMALL)[:7],
     *("nothing is owed", "a service starts again", "a tick has no limit", "a batch ends unsettled", "data is not chosen"),
@@ -179,7 +179,7 @@ def test_changed_times_are_refuted(mutant: str, tmp_path: Path) -> None:
 
 
 def test_a_loop_that_never_ends_is_refuted(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The follower is compiled with less patience, as here nothing else takes long."""
+    """The test compiles the follower with less patience, since nothing else takes long here."""
     compile_ = c_program.CProgram._compile
     monkeypatch.setattr(
         c_program.CProgram, "_compile", lambda self, *arguments: compile_(self, "-DPATIENCE=1", *arguments)

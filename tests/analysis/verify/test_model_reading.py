@@ -1,4 +1,4 @@
-"""The plants mean what the text says; wherever they are changed, that is found, and where."""
+"""The plants match the text; every change to them is refuted, with its position."""
 
 import re
 from collections.abc import Callable
@@ -120,7 +120,7 @@ robot Rich {
 
 @pytest.fixture(scope="module")
 def robot() -> rsc.Base:
-    """The robot, to be left as it is."""
+    """Return the robot, which tests must not change."""
     path = Path("rich.rscd")
     reading = read(path, documents=Documents({str(path): ROBOT}))
     found = [*reading.findings, *check(reading.base, reading.findings)]
@@ -131,7 +131,7 @@ def robot() -> rsc.Base:
 
 @pytest.fixture
 def models(robot: rsc.Base) -> tuple[rsc.Base, sct.SupervisoryControlModel]:
-    """The robot, and its plants, to be changed: made anew, which `robosc.to_sct` does once for each robot."""
+    """Return the robot and new plants that tests may change: `robosc.to_sct` caches its result."""
     return robot, robosc_to_sct.transform(robot)[0]
 
 
@@ -171,7 +171,7 @@ def literals(expression: ex.Expression) -> list[ex.IntegerLiteral]:
     return [part for part in parts(expression) if isinstance(part, ex.IntegerLiteral)]
 
 
-# The eight of an attack that nothing had caught.
+# Eight mutants that earlier versions did not detect.
 
 
 def disables_is_built_as_needs(model: sct.SupervisoryControlModel) -> None:
@@ -198,7 +198,7 @@ def everything_is_marked(model: sct.SupervisoryControlModel) -> None:
 
 
 def a_table_is_inverted(model: sct.SupervisoryControlModel) -> None:
-    """That of `Platform.tries / 2 > 0.5`."""
+    """Invert the table of `Platform.tries / 2 > 0.5`."""
     disabling = next(
         requirement for requirement in model.requirements if requirement.kind == sct.RequirementKind.disables
     )
@@ -221,7 +221,7 @@ def a_data_guard_is_dropped(model: sct.SupervisoryControlModel) -> None:
     edge.guard = None
 
 
-# Others.
+# Other mutants.
 
 
 def a_requirement_is_lost(model: sct.SupervisoryControlModel) -> None:
@@ -382,7 +382,7 @@ def data_is_another(model: sct.SupervisoryControlModel) -> None:
 
 
 def an_order_forgets_nothing(model: sct.SupervisoryControlModel) -> None:
-    """`after each` is built as `after`."""
+    """Build `after each` as `after`."""
     for edge in edges(model, "requirement_1.ready", "message_halt.c_trigger"):
         edge.target = place(model, "requirement_1.ready")
 
@@ -426,7 +426,7 @@ def two_edges_are_possible_at_once(model: sct.SupervisoryControlModel) -> None:
         edge.guard = None
 
 
-#: Each with how its explanation begins.
+#: Each mutant with the beginning of its explanation.
 MUTANTS: list[tuple[Callable[[sct.SupervisoryControlModel], None], str]] = [
     (disables_is_built_as_needs, "request to `Platform.move` is forbidden by the model (line 71), and"),
     (initial_values_are_ignored, "`Front.count` (line 18) begins at 2 by the text, at 0 in the model"),
@@ -479,7 +479,7 @@ MUTANTS: list[tuple[Callable[[sct.SupervisoryControlModel], None], str]] = [
 
 @pytest.mark.slow
 def test_a_right_model_is_proved(models: tuple[rsc.Base, sct.SupervisoryControlModel]) -> None:
-    """All constructs of the language's second edition that the supervisor knows are in it."""
+    """The model has all constructs of the language's second edition that concern the supervisor."""
     found = validate_model(*models, Effort(first=1_000_000))
     assert (found.outcome, found.explanation) == (Outcome.PROVED, "")
     assert found.evidence == "530,496 states, 32 events"
@@ -522,7 +522,7 @@ def test_where_there_is_too_much_it_looks_at_random(models: tuple[rsc.Base, sct.
 def test_where_there_are_too_many_states_each_event_may_be_tried_in_all(
     models: tuple[rsc.Base, sct.SupervisoryControlModel],
 ) -> None:
-    """What an event reads is a small part of a state."""
+    """An event reads only a small part of a state."""
     found = validate_model(*models, Effort(states=50))
     assert found.outcome is Outcome.PROVED
     assert re.fullmatch(r"\d+ states, 32 events; in other states event by event", found.evidence)
@@ -540,7 +540,7 @@ def test_of_too_many_values_it_tries_some(models: tuple[rsc.Base, sct.Supervisor
 
 @pytest.mark.parametrize("values", [5_000, 20_000])
 def test_one_value_of_many_is_found(tmp_path: Path, values: int) -> None:
-    """Be there few enough to try all in each state, or only once."""
+    """The values are few enough to try all in each state, or so many that each is tried once."""
     path = tmp_path / "robot.rscd"
     path.write_text(f"""robot R {{
         component Scale {{
@@ -562,7 +562,7 @@ def test_one_value_of_many_is_found(tmp_path: Path, values: int) -> None:
 
 
 def test_arguments_are_the_values_of_what_is_given(tmp_path: Path) -> None:
-    """The supervisor is told of data compared with them."""
+    """The supervisor receives data that are compared with arguments."""
     text = """robot R {
         constant pi: double = 3.5
         datatype enum Level from integer to { value > 2 -> high default -> low }
@@ -599,7 +599,7 @@ def test_what_it_does_not_know_is_named(models: tuple[rsc.Base, sct.SupervisoryC
 
 
 def agrees(path: Path, text: str) -> bool | None:
-    """Whether nothing is refuted; None for a model with errors."""
+    """Return whether nothing is refuted; None for a model with errors."""
     path.write_text(text, encoding="utf-8")
     reading = read(path, [LIBRARIES])
     found = [*reading.findings, *check(reading.base, reading.findings)]

@@ -1,4 +1,4 @@
-"""What is changed in a supervised model that was right is found."""
+"""Changes to a correct supervised model are refuted."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -17,7 +17,7 @@ from tests.examples.conftest import MODELS
 
 
 def models_of(name: str) -> Models:
-    """An example's models with supervisor, to be changed."""
+    """Return an example's models with supervisor, which tests may change."""
     robot = robosc.load(MODELS[name])
     plants = robosc.to_sct(robot)
     robosc.synthesize(plants)
@@ -29,7 +29,7 @@ def guard_of(model: sct.SupervisoryControlModel, event: str) -> sct.EventGuard:
 
 
 def weaken_a_requirement(model: sct.SupervisoryControlModel) -> None:
-    """One part of a conjunction is not asked any more."""
+    """Drop one part of a conjunction."""
     guard = guard_of(model, "message_move.c_trigger")
     assert isinstance(guard.requirement, ex.Conjunction)
     guard.requirement = guard.requirement.right
@@ -50,7 +50,7 @@ def forbid_it_in_one_state(model: sct.SupervisoryControlModel) -> None:
 
 
 def drop_a_self_loop(model: sct.SupervisoryControlModel) -> None:
-    """The one by which a component lets come what does not concern it."""
+    """Drop the self-loop with which a component accepts irrelevant messages."""
     component = next(plant for plant in model.plants if plant.name == "component_LineDetector")
     location = next(location for location in component.locations if location.name == "searching")
     loop = next(edge for edge in location.edges if edge.target is location)
@@ -61,7 +61,7 @@ def lower_the_bound(model: sct.SupervisoryControlModel) -> None:
     model.supervisor.settlingBound = 0
 
 
-#: What is changed in the line follower, and what is refuted then.
+#: Changes to the line follower, and the properties that each refutes.
 MUTATIONS = {
     weaken_a_requirement: {
         "requirement move needs LineDetector.following and Lidar.free and EmergencyStop.in_service (line 61)"
@@ -106,7 +106,7 @@ def test_a_saved_model_without_a_guard_is_refused(tmp_path: Path) -> None:
     models = models_of("line_follower")
     models.sct.supervisor.guards.remove(guard_of(models.sct, "message_halt.c_trigger"))
     file = tmp_path / "line_follower.sct.xmi"
-    # The model alone: what is executed is saved of a whole supervisor only.
+    # Save the plants alone: the engine model requires a complete supervisor.
     file.write_text(xmi.to_texts({file.name: models.sct})[file.name])
     answer = CliRunner().invoke(main, ["verify", str(file)])
     assert answer.exit_code == 1

@@ -1,4 +1,4 @@
-"""Each property refuted, on the smallest models that do: with which trace, and in which words."""
+"""Each property refuted, on minimal models, with its trace and message."""
 
 from typing import Any
 from unittest.mock import patch
@@ -18,7 +18,7 @@ def verdict(made: sct.SupervisoryControlModel, name: str) -> Verdict:
 
 
 def refuted(made: sct.SupervisoryControlModel, name: str) -> tuple[str, list[str], list[str], list[str]]:
-    """The explanation, and the events of the three traces."""
+    """Return the explanation, and the events of the three traces."""
     found = verdict(made, name)
     assert found.outcome is Outcome.REFUTED
     traces = (found.trace, found.onwards, found.other)
@@ -26,7 +26,7 @@ def refuted(made: sct.SupervisoryControlModel, name: str) -> tuple[str, list[str
 
 
 def door() -> Any:
-    """A door that opens and closes, and may jam while it is open."""
+    """Return a door that opens and closes, and may jam while it is open."""
     return plant(
         "door",
         {
@@ -107,7 +107,7 @@ def test_a_component_that_does_not_listen() -> None:
 
 
 def tank() -> Any:
-    """A tank that is filled as its sensor says."""
+    """Return a tank that is filled as its sensor reports."""
     return plant(
         "tank",
         {"any": [edge("c_trigger"), edge("u_response", do={"level": "i_response"})]},
@@ -133,7 +133,7 @@ def test_a_requirement_that_the_supervisor_forgot() -> None:
 
 
 def test_what_a_requirement_became_is_told() -> None:
-    """The words are the author's, also where they were made into something else."""
+    """The verdict shows the author's text, even if it was transformed."""
     requirement = disables("c_trigger", "level < 7 or tank.any", text="requirement drain needs Tank.level < 7")
     made = model([tank()], [requirement], guards={"c_trigger": "false"})
     assert verdict(made, "requirement drain needs Tank.level < 7").evidence == (
@@ -169,7 +169,7 @@ def test_cancels_and_data_may_be_dead() -> None:
 
 
 def driving(**cancel: str) -> sct.SupervisoryControlModel:
-    """An action that needs a free way; `cancel`: what the guard of its cancel has for requirement and synthesis."""
+    """Return an action that needs a free path; `cancel` has the parts of its cancel's guard."""
     drive = plant(
         "drive",
         {"idle": [edge("c_trigger", to="busy")], "busy": [edge("c_cancel", to="idle"), edge("u_response", to="idle")]},
@@ -248,7 +248,7 @@ def test_a_silent_event_that_changes_nothing_never_rests() -> None:
 
 
 def timer() -> Any:
-    """Counts down by itself."""
+    """Return a timer that counts down by itself."""
     return plant(
         "timer",
         {
@@ -277,7 +277,7 @@ def test_bounds_of_what_has_nothing_to_do_with_each_other_add_up() -> None:
 
     made = model([timer(), other()], guards={})
     assert synthesize(made).supervisor.settlingBound == 41
-    # Under this guard the one waits for the other.
+    # This guard makes one wait for the other.
     made = model([timer(), other()], guards={"c_reset": (None, "timer.left == 0")})
     assert verdict(made, "bounded response").evidence == "82 states, at most 41 silent events in a row"
 
@@ -327,7 +327,7 @@ def scan(name: str, origin: str) -> Any:
 
 
 def bolt(*leaving: Any, **others: Any) -> Any:
-    """A bolt that, once it is halfway, goes out by itself, if nothing else comes before that."""
+    """Return a bolt that leaves its halfway position by itself, unless another event comes first."""
     locations = {
         "in": [edge("far.u_response", to="halfway"), edge("near.u_response")],
         "halfway": [edge("c_tau1", to="out"), edge("far.u_response"), *leaving],
@@ -339,7 +339,7 @@ def bolt(*leaving: Any, **others: Any) -> Any:
 
 
 def test_a_message_comes_when_silent_events_have_happened() -> None:
-    """Another order is possible only after a second message while a silent event is pending: that never is."""
+    """Another order needs a second message while a silent event is pending, which never happens."""
     torn = [edge("c_tau2", to="out"), edge("c_tau3", to="in")]
     messages = [scan("far", "A.far"), plant("near", {"r": [edge("u_response")]}, uncontrollable=["u_response"])]
     made = model(
@@ -354,7 +354,7 @@ def test_a_message_comes_when_silent_events_have_happened() -> None:
 
 
 def test_the_events_of_one_message_come_together() -> None:
-    """What one message brings happens with nothing in between, and from the start."""
+    """The events of one message happen without interruption, also from the initial state."""
     torn = [edge("c_tau2", to="out"), edge("c_tau3", to="in"), edge("far.u_response"), edge("near.u_response")]
     made = model([scan("far", "A.far"), scan("near", "A.near"), bolt(edge("near.u_response", to="torn"), torn=torn)])
     made.supervisor = synthesize(made).supervisor
@@ -364,14 +364,14 @@ def test_the_events_of_one_message_come_together() -> None:
         ["bolt.c_tau3"],
         ["bolt.c_tau2"],
     )
-    # In their order: the other way round the bolt is not yet halfway.
+    # In text order: otherwise the bolt is not yet halfway.
     made = model([scan("near", "A.near"), scan("far", "A.far"), bolt(edge("near.u_response", to="torn"), torn=torn)])
     made.supervisor = synthesize(made).supervisor
     assert verdict(made, "confluence").outcome is Outcome.PROVED
 
 
 def test_what_has_failed_is_reset_later() -> None:
-    """Messages come while the reset of what has failed is held back, but not while that of what has ended is."""
+    """Messages may come while the reset after an error is held back, but not while the reset after a success is."""
 
     def machine(failing: str) -> sct.SupervisoryControlModel:
         call = {
@@ -402,7 +402,7 @@ def test_what_has_failed_is_reset_later() -> None:
 
 
 def test_a_marked_state_that_is_left_at_once() -> None:
-    """The loop never rests in it, and so nothing can be left there."""
+    """The loop never rests in this state, so no plant can be left there."""
     made = model(
         [
             plant(
@@ -421,7 +421,7 @@ def test_a_marked_state_that_is_left_at_once() -> None:
 
 
 def test_what_waits_for_silent_events_may_wait_for_ever() -> None:
-    """The way back is there in a state in which the loop does not ask for it: it lets the silent event go first."""
+    """The path back exists only in a state in which the loop does not use it: the silent event goes first."""
     arm = {
         "home": [edge("c_trigger", to="out")],
         "out": [edge("c_tau1", to="far"), edge("u_response", to="home")],
@@ -441,7 +441,7 @@ def test_what_waits_for_silent_events_may_wait_for_ever() -> None:
 
 
 def counter() -> Any:
-    """Counts messages while it is open, and starts again by itself after each 65,535th."""
+    """Return a tank that counts messages while it is open, and restarts by itself after each 65,535th."""
     return plant(
         "tank",
         {
@@ -478,7 +478,7 @@ def test_a_wide_integer_that_takes_too_many_turns(name: str, monkeypatch: pytest
 
 
 def endless(loop: ControlLoop) -> None:
-    """As where accelerated steps get large."""
+    """Emulate acceleration that gives up, as when its steps get large."""
     with (
         patch.object(acceleration, "_HOPELESS", 64),
         patch.object(acceleration.Acceleration, "_closed", lambda *_: None),

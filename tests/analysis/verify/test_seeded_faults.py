@@ -1,6 +1,6 @@
-"""`verify` refutes what a fault of RoboSC makes of a robot: faults are put into its passes, one at a time.
+"""`verify` refutes robots that a faulty RoboSC produces: each test seeds one fault into its passes.
 
-What `verify` can't see, and why, stands in docs/verify.md.
+docs/verify.md lists the faults that `verify` cannot detect, with reasons.
 """
 
 from __future__ import annotations
@@ -42,13 +42,13 @@ if TYPE_CHECKING:
     from robosc.analysis.verify import Verdict
 
 ROOT = Path(__file__).parents[3]
-#: Models that ship. `Pairs` has what none of them has: a topic that is written in both ways.
+#: Models of this repository. `Pairs` adds features that none of them has, such as a topic with two spellings.
 SHIPPED = {
     "Courier": ROOT / "docs" / "patterns" / "courier.rscd",
     "LostSensor": ROOT / "docs" / "patterns" / "lost_sensor.rscd",
     "PersonFollower": ROOT / "examples" / "person_follower" / "person_follower.rscd",
 }
-#: Two messages of one topic, once with a slash; two that go to one; times of components that are up at once.
+#: Two messages of one topic, once with a slash; two to one topic; timers of components that expire at once.
 PAIRS = """\
 robot Pairs {
   parameter pause: integer(1..9) = 3
@@ -94,7 +94,7 @@ robot Pairs {
 _LOWER, _PLANTS, _ROLES = "m2m.sct_to_engine.lower_timers", "m2m.robosc_to_sct", "model.semantics.roles"
 _AUTOMATA, _NODE, _ENGINE = "m2m.requirement_automata", "m2m.robosc_to_rosgraph", "m2m.sct_to_engine"
 _EVENTS = "m2m.sct_to_engine.collect_events"
-#: Where a fault is put, what stands there and what takes its place, the robot that shows it, how that is reported.
+#: A fault: module, original text, replacement, the robot that shows it, and the report.
 Fault = tuple[str, str, str, str, str]
 
 TIMES: dict[str, Fault] = {
@@ -151,7 +151,7 @@ TIMES: dict[str, Fault] = {
         "the time `after 700 ms without Second.heard` of `First` (line 11) comes before the time `after 1 s` of",
     ),
 }
-#: What the generated C, the interpreter and the decision diagrams learn from one place.
+#: Facts that the generated C, the interpreter and the decision diagrams all take from one place.
 LOOP: dict[str, Fault] = {
     "the settling bound is one more": (
         *(_ROLES, "min(proved, 0xFFFFFFFF)", "min(proved + 1, 0xFFFFFFFF)", "Pairs"),
@@ -224,7 +224,7 @@ LOOP: dict[str, Fault] = {
         "`First.help` is `/help` in ROS by the text, and `help` in the node",
     ),
 }
-#: What only the courier shows of the models that ship.
+#: Faults that only the courier shows among this repository's models.
 MODEL: dict[str, Fault] = {
     "a requirement is on the first of its set": (
         *(_PLANTS, "dict.fromkeys(port for port in named if port is not None)", "named[:1]", "Courier"),
@@ -282,7 +282,7 @@ def text_of(name: str) -> str:
 
 
 def made(name: str, folder: Path) -> Models:
-    """The models of a robot, made with the faults that there are now."""
+    """Return the models of a robot, produced with the currently seeded faults."""
     path = folder / "robot.rscd"
     path.write_text(text_of(name))
     robot = robosc.load(path)
@@ -386,7 +386,7 @@ def test_data_that_moves_while_its_trigger_stays_possible_is_sent(tmp_path: Path
 
 @pytest.mark.build
 def test_a_livelock_that_is_reported_one_event_late_is_refuted(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where silent events come to rest within the bound, nothing shows it: nothing is reported."""
+    """A model whose silent events rest within the bound cannot show this fault: no livelock is reported."""
     files = supervisor.generate(Models(corners.silent()), Configuration())
     seed(
         monkeypatch,
@@ -410,7 +410,7 @@ def test_the_controller_of_a_random_robot_is_that_of_its_text(
 
 
 def controller_of(text: str, folder: Path) -> Verdict | None:
-    """The verdict on a robot; None for one with errors, or without a supervisor."""
+    """Return the verdict on a robot; None for one with errors or an empty supervisor."""
     path = folder / "robot.rscd"
     path.write_text(text)
     reading = read(path, [LIBRARIES])

@@ -1,4 +1,4 @@
-"""Generated C and CIF mean what the supervised model says; wherever they are changed, that is found, and where."""
+"""Generated C and CIF match the supervised model; every change to them is refuted, with its position."""
 
 import os
 import re
@@ -34,7 +34,7 @@ def supervised(made: sct.SupervisoryControlModel) -> sct.SupervisoryControlModel
 
 
 def pump() -> sct.SupervisoryControlModel:
-    """A robot with a negative range, data, a requirement, and something that synthesis adds."""
+    """Return a robot with a negative range, data, a requirement, and a guard from synthesis."""
     return supervised(
         model(
             [
@@ -87,7 +87,7 @@ def cif_of(made: sct.SupervisoryControlModel) -> dict[str, str]:
 
 
 def changed(text: str, pattern: str, replacement: str) -> str:
-    """The text with one place changed; the pattern fits no other."""
+    """Change one place of a text; the pattern must match once."""
     made, count = re.subn(pattern, replacement, text, flags=re.MULTILINE)
     assert count == 1, pattern
     return made
@@ -475,7 +475,7 @@ def test_cif_is_compared_however_deep_it_is_nested(opening: str, closing: str) -
 
 
 def chosen() -> sct.SupervisoryControlModel:
-    """Data chosen by a state, under a supervisor."""
+    """Return data chosen by a state, under a supervisor."""
     given = model(
         [
             plant("message_go", {"ready": [edge("c_trigger")]}, kind="message", controllable=["c_trigger"]),
@@ -513,7 +513,7 @@ def chosen() -> sct.SupervisoryControlModel:
 IN_MODEL_FILE = "can happen in the generated CIF without supervisor and not in the model"
 MISSING_THERE = "can happen in the model and not in the generated CIF without supervisor"
 BOTH, MODEL_FILE = ("cif", "supervised.cif"), ("cif",)
-#: What is changed, in which file, the shortest way to it, and what is said, where the file is no part of that.
+#: Mutants: the files, the change, the shortest trace, and the message, in which FILE is a placeholder for the file.
 CHOSEN_MUTANTS = {
     "a requirement is weaker": (
         MODEL_FILE,

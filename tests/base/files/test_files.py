@@ -1,4 +1,4 @@
-"""Only regular files of a bounded size are read, whatever a name means."""
+"""Only regular files of a bounded size are read, whatever their names refer to."""
 
 import os
 import socket
@@ -21,7 +21,7 @@ def test_nothing_else_is_read(tmp_path: Path, name: str, monkeypatch: pytest.Mon
     (tmp_path / "folder").mkdir()
     (tmp_path / "circle").symlink_to("circle")
     server = socket.socket(socket.AF_UNIX)
-    monkeypatch.chdir(tmp_path)  # names of sockets are short
+    monkeypatch.chdir(tmp_path)  # socket names are limited in length
     server.bind("socket")
     with pytest.raises(OSError) as raised:  # noqa: PT011  # of whatever kind
         files.read(tmp_path / name)

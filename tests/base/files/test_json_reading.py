@@ -1,4 +1,4 @@
-"""Lines of JSON that somebody else wrote: the node's own logs come back as they were, all else is a located error."""
+"""Read lines of JSON: the node's own logs round-trip, and anything else is an error with a position."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from robosc.run.simulation.script import read_script
 if TYPE_CHECKING:
     from pathlib import Path
 
-#: Everything that some reader takes for the end of a line, and everything that nobody sees.
+#: All characters that some reader takes for a line break, and all invisible characters.
 WICKED = "".join(chr(bound) for bounds in HIDDEN for bound in bounds) + "\n\r\x0b\x0c\x1c\x1d\x1e\x85\u2028\u2029"
 UNREADABLE = {
     "[" * 200_000: "nested too deeply",
@@ -41,7 +41,7 @@ def test_a_node_s_log_is_read_as_it_was_written(tmp_path: Path, raw: bool) -> No
     for number in range(3):
         log.write(float(number), "in", "message_name.u_response", {"value": WICKED})
     log.close()
-    if raw:  # as nodes of earlier versions wrote it
+    if raw:  # the form that nodes of earlier versions wrote
         lines = [json.loads(line) for line in path.read_text(encoding="utf-8").split("\n")[:-1]]
         path.write_text("".join(f"{json.dumps(line, ensure_ascii=False)}\n" for line in lines), encoding="utf-8")
     assert [entry.data for entry in read_trace(str(path))] == [{"value": WICKED}] * 3
@@ -57,7 +57,7 @@ def test_what_can_not_be_read_is_said(text: str, why: str) -> None:
         json_value(text)
 
 
-#: Brackets in strings nest nothing, whatever stands before them.
+#: Brackets inside strings do not count as nesting, whatever precedes them.
 BRACKETS = ["[" * 200, "{" * 200, '"' + "[" * 200, "\\" + "[" * 200, '\\"' + "[" * 200, "]" * 200 + "[" * 101]
 
 

@@ -1,4 +1,4 @@
-"""Writing is all or nothing, changes only what differs, and stays inside of its folder."""
+"""Output is all or nothing, changes only files that differ, and stays inside its folder."""
 
 import fcntl
 import os
@@ -20,7 +20,7 @@ from tests.interruptions import interrupted, interruptions
 
 
 def tree(folder: Path) -> dict[str, str]:
-    """Everything below a folder: links by where they lead, folders by a slash, files by their text."""
+    """Return all paths below a folder: links with their targets, folders with a slash, files with their text."""
     found = {}
     for path in sorted(folder.rglob("*")):
         name = path.relative_to(folder).as_posix()
@@ -141,7 +141,7 @@ def below(folder: Path, trees: Mapping[str, Mapping[str, str]]) -> dict[Path, Ma
 
 
 def texts(folder: Path) -> dict[str, str]:
-    """The files below a folder, hidden ones included."""
+    """Return the files below a folder, hidden ones included."""
     return {name: text for name, text in tree(folder).items() if text != "/"}
 
 
@@ -307,7 +307,7 @@ def test_a_named_file_may_be_a_device_or_a_pipe(tmp_path: Path) -> None:
     write_file(os.devnull, "text")
     assert os.path.samestat(null, Path(os.devnull).stat())
     os.mkfifo(tmp_path / "pipe")
-    with pytest.raises(OutputError, match="pipe: No such device"):  # nobody reads it
+    with pytest.raises(OutputError, match="pipe: No such device"):  # no process reads the pipe
         write_file(tmp_path / "pipe", "text")
     reader = os.open(tmp_path / "pipe", os.O_RDONLY | os.O_NONBLOCK)
     write_file(tmp_path / "pipe", "text")
@@ -356,6 +356,6 @@ def test_a_temporary_folder_is_gone_after_a_signal_at_any_change(
     for _, status in interruptions(run):
         statuses.append(status)
         assert list(tmp_path.iterdir()) == []
-    assert len(statuses) == 5  # two folders made, a file and two folders removed
+    assert len(statuses) == 5  # create two folders, create a file, remove two folders
     assert set(statuses) == {130 if sent == signal.SIGINT else -sent}
     assert list(tmp_path.iterdir()) == []

@@ -1,4 +1,4 @@
-"""What was recorded in any of ROS's formats is read alike, and what is damaged is named."""
+"""Recordings in every ROS format are read alike, and damaged ones are reported by name."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def test_every_format_is_read(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", FORMATS)
 def test_a_damaged_recording_is_named(name: str, tmp_path: Path) -> None:
-    """Every byte may be another one, and the file may end anywhere."""
+    """Change random bytes or truncate the file: each damage is reported or has no effect."""
     path = FORMATS[name](tmp_path / "recording", TEXTS)
     files = [file for file in path.iterdir() if file.suffix != ".yaml"] if path.is_dir() else [path]
     whole, random = files[0].read_bytes(), Random(7)
@@ -148,7 +148,7 @@ def test_what_is_no_recording_is_named(tmp_path: Path) -> None:
 
 
 def test_a_recorded_run_is_followed(tmp_path: Path) -> None:
-    """Of several nodes that were recorded the first that tells of the robot, or the one that is asked for."""
+    """The recording player follows the first node that reports the robot, or the node that the caller names."""
     robot = robosc.load(Path(__file__).parents[3] / "examples" / "line_follower" / "line_follower.rscd")
     model, graph = robosc.to_sct(robot), robosc.to_rosgraph(robot)
     robosc.synthesize(model)

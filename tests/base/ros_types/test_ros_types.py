@@ -1,4 +1,4 @@
-"""Where definitions of ROS types are found, and what is read of them."""
+"""Places in which ROS type definitions are searched, and the fields read from them."""
 
 import subprocess
 import sys
@@ -19,7 +19,7 @@ def no_installation(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def write(folder: Path, **texts: str) -> Path:
-    """Files by their paths, `__` for a slash and a dot before the last word."""
+    """Write files by their paths: `__` stands for a slash, the last `__` for a dot."""
     for name, text in texts.items():
         *parents, stem, ending = name.split("__")
         path = folder.joinpath(*parents, f"{stem}.{ending}")
@@ -31,7 +31,7 @@ def write(folder: Path, **texts: str) -> Path:
 def shown(
     interfaces: RosTypes, package: str, name: str, part: Section = Section.MESSAGE
 ) -> list[dict[str, str] | None]:
-    """The fields in ROS 2 and in ROS 1."""
+    """Return the fields in ROS 2 and in ROS 1."""
     found = [known.fields(package, name, part) for known in interfaces.distributions]
     return [None if fields is None else {key: str(value) for key, value in fields.items()} for fields in found]
 
@@ -188,7 +188,7 @@ def test_field_of_a_basic_value(tmp_path: Path) -> None:
     assert interfaces.field_of_basic("a", "Two", Section.MESSAGE) == "data"
     assert interfaces.field_of_basic("std_srvs", "SetBool", Section.REQUEST) == "data"
     assert interfaces.field_of_basic("nowhere", "A", Section.MESSAGE) == "data"
-    assert interfaces.field_of_basic("a", "Set", Section.REQUEST) == "data"  # can't be read
+    assert interfaces.field_of_basic("a", "Set", Section.REQUEST) == "data"  # a file without read permission
     assert interfaces.field_of_basic("b", "Old", Section.MESSAGE) == "old"
 
 

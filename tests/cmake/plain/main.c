@@ -1,4 +1,4 @@
-/* What the supervisor of the gate allows, before somebody is seen and after. */
+/* Print whether the supervisor of the gate permits the lift, before and after the sensor sees a person. */
 #include <stdio.h>
 
 #include "gate_supervisor.h"

@@ -1,4 +1,4 @@
-"""What the frame around the rules does, whatever the rules say."""
+"""Behavior of `check` that does not depend on any rule."""
 
 from pathlib import Path
 from textwrap import dedent
@@ -27,7 +27,7 @@ BROKEN_LIBRARY = """
 
 
 def found(folder: Path, robot: str, **libraries: str) -> list[Diagnostic]:
-    """The findings of a robot and of the libraries beside it, those of reading included."""
+    """Return the findings of a robot and of the libraries beside it, those of reading included."""
     for name, text in {"robot": robot, **libraries}.items():
         (folder / f"{name}.rscd").write_text(dedent(text).lstrip())
     reading = read(folder / "robot.rscd")
@@ -94,7 +94,10 @@ def test_what_a_library_repeats_is_its_own_matter(tmp_path: Path) -> None:
 
 
 def test_what_only_an_instance_of_a_librarys_template_shows_stands_in_the_library(tmp_path: Path) -> None:
-    """The robot's text has nothing there, and its own lines may be fewer."""
+    """Faults that only an instance of a library's template shows are reported in the library.
+
+    The robot's text has no finding, and it may have fewer lines than the library.
+    """
     robot = """
         robot House {
           component Front from Doors import Door("/front")
@@ -196,7 +199,7 @@ ANSWER = """
     ],
 )
 def test_who_waits_for_whom_in_a_library_stands_at_each_import(tmp_path: Path, rule: str, members: str) -> None:
-    """In a library by itself nothing stands; of a robot's own component the finding is in its text."""
+    """A library by itself draws no finding. A finding about the robot's own component is in the robot's text."""
     library = waiting_library(members)
     robot = """
         robot House {
@@ -388,7 +391,7 @@ def test_unresolved_names_draw_nothing_further(tmp_path: Path) -> None:
         }
     """
     assert {finding.rule for finding in found(tmp_path, robot)} == {"unresolved-reference", "type"}
-    # `Rear` is a component whatever its import means.
+    # `Rear` is a component even though its import is not resolved.
     types = [finding for finding in found(tmp_path, robot) if finding.rule == "type"]
     assert places(types) == [("robot.rscd", 16, "type")]
 
@@ -533,7 +536,7 @@ def test_libraries_that_import_each_other_are_all_checked() -> None:
 
 
 def test_a_second_component_of_a_name_has_no_other_finding(tmp_path: Path) -> None:
-    """What it carries has the types of ROS that it names, whatever it is called."""
+    """The second component uses the ROS types that it names, although its own name is not unique."""
     path = tmp_path / "twice.rscd"
     path.write_text("""robot R {
   component Lidar { outgoing message scan with type: sensor_msgs/LaserScan }

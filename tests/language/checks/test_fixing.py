@@ -1,4 +1,4 @@
-"""Automatic edits never damage a text: they leave comments alone, and a model no worse than it was."""
+"""Automatic edits never damage a text: they keep comments and leave a model no worse than before."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ from robosc.language.tokens import Kind, Tokens
 from tests.language.checks.test_mending import HERE, INTERFACES, MODELS, TEXTS, ways
 
 PATH = HERE / "nowhere.rscd"
-#: All models that break a rule, and texts with syntax errors and names that stand for nothing.
+#: All models that violate a rule, and texts with syntax errors and unknown names.
 PATHS = {f"{path.parent.name}/{path.stem}": path for path in MODELS} | dict.fromkeys(TEXTS, PATH)
 BROKEN = {name: TEXTS.get(name) or path.read_text(encoding="utf-8") for name, path in PATHS.items()}
 
@@ -36,7 +36,7 @@ def checked(content: str, path: Path = PATH) -> Checked:
 
 
 def fixed(content: str, path: Path = PATH) -> str:
-    """The text after all rounds of edits with one way."""
+    """Return the text after all rounds of edits of findings that have one edit."""
     for _ in range(20):
         found = checked(content, path)
         edits = safe_edits(found, partial(checked, path=path))
@@ -59,11 +59,11 @@ def of_rules(findings: Sequence[Diagnostic]) -> Counter[str]:
 
 
 def baited(content: str, every: int = 1) -> str:
-    """The text with a comment before each token, or each so many, that repeats what follows and a string."""
+    """Insert a comment before every n-th token. It repeats the tokens around it and contains a string."""
     tokens = [token for token in Tokens(content) if token.kind is not Kind.OPEN_COMMENT]
     pieces, behind = [], 0
     for index, token in enumerate(tokens):
-        # The sign of a bound is one word with its number.
+        # The sign of a bound and its number are one word.
         signed = tokens[index - 1].text == "-" or token.text == "-"
         if index and index % every == 0 and not signed:
             bait = " ".join(other.text for other in tokens[index - 2 : index + 6] if "*/" not in other.text)
@@ -73,7 +73,7 @@ def baited(content: str, every: int = 1) -> str:
 
 
 def test_comments_do_not_change_what_is_found() -> None:
-    """So that what follows tries the same edits as the texts without comments."""
+    """This ensures that later tests try the same edits as for the texts without comments."""
     for name in list(BROKEN)[::8]:
         if "fault" not in name and "foreign" not in name:
             before, after = (checked(content, PATHS[name]).findings for content in (BROKEN[name], baited(BROKEN[name])))
@@ -111,7 +111,7 @@ def test_automatic_edits_make_nothing_worse(name: str) -> None:
 
 
 def assert_no_worse(content: str, path: Path) -> None:
-    """All edits with one way leave no finding that was not there, but for those that a syntax error had hidden."""
+    """Check that unambiguous edits add no finding, except findings that a syntax error hid."""
     after = fixed(content, path)
     assert comments(after) == comments(content)
     before, found = (of_rules(checked(text, path).findings) for text in (content, after))
@@ -164,7 +164,7 @@ def test_comments_anywhere(name: str, data: st.DataObject) -> None:
 @settings(max_examples=40, deadline=None)
 @given(name=st.sampled_from(sorted(BROKEN)), data=st.data())
 def test_words_that_are_missing_anywhere(name: str, data: st.DataObject) -> None:
-    """Damaged texts are mended, or left as they are."""
+    """Damaged texts are mended or remain as they are."""
     tokens = list(Tokens(BROKEN[name]))
     content = BROKEN[name]
     for place in sorted(data.draw(st.sets(st.integers(1, len(tokens) - 1), max_size=3), label="places"), reverse=True):
@@ -235,7 +235,7 @@ def test_a_guess_that_leads_to_another_finding_is_not_made() -> None:
 
 
 def test_one_bad_edit_keeps_no_other_back() -> None:
-    """Of many edits those that are safe are made, whatever the others do."""
+    """Safe edits are applied although other edits are unsafe."""
     wrong = (
         ROBOT.replace("goto moving", "do sped := true goto movng")
         .replace("goto idle", "goto idel")
@@ -246,7 +246,7 @@ def test_one_bad_edit_keeps_no_other_back() -> None:
 
 @pytest.mark.parametrize("brace", ["}", "{"])
 def test_no_brace_goes_behind_another_error(brace: str) -> None:
-    """It may be one too many only because of that error."""
+    """The brace may be surplus only because of that error."""
     content = ROBOT.replace("goto moving }", f"goto moving }} {brace}").replace("with type: none", "3")
     found = checked(content)
     surplus = [finding for finding in found.findings if "one too many" in finding.message]

@@ -1,4 +1,4 @@
-"""Short texts whose names stand for very much are refused before anything is written out."""
+"""Short texts with huge expansions are rejected before they are expanded."""
 
 import sys
 from collections.abc import Callable
@@ -19,7 +19,7 @@ TOO_LARGE = "this has more than 20000 parts when names are written out"
 
 
 def doubled(head: str, first: str, step: str, use: str) -> str:
-    """A definition, and 39 more, each of which names the one before twice."""
+    """Return a definition and 39 more, each of which names the previous one twice."""
     lines = [head.format(0) + first, *(head.format(number) + step.format(number - 1) for number in range(1, 40))]
     return "\n".join(["robot R {", COMPONENT, *lines, use.format(39), "}"])
 
@@ -46,7 +46,7 @@ def test_what_would_be_too_large_is_never_written_out(monkeypatch: pytest.Monkey
     reading = read("r.rscd", documents=Documents({"r.rscd": text}))
     findings = [*reading.findings, *check(reading.base, reading.findings)]
     assert [finding.message for finding in findings] == [TOO_LARGE]
-    # Each of the small definitions is written out by several rules.
+    # Several rules expand each of the small definitions.
     assert steps < 20 * expansion.LARGEST
 
 
@@ -70,7 +70,7 @@ def test_texts_of_texts_are_not_written_out() -> None:
 
 
 def calls(text: str) -> int:
-    """The number of Python functions that reading and checking a text calls."""
+    """Return the number of Python function calls while reading and checking a text."""
     count = 0
 
     def counted(_frame: object, event: str, _argument: object) -> None:
@@ -92,6 +92,6 @@ def test_a_chain_of_reasons_costs_by_its_length(chain: Callable[[list[str]], str
     text = """robot R {{ component A {{ service s with request: none, response: none behaviour {{
       initial marked state idle {{ on request to s goto busy }}
       state busy {{ on response from s goto idle on error from s if {} goto idle }} }} }} }}"""
-    calls(text.format("error = lost"))  # what is read once is read now
+    calls(text.format("error = lost"))  # load modules once, before counting
     short, long = (calls(text.format(chain(["error"] * number))) for number in (100, 400))
     assert long < 5 * short

@@ -1,4 +1,4 @@
-"""Where something is named like a keyword, one finding writes `^` before it, and its edits mend the text."""
+"""A name that is a keyword draws one finding; its edits write `^` before the name and mend the text."""
 
 import re
 
@@ -9,7 +9,7 @@ from tests.language.checks.test_fixing import checked
 
 WORDS = re.search(r"\(\?:([a-z|]+)\)", pattern("UnreservedName"))[1].split("|")
 BEGINNING = first_words("Definition", "ComponentDefinition", "AutomatonDefinition", "EnumRule")
-#: Each use of a name of its kind, with `KK` for the name.
+#: One text for each use of each kind of name, with `KK` for the name.
 TEXTS = {
     "outgoing message": """robot R {
   component C {
@@ -109,7 +109,7 @@ TEXTS = {
 }
 """,
 }
-#: Words that mean something where the name stands: the text is another one then, and other findings tell.
+#: Words with a meaning of their own in that place: the text is then another one, with other findings.
 MEANING = {
     "incoming message": {"and", "or", "if", "error"},
     "variable": {"if", "value", "error"},
@@ -131,7 +131,7 @@ def test_one_finding_and_its_edit(kind: str) -> None:
         (finding,) = found.findings
         assert finding.hint == f"write `^{word}` where a keyword is used as a name", (word, finding)
         assert len(finding.edits) == len(finding.related) + 1
-        for _ in range(5):  # Of several in one item the first is reported.
+        for _ in range(5):  # The first of several in one item is reported.
             text = found.reading.file.text.after(edit for finding in found.findings for edit in finding.edits)
             found = checked(text)
             if not found.findings:
@@ -141,7 +141,7 @@ def test_one_finding_and_its_edit(kind: str) -> None:
 
 
 def test_a_name_that_is_missing_is_no_keyword() -> None:
-    """The next line begins with a keyword that is none of its own."""
+    """The next line begins with a keyword, which is not the missing name."""
     text = """robot R {
   component C {
     outgoing message m with type: none

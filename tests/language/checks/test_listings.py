@@ -1,4 +1,4 @@
-"""The thesis' eight printed listings draw what the language reference says."""
+"""The thesis' eight printed listings draw the findings that the language reference lists."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""What hints say to write mends the finding, in all models that break a rule."""
+"""Hints that state an edit mend the finding, in all models that violate a rule."""
 
 import ast
 import re
@@ -20,7 +20,7 @@ PACKAGE = HERE.parents[2] / "robosc"
 LINE = re.compile(r" \(line \d+\)| in line \d+")
 INTERFACES = RosTypes([HERE / "interfaces"])
 MODELS = sorted((HERE / "rejected").glob("*/*.rscd"))
-#: What breaks rules that no robot in `rejected` breaks: names, and what other languages write.
+#: Texts that violate rules in ways no robot in `rejected` does: names, and syntax of other languages.
 TEXTS = {
     "none": MODEL,
     **{f"fault-{number}": changed(MODEL, old, new) for number, (old, new, *_) in enumerate(FAULTS)},
@@ -85,10 +85,10 @@ TEXTS = {
     "quotes": "robot R { component C { incoming message m with identifier: \u201c/m\u201d, type: none } }",
     "numbers": "robot R { constant a: double = .5 constant b: double = 1e-3 constant c: double = 2. }",
 }
-#: How hints begin that say what to write; and those that nothing here draws, none of which an edit follows.
+#: The beginnings of hints that state an edit, and such hints that no text here draws. None of the latter has an edit.
 SAYING = ("write `", "add ", "leave ", "rename ", "did you mean")
 UNSEEN = ("write `if` and `!` before the condition", "write `none`: no data type fits", "write `{}`")
-#: Hints that no edit follows, by how they begin, and why: they do not say what to write.
+#: Beginnings of hints without an edit, by the reason: they do not state an edit.
 TOLD = {
     "what is missing is known to the writer alone": (
         "compare double with double",
@@ -195,7 +195,7 @@ def findings(path: Path, text: str | None = None) -> tuple[Reading, list[Diagnos
 
 @cache
 def before(path: Path, text: str | None = None) -> tuple[Reading, list[Diagnostic]]:
-    """The findings in a text that is edited afterwards."""
+    """Return the findings of a text before it is edited."""
     return findings(path, text)
 
 
@@ -209,7 +209,7 @@ def edited(text: str, edits: tuple[Edit, ...]) -> str:
 
 
 def like(finding: Diagnostic, others: list[Diagnostic]) -> int:
-    """How many findings say the same, wherever they stand now."""
+    """Return the number of findings with the same rule and message, wherever they are."""
     key = (finding.rule, LINE.sub("", finding.message))
     return sum((other.rule, LINE.sub("", other.message)) == key for other in others)
 
@@ -232,9 +232,10 @@ def test_an_edit_mends_its_finding(path: Path) -> None:
 
 @pytest.mark.parametrize("text", TEXTS.values(), ids=TEXTS)
 def test_an_edit_mends_what_is_no_syntax_or_no_name(text: str) -> None:
-    """What stands behind a mended word may have a fault of its own, which its finding hid.
+    """An edit of a name or a word of another language mends its finding.
 
-    What is found in the model without a fault is mended there alone.
+    Text after a mended word may have a fault of its own, which the finding hid. Findings of the model without a fault
+    are mended in that model only.
     """
     path = HERE / "nowhere.rscd"
     _, found = before(path, text)
@@ -247,9 +248,9 @@ def test_an_edit_mends_what_is_no_syntax_or_no_name(text: str) -> None:
 
 @cache
 def drawn() -> dict[str, bool]:
-    """Each hint that is given for all these texts, and whether edits do what it says, wherever it is given.
+    """Return each hint that these texts draw, and whether edits follow it everywhere.
 
-    With the titles of alternatives.
+    Titles of alternatives are included.
     """
     texts = [*((path, None) for path in MODELS), *((HERE / "nowhere.rscd", text) for text in TEXTS.values())]
     found: dict[str, bool] = {}
@@ -270,7 +271,7 @@ def test_every_hint_that_says_what_to_write_is_an_edit() -> None:
 
 
 def test_no_hint_is_forgotten() -> None:
-    """What the sources have as a hint that says what to write, one of the texts draws."""
+    """Each hint in the sources that states an edit is drawn by one of the texts."""
     modules = [*(PACKAGE / "language" / "checks").rglob("*.py"), *(PACKAGE / "language").glob("*.py")]
     known = [*drawn(), *(start for starts in TOLD.values() for start in starts)]
     written = [text for path in modules for text in literals(path) if text.startswith(SAYING)]
@@ -279,7 +280,7 @@ def test_no_hint_is_forgotten() -> None:
 
 
 def literals(path: Path) -> Iterator[str]:
-    """The strings of a module, of formatted ones how they begin, without their last blank."""
+    """Return the strings of a module without trailing blanks; of formatted strings, the beginning."""
     tree = ast.parse(path.read_text())
     inside = {id(part) for node in ast.walk(tree) if isinstance(node, ast.JoinedStr) for part in node.values[1:]}
     for node in ast.walk(tree):

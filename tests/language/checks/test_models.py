@@ -1,4 +1,4 @@
-"""A model in `rejected` draws the findings that its first line names and no others, one in `accepted` none."""
+"""A model in `rejected` draws exactly the findings that its first line names; one in `accepted` draws none."""
 
 import re
 from collections import Counter
@@ -16,7 +16,7 @@ from robosc.language.reading import read
 HERE = Path(__file__).parent
 REJECTED = sorted((HERE / "rejected").glob("*/*.rscd"))
 ACCEPTED = sorted((HERE / "accepted").glob("*/*.rscd"))
-#: Of packages that the models make up nothing is known, of those here everything.
+#: Fictional packages of the models are unknown; those in this folder are known.
 UNKNOWN, INTERFACES = "interface-unknown", HERE / "interfaces"
 _EXPECTED = re.compile(r"// expect: (\S+)((?: \d+)+)\n")
 
@@ -43,7 +43,7 @@ def test_rejected_model_draws_exactly_the_expected_findings(model: Path) -> None
     assert [(finding.file, finding.rule, finding.span.line) for finding in found] == [
         (str(model), rule, int(line)) for line in lines
     ]
-    severity = RULES[rule].severity if rule in RULES else Severity.ERROR  # linking finds it
+    severity = RULES[rule].severity if rule in RULES else Severity.ERROR  # linking reports it
     assert {finding.severity for finding in found} == {severity}
     assert all(finding.hint for finding in found)
 

@@ -1,4 +1,4 @@
-"""Every rule has a page, and the models on it are what the page says."""
+"""Every rule has a page, and the models on it draw the findings that the page shows."""
 
 import re
 from pathlib import Path
@@ -11,7 +11,7 @@ from robosc.language.checks import check
 from robosc.language.checks.rule import RULES
 from robosc.language.reading import read
 
-#: Rules whose breaches are found before there is a model that could be checked.
+#: Rules whose violations are reported before there is a model to check.
 READING = {"syntax", "unresolved-reference", "import-cycle", "unique-enum-value"}
 CHECKED = sorted({*RULES, *READING})
 
@@ -25,7 +25,7 @@ def models(rule: str, heading: str) -> list[str]:
 
 
 def findings(folder: Path, texts: list[str], rule: str) -> list[Diagnostic]:
-    """The findings of the first of several files of one folder; packages of actions may be unknown."""
+    """Return the findings of the first of several files in one folder; action packages may be unknown."""
     assert texts
     for number, text in enumerate(texts):
         (folder / f"model{number}.rscd").write_text(text)

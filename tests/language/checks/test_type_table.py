@@ -1,4 +1,4 @@
-"""Each cell of table 4.1: which operators accept which operands."""
+"""Each cell of table 4.1: the operand types that each operator accepts."""
 
 from itertools import product
 
@@ -66,7 +66,7 @@ def operand(kind: Type) -> rsc.Access:
 
 
 def faults(expression: ex.Expression) -> list[ex.Located]:
-    """Where the findings in an expression stand."""
+    """Return the elements with a finding in an expression."""
     check = ExpressionCheck(Place(None))
     check.type(expression)
     assert all(finding.message and finding.hint for finding in check.findings)

@@ -1,4 +1,4 @@
-"""Rules look at models in which linking did not find everything, and leave that to it."""
+"""Rules accept models with unresolved names and do not report those names again."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Random specifications beside synthesis by the definition."""
+"""Compare random specifications with synthesis by the definition."""
 
 from __future__ import annotations
 
@@ -14,24 +14,27 @@ if TYPE_CHECKING:
 
 
 def reading_of(specification: Specification) -> Reading:
-    """A specification, read from all of its files."""
+    """Read a specification from all of its files."""
     files = {str(Path(name).resolve()): text for name, text in specification.files.items()}
     return read(Path("random.cif").resolve(), Documents(files))
 
 
 def agrees(specification: Specification) -> int | None:
-    """The number of states under the supervisor, as it is by the definition; None where synthesis does not take it."""
+    """Compare the number of controlled states with the definition.
+
+    Return this number, or None if synthesis rejects the specification.
+    """
     reading = reading_of(specification)
     text = "\n".join(specification.files.values())
     if specification.foreign:
         assert specification.foreign in " ".join(finding.message for finding in reading.findings), text
         return None
-    # What is drawn may be a value that its variable never has, and CIF's type checker refuses that.
+    # A random value may be one that its variable never has. CIF's type checker rejects this.
     assert {finding.rule for finding in reading.findings} <= {"type", "cif-construct"}, text
     if reading.model is None:
         return None
     found = synthesize(reading.model).controlled_states
     assert found == specification.controlled_states(), text
-    # Which is found in another way, where only the number is asked for.
+    # A different algorithm computes this number if only the number is requested.
     assert found == count(reading.model).controlled_states, text
     return found

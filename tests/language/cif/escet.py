@@ -1,4 +1,4 @@
-"""CIF's real tools, where `ESCET_HOME` names a folder with them: benchmarks/escet.md describes it."""
+"""CIF's real tools, if `ESCET_HOME` names a folder with them: benchmarks/escet.md describes it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import subprocess
 from pathlib import Path
 from typing import NamedTuple
 
-#: Their classes.
+#: The Java classes of the tools.
 CONTROLLER_CHECK = "org.eclipse.escet.cif.controllercheck.ControllerCheckerApp"
 EXPLORER = "org.eclipse.escet.cif.explorer.app.ExplorerApplication"
 SYNTHESIS = "org.eclipse.escet.cif.datasynth.CifDataSynthesisApp"
@@ -22,21 +22,21 @@ _CALLED = re.compile(r"called: (\d+) (\d+) (\d+)\n")
 
 
 def home() -> Path | None:
-    """The folder with CIF's tools."""
+    """Return the folder with CIF's tools."""
     folder = os.environ.get("ESCET_HOME")
     return Path(folder) if folder else None
 
 
 def class_path(folder: Path) -> str:
-    """Where Java finds the classes: in `classes`, and in the jars of the folder, of `lib` and of `plugins`."""
+    """Return Java's class path: `classes`, and the jars of the folder, of `lib` and of `plugins`."""
     jars = [str(jar) for inner in (".", "lib", "plugins") for jar in sorted((folder / inner).glob("*.jar"))]
     return os.pathsep.join([str(folder / "classes"), *jars])
 
 
 class Call(NamedTuple):
-    """What a call of a tool said, its exit status, and how long it took in a Java that was running.
+    """Exit status, output and duration of one tool call in a running Java.
 
-    `processor` are the seconds of the processor that the tool's thread took, without what Java does beside it.
+    `processor` is the CPU time of the tool's thread in seconds, without Java's own threads.
     """
 
     status: int
@@ -46,24 +46,24 @@ class Call(NamedTuple):
 
 
 class Counted(NamedTuple):
-    """What synthesis found: None where it refused, or has no number."""
+    """The number of controlled states, or None if synthesis refused or reports no number."""
 
     states: int | None
     call: Call
 
 
 class Explored(NamedTuple):
-    """The states and edges that the explorer reaches; None where it ends in an error."""
+    """The states and edges that the explorer reaches, or None if it ends in an error."""
 
     size: tuple[int, int] | None
     call: Call
 
 
 def without_inputs(text: str) -> str:
-    """A specification with an automaton in place of each input, since the explorer takes none.
+    """Replace each input by an automaton, since the explorer does not support inputs.
 
-    As in CIF's synthesis, an input has any value at the start and changes to any other at any time. Raises KeyError for
-    an input of a type that is neither a range of numbers nor an enumeration of the whole specification.
+    As in CIF's synthesis, an input has any initial value and can change to any other value at any time. Raises KeyError
+    for an input whose type is neither an integer range nor an enumeration at the specification's top level.
     """
     literals = {name: [part.strip() for part in parts.split(",")] for name, parts in _ENUMERATION.findall(text)}
     automata: list[str] = []
@@ -87,10 +87,10 @@ def without_inputs(text: str) -> str:
 
 
 class Tools:
-    """CIF's tools in one running Java. Ends with the context."""
+    """CIF's tools in one running Java. The process ends with the context."""
 
     def __init__(self, folder: Path, crashes: Path | None = None) -> None:
-        """`crashes`: the folder for reports of crashes; None: the present one."""
+        """`crashes` is the folder for crash reports. Default: the working directory."""
         command = ["java", "-Xmx3g", "-cp", class_path(folder), str(Path(__file__).with_name("Calls.java"))]
         self._java = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=crashes
@@ -103,10 +103,10 @@ class Tools:
         self._java.communicate()
 
     def call(self, tool: str, *arguments: str) -> Call:
-        """Calls a tool."""
+        """Call a tool."""
         assert self._java.stdin is not None
         assert self._java.stdout is not None
-        # Of a display that it can't open, a tool waits for ever the second time.
+        # A tool that cannot open a display blocks forever on the second attempt.
         self._java.stdin.write("\t".join([tool, *arguments, "--gui=off"]) + "\n")
         self._java.stdin.flush()
         lines: list[str] = []
@@ -118,11 +118,11 @@ class Tools:
         raise AssertionError(f"Java ended: {''.join(lines)[-2000:]}")
 
     def is_valid(self, path: Path) -> Call:
-        """Whether a specification has no fault in its syntax and its types: the exit status is 0 then."""
+        """Check the syntax and types of a specification: the exit status is 0 if they are valid."""
         return self.call(TRANSFORMER, str(path), "-t", "elim-comp-def-inst", "-o", str(path.with_suffix(".flat.cif")))
 
     def synthesize(self, path: Path) -> Counted:
-        """How many states the supervisor leaves, 0 where there is none."""
+        """Return the number of states under the supervisor; 0 if there is none."""
         output = path.with_suffix(".out.cif")
         options = ["--bdd-output=nodes", "--forward-reach=yes", "--stats=ctrl-sys-states", "-o", str(output)]
         call = self.call(SYNTHESIS, str(path), *options)
@@ -132,7 +132,7 @@ class Tools:
         return Counted(None if found is None else int(re.sub(r"\D", "", found[1])), call)
 
     def explore(self, path: Path) -> Explored:
-        """How many states and edges a specification has as CIF's simulator runs it: an overflow is an error."""
+        """Count the states and edges that CIF's simulator reaches: an overflow is an error."""
         call = self.call(EXPLORER, str(path), "--enable-cif=no")
         found = _EXPLORED.search(call.output)
         if call.status != 0 or found is None:
@@ -141,7 +141,7 @@ class Tools:
         return Explored((states, edges), call)
 
     def supervised(self, path: Path) -> Explored:
-        """How many states and edges a specification has under the supervisor of CIF's own synthesis."""
+        """Count the states and edges of a specification under the supervisor of CIF's own synthesis."""
         output = path.with_suffix(".own.cif")
         call = self.call(SYNTHESIS, str(path), "--forward-reach=yes", "-o", str(output))
         return Explored(None, call) if call.status != 0 else self.explore(output)

@@ -1,7 +1,8 @@
-"""Random CIF specifications, and their synthesis by the definition, state by state, from what was drawn.
+"""Random CIF specifications, and their synthesis by the definition, state by state.
 
-A specification draws its automata first, each by itself. How they are written is drawn then: in groups, as instances of
-definitions, which may have a second one (a twin, whose events and names are others), and in one file or several.
+The definition uses the drawn structures, not the text. A specification draws its automata first, each by itself. Then
+it draws their textual form: in groups, as instances of definitions, and in one file or several. A definition may have a
+second instance (a twin) with other events and names.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ class Edge:
 
 @dataclass
 class Invariant:
-    """A condition on states or, where it has events, on these: what they need, or what disables them."""
+    """A condition on states, or on events: a condition that they need, or one that disables them."""
 
     kind: str
     name: str
@@ -46,7 +47,7 @@ class Invariant:
     needs: bool = True
 
     def within(self, place: Term) -> Invariant:
-        """What it says of all states where it stands in a location: `place` is that the automaton is there."""
+        """Return the equivalent invariant on all states for one in a location; `place` is true in that location."""
         inner = self.condition
         if self.needs:
             condition = Term("", lambda s: not place.value(s) or inner.value(s))
@@ -66,9 +67,11 @@ class Location:
 
 @dataclass
 class Automaton:
-    """`variables` are, by their names, the type, its values, how the text gives initial values, and these.
+    """An automaton.
 
-    `algebraic` are the types and the value in each location; `declared` is the alphabet where the text gives it.
+    `variables` maps each name to the type, its values, the text of the initial values, and the initial values.
+    `algebraic` maps each name to the type and the value in each location. `declared` is the alphabet, if the text has
+    one.
     """
 
     name: str
@@ -81,7 +84,7 @@ class Automaton:
     initial: list[Term] = field(default_factory=list)
     marked: list[Term] = field(default_factory=list)
     invariants: list[Invariant] = field(default_factory=list)
-    #: The automaton that it is another instance of, and which event stands for each of that one's.
+    #: The automaton with the same definition (this one is its twin), and this one's name for each event of that one.
     twin_of: Automaton | None = None
     renamed: dict[str, str] = field(default_factory=dict)
 
@@ -109,12 +112,12 @@ _WIDE: list[tuple[str, Callable[[int, int], int]]] = [
     ("(abs({} - {}) mod 3)", lambda a, b: abs(a - b) % 3),
     ("(abs({} - {}) div 2)", lambda a, b: abs(a - b) // 2),
 ]
-#: An automaton in an expression, and what a definition gets as a parameter: locations and variables of others.
+#: An automaton in an expression, and the parameters of a definition: locations and variables of other automata.
 _AUTOMATON = re.compile(r"(?<![\w.])[AR]\d\b")
 _OUTSIDE = re.compile(r"(?<![\w.])[AR]\d\.[lv]\d\b")
-#: So many states a specification may have, reachable or not: the definition looks at each.
+#: The maximum number of states of a specification, reachable or not: the definition visits each.
 _MOST_STATES = 4_000
-#: What synthesis does not take: a statement, and what the finding names.
+#: Constructs that synthesis does not support: a statement, and the construct's name in the finding.
 FOREIGN = (
     ("supervisor S0: location: initial; marked; edge {event}; end", "supervisor automata"),
     ("automaton S0: location: initial; marked; edge {event}; end", "automata of no kind"),
@@ -133,9 +136,9 @@ FOREIGN = (
 
 
 class Specification:
-    """A random specification; one that is `narrow` has only what CIF's own synthesis computes with.
+    """A random specification; a `narrow` one uses only constructs of CIF's own synthesis.
 
-    `foreign` is what a finding has to name where it has something that synthesis does not take.
+    `foreign` is the construct that a finding must name, if the specification has one that synthesis does not support.
     """
 
     def __init__(self, seed: int, *, narrow: bool = False) -> None:
@@ -165,13 +168,13 @@ class Specification:
         for automaton in self.automata:
             self._compute(automaton)
         for automaton in self.automata:
-            # The twin is the last.
+            # The twin comes last.
             (self._fill if automaton.twin_of is None else self._copy)(automaton)
         self._add_outside()
         self._shape()
 
     def _add_outside(self) -> None:
-        """What stands outside of the automata."""
+        """Draw the elements outside the automata."""
         some = self.random
         for _ in range(some.choice([0, 0, 1, 2])):
             self.invariants += self._excluding()
@@ -183,7 +186,7 @@ class Specification:
             self.marked.append(self.condition(2))
 
     def _shape(self) -> None:
-        """How the specification is written."""
+        """Draw the textual form of the specification."""
         some = self.random
         self.inside = {automaton.name for automaton in self.automata if some.random() < 0.25}
         self.defined = {
@@ -202,7 +205,7 @@ class Specification:
     # Drawing
 
     def _grow(self, name: str, values: list[Any]) -> bool:
-        """Gives a variable or an automaton its values, unless there would be too many states."""
+        """Give a variable or an automaton its values, unless there would be too many states."""
         if self._states * len(values) > _MOST_STATES:
             return False
         self._states *= len(values)
@@ -242,7 +245,7 @@ class Specification:
                 automaton.variables[f"v{number}"] = kind, values, initial, several
 
     def _declare_twin(self) -> None:
-        """A second instance of what an automaton is an instance of."""
+        """Declare a second instance of an automaton's definition."""
         some = self.random
         if some.random() > 0.2:
             return
@@ -262,7 +265,7 @@ class Specification:
             self._grow(name.replace(first.name, twin.name), self.domains[name])
 
     def _compute(self, automaton: Automaton) -> None:
-        """The algebraic variables of an automaton, with one value or one in each location."""
+        """Draw the algebraic variables of an automaton, with one value or one in each location."""
         some = self.random
         if automaton.twin_of is not None:
             for name, (kind, values) in automaton.twin_of.algebraic.items():
@@ -271,7 +274,7 @@ class Specification:
         elif some.random() < 0.3:
             kind = some.choice(["bool", "int[0..3]"])
             places = [location.name for location in automaton.locations] if some.random() < 0.5 else [""]
-            # What it is computed of has no such variable of this automaton, and none of one that comes later.
+            # Its operands exclude such variables of this automaton and of later ones.
             automaton.algebraic["y0"] = (
                 kind,
                 {place: self.condition(1) if kind == "bool" else self.term([0, 1, 2, 3], 0) for place in places},
@@ -287,7 +290,7 @@ class Specification:
         known[f"{automaton.name}.{name}"] = _named(f"{automaton.name}.{name}", automaton.name, value)
 
     def _twin_term(self, automaton: Automaton, term: Term) -> Term:
-        """What a term of the first instance is in the second: the names of its automaton are those of the other."""
+        """Return the counterpart of a term in the twin: the names of the first automaton become those of the twin."""
         first = automaton.twin_of
         assert first is not None
         pattern = re.compile(rf"\b{first.name}\b")
@@ -298,7 +301,7 @@ class Specification:
         )
 
     def _copy(self, automaton: Automaton) -> None:
-        """Fills the second instance like the first."""
+        """Fill the twin like the first instance."""
         first = automaton.twin_of
         assert first is not None
 
@@ -345,7 +348,7 @@ class Specification:
             free = [event for event, controllable in self.events.items() if controllable]
             for _ in range(some.randint(0, 3)):
                 events = some.sample(list(self.events), some.randint(1, 2))
-                # A controllable event has one edge in a location: two may be possible at once, which CIF refuses.
+                # A controllable event has one edge in a location: two could be possible at once, which CIF rejects.
                 events = [event for event in events if not self.events[event] or event in free]
                 free = [event for event in free if event not in events]
                 if events:
@@ -353,7 +356,7 @@ class Specification:
         self._add_rest(automaton)
 
     def _add_rest(self, automaton: Automaton) -> None:
-        """Its alphabet, what it watches, and what is initial, marked and invariant in it."""
+        """Draw the alphabet, the monitored events, and the initial, marked and invariant predicates."""
         some = self.random
         if some.random() < 0.15:
             more = [event for event in self.events if event not in automaton.alphabet and some.random() < 0.2]
@@ -384,7 +387,7 @@ class Specification:
         return Edge(events, guard, updates, some.choice(automaton.locations).name)
 
     def _excluding(self) -> list[Invariant]:
-        """An invariant of one event or of several, named at times; it has no name where it has several."""
+        """Draw an invariant of one or several events. It may have a name if it has one event."""
         some = self.random
         kind, condition = some.choice(["requirement", "requirement", "plant"]), self.condition(2)
         events = some.sample(list(self.events), some.choice([1, 1, 1, 2]))
@@ -400,7 +403,7 @@ class Specification:
         return f"i{self._named}"
 
     def condition(self, depth: int) -> Term:
-        """A boolean of a random shape."""
+        """Draw a boolean term of a random shape."""
         some = self.random
         if depth and some.random() < 0.5:
             left, right = self.condition(depth - 1), self.condition(depth - 1)
@@ -441,7 +444,7 @@ class Specification:
         return f"g.{name}" if name in self.inputs else name
 
     def term(self, values: list[Any], depth: int) -> Term:
-        """A value of the kind of some values; a number may lie outside of them."""
+        """Draw a term with the type of these values; a number may be outside them."""
         some = self.random
         if isinstance(values[0], bool):
             return self.condition(1)
@@ -471,7 +474,7 @@ class Specification:
                 return Term(text, lambda s: left.value(s) if s[automaton.name] == place else right.value(s))
             text = f"if {test.text}: {left.text} else {right.text} end"
             return Term(text, lambda s: left.value(s) if test.value(s) else right.value(s))
-        # Synthesis divides what is never negative.
+        # Synthesis divides only nonnegative numbers.
         operators = _NARROW if self.narrow else _WIDE if self.negative else _NARROW + _WIDE
         word, compute = some.choice(operators)
         return Term(word.format(left.text, right.text), lambda s: compute(left.value(s), right.value(s)))
@@ -480,12 +483,12 @@ class Specification:
 
     @property
     def text(self) -> str:
-        """The specification as one file."""
+        """Return the specification as one file."""
         return "\n".join([*self._names(), *self._components(), *self._rules(), ""])
 
     @property
     def files(self) -> dict[str, str]:
-        """The specification by file; the first imports the others."""
+        """Return the specification by file; the first imports the others."""
         if not self.several_files:
             return {"random.cif": self.text}
         main = ['import "names.cif", "rules.cif";', *self._components(), ""]
@@ -527,12 +530,12 @@ class Specification:
         return [*map(self._absolute, lines), *self.extra]
 
     def _absolute(self, text: str, root: str = ".") -> str:
-        """The text with automata called by where they are; what begins at the root in a definition begins with `^`."""
+        """Replace names of automata by their paths. In a definition, a path from the root begins with `^`."""
         called = {name: f"h.{name}" if len(self.inside) % 2 else f"{root}h.{name}" for name in self.inside}
         return _AUTOMATON.sub(lambda match: called.get(match[0], match[0]), text)
 
     def _automaton(self, automaton: Automaton, definitions: list[str]) -> list[str]:
-        """The lines of an automaton; where it is an instance, those of its definition are added to the others."""
+        """Return the lines of an automaton; add the lines of its definition, if it has one, to `definitions`."""
         first = automaton.twin_of or automaton
         if first.name not in self.defined:
             header = (
@@ -560,7 +563,7 @@ class Specification:
         return [f"{automaton.name}: D{first.name}({', '.join(given)});"]
 
     def _type(self, name: str) -> str | None:
-        """The type of a variable of an automaton; None of a location."""
+        """Return the type of a variable of an automaton; None for a location."""
         automaton, _, part = name.partition(".")
         variables = next(instance.variables for instance in self.automata if instance.name == automaton)
         return variables[part][0] if part in variables else None
@@ -589,14 +592,14 @@ class Specification:
 
     @cached_property
     def states(self) -> list[State]:
-        """All states in which the plant invariants hold."""
+        """Return all states that satisfy the plant invariants."""
         names = list(self.domains)
         every = (dict(zip(names, chosen, strict=True)) for chosen in product(*self.domains.values()))
         return [state for state in every if self._kept("plant", state)]
 
     @cached_property
     def everywhere(self) -> list[Invariant]:
-        """All invariants, those of locations as what they say of all states."""
+        """Return all invariants; those of locations in their form for all states."""
         found = list(self.invariants)
         for automaton in self.automata:
             found += automaton.invariants
@@ -605,7 +608,7 @@ class Specification:
         return found
 
     def differs_in_cif(self) -> bool:
-        """Whether CIF's tool may count other states: docs/coming-from-cif.md, "Differences"."""
+        """Return whether CIF's tool may count other states: docs/coming-from-cif.md, "Differences"."""
         if not any(invariant.kind == "plant" and not invariant.events for invariant in self.everywhere):
             return False
         wide = {name: values for name, (_, values) in self.inputs.items() if len(values) > 2}
@@ -661,7 +664,7 @@ class Specification:
         return all(place.marked is not None and place.marked.value(state) for place in places)
 
     def _taken(self, event: str, state: State) -> Iterator[list[tuple[Automaton, Edge]]]:
-        """The edges that automata can take together, those that only watch left out."""
+        """Yield the combinations of edges that automata can take together, without those of monitors."""
         choices: list[list[tuple[Automaton, Edge] | None]] = []
         for automaton in self.automata:
             if event not in automaton.alphabet:
@@ -683,7 +686,7 @@ class Specification:
         return self._allowed("requirement", event, state)
 
     def controlled_states(self) -> int:
-        """How many states are reachable under the supervisor."""
+        """Return the number of reachable states under the supervisor."""
         steps, bad = self._steps()
         initial = {number for number, state in enumerate(self.states) if self._starts(state)}
         marked = {number for number, state in enumerate(self.states) if self._marks(state)}
@@ -698,7 +701,7 @@ class Specification:
             good -= lost
 
     def _steps(self) -> tuple[list[tuple[int, int, bool]], set[int]]:
-        """What leads from state to state, controllable or not, and the states that are bad."""
+        """Return the steps between states, with their controllability, and the bad states."""
         key = {tuple(state.values()): number for number, state in enumerate(self.states)}
         steps: list[tuple[int, int, bool]] = []
         bad = {number for number, state in enumerate(self.states) if not self._kept("requirement", state)}
@@ -716,11 +719,11 @@ class Specification:
         return steps, bad
 
     def _after(self, state: State) -> Iterator[tuple[str, State]]:
-        """What can happen in a state so far as the plants go, with what follows, also out of the ranges."""
+        """Yield the events that the plants permit in a state, with their successors, also outside the ranges."""
         return ((event, after) for event, after in self._tried(state) if self._kept("plant", after))
 
     def _tried(self, state: State) -> Iterator[tuple[str, State]]:
-        """The same without regard to what plant invariants say of states."""
+        """Yield the same without regard to plant invariants on states."""
         for event in self.events:
             if any(event in automaton.alphabet for automaton in self.automata) and self._allowed("plant", event, state):
                 for taken in self._taken(event, state):
@@ -748,7 +751,7 @@ def _at(automaton: str, location: str) -> Term:
 
 
 def _named(name: str, automaton: str, value: Callable[[State], Any]) -> Term:
-    """What has a name: in a twin it is the other's as long as it is its own, and that of the first otherwise."""
+    """Return a named term: in a twin, its own elements have the twin's values, all others the common values."""
 
     def of(state: State) -> Any:
         first, whole = state.get("", (automaton, state))
@@ -758,7 +761,7 @@ def _named(name: str, automaton: str, value: Callable[[State], Any]) -> Term:
 
 
 def _elements(location: Location, automaton: Automaton, event: Callable[[str], str]) -> Iterator[str]:
-    """What stands in a location."""
+    """Yield the elements of a location."""
     for word, condition in (("initial", location.initial), ("marked", location.marked)):
         if condition is not None:
             yield f"{word}{'' if condition is TRUE else f' {condition.text}'};"
@@ -776,7 +779,7 @@ def _elements(location: Location, automaton: Automaton, event: Callable[[str], s
 
 
 def _stated(invariant: Invariant, event: Callable[[str], str]) -> str:
-    """The text of an invariant."""
+    """Return the text of an invariant."""
     name = f"{invariant.name}: " if invariant.name else ""
     if not invariant.events:
         return f"{invariant.kind} invariant {name}{invariant.condition.text};"
@@ -787,7 +790,7 @@ def _stated(invariant: Invariant, event: Callable[[str], str]) -> str:
         if invariant.needs
         else f"{invariant.condition.text} disables {events}"
     )
-    # CIF lets the word out; a name needs it.
+    # The word `invariant` is optional in CIF without a name and required with one.
     return f"{invariant.kind} invariant {name}{text};" if name else f"{invariant.kind} {text};"
 
 

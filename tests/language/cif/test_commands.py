@@ -1,4 +1,4 @@
-"""Commands that take a `.cif` file, and those that can't."""
+"""Commands that accept a `.cif` file, and those that reject it."""
 
 import importlib
 import json
@@ -27,7 +27,7 @@ plant Motor:
 end
 requirement c_on needs Motor.n != 2;
 """
-#: Where `c_go` with n at 2 leads to a trap.
+#: `c_go` with n at 2 leads to a trap.
 _TRAP = """
 plant P:
   controllable c_go, c_more;
@@ -140,7 +140,7 @@ _OVERFLOW = "plant P: controllable up; disc int[0..3] n; location: initial; mark
 
 
 def test_a_guard_keeps_what_it_is_copied_to_in_its_range(tmp_path: Path) -> None:
-    """CIF's other tools end in an error at an update out of the range; a PLC goes on."""
+    """An update outside the range is an error in CIF's other tools; a PLC continues."""
     path = tmp_path / "overflow.cif"
     path.write_text(_OVERFLOW)
     told = CliRunner().invoke(main, ["synthesize", str(path)]).stdout
@@ -175,7 +175,7 @@ def test_a_range_that_the_text_keeps_is_no_restriction(tmp_path: Path) -> None:
     ],
 )
 def test_what_is_subtracted_is_on_the_other_side(update: str, guard: str, tmp_path: Path) -> None:
-    """CIF's synthesis takes a `-` in assignments only, and so does its controller check."""
+    """CIF's synthesis and its controller check support `-` in assignments only."""
     path = tmp_path / "ranges.cif"
     path.write_text(
         f"plant P: controllable c; disc int[0..3] x in any; disc int[0..5] y in any; location: initial; marked; "
@@ -187,7 +187,7 @@ def test_what_is_subtracted_is_on_the_other_side(update: str, guard: str, tmp_pa
 
 
 def test_edges_that_leave_a_range_exclude_each_other_without_it(tmp_path: Path) -> None:
-    """CIF's synthesis looks at the guards alone, too."""
+    """CIF's synthesis compares the guards only, too."""
     path = tmp_path / "both.cif"
     path.write_text(_OVERFLOW.replace("; end", "; edge up when n = 3 do n := 0; end"))
     result = CliRunner().invoke(main, ["synthesize", str(path)])
@@ -201,7 +201,7 @@ def test_the_written_specification_imports_its_own_from_where_it_is(specificatio
     written = folder / "motor.supervised.cif"
     assert 'import "../../motor.cif";' in written.read_text()
     checked = CliRunner().invoke(main, ["check", str(written)])
-    # All that it says is in reach: supervisors are what our synthesis does not take.
+    # All its parts can be read: the only finding is that synthesis does not support supervisors.
     assert "can't be read" not in checked.output
     assert "synthesis does not take supervisor automata" in checked.output
 
@@ -311,7 +311,7 @@ def test_the_supervisor_in_c_goes_step_by_step(specification: str, tmp_path: Pat
     subprocess.run(compiler, cwd=folder, check=True)
     done = subprocess.run([folder / "motor"], check=True, capture_output=True, text=True)
     assert done.stdout == "01110 c_on 1\n"
-    # No control loop, and what it would need.
+    # The code has no control loop and none of its settings.
     header = (folder / "motor_supervisor.h").read_text()
     assert not re.search("tick|hooks|settings|batch|robot that", header)
 
@@ -351,7 +351,7 @@ def test_synthesize_counts_without_guards(specification: str) -> None:
 
 
 def test_no_supervisor_where_each_initial_state_is_lost_in_its_own_way(tmp_path: Path) -> None:
-    """One initial state is stuck itself, another one comes to where it is against its will."""
+    """One initial state is stuck itself; the other reaches it by an uncontrollable event."""
     path = tmp_path / "lost.cif"
     path.write_text(
         "uncontrollable u; plant P: location stuck: initial; location on: initial; marked; edge u goto stuck; end"

@@ -1,4 +1,4 @@
-"""What CIF's real tools say of random specifications, and of what is written for them."""
+"""CIF's real tools accept and agree with random specifications and generated CIF."""
 
 from __future__ import annotations
 
@@ -59,14 +59,14 @@ def test_synthesis_counts_as_many_states(tools: Tools, tmp_path: Path, start: in
         text = "\n".join(specification.files.values())
         theirs = tools.synthesize(path)
         if "Definition/use cycle" in theirs.call.output:
-            continue  # A location that names itself in its own predicates: docs/coming-from-cif.md.
+            continue  # A location uses itself in its own predicates: docs/coming-from-cif.md.
         reading = reading_of(specification)
         if reading.model is None:
-            # What is refused here and not there are plant invariants that an event can break in several ways.
+            # RoboSC alone rejects plant invariants that an event can violate in several ways.
             rules = {finding.rule for finding in reading.findings}
             assert theirs.call.status != 0 or rules == {"cif-construct"}, text
-        # Of a plant invariant and a range left at once, CIF's answer depends on its bits, and of one over an input of
-        # many values it asks less: docs/coming-from-cif.md.
+        # CIF's answer depends on its bits if an event leaves a plant invariant and a range at once. An invariant over
+        # an input of many values is weaker in CIF: docs/coming-from-cif.md.
         elif not specification.differs_in_cif():
             assert theirs.states == specification.controlled_states(), text + theirs.call.output
             compared += 1
@@ -75,7 +75,7 @@ def test_synthesis_counts_as_many_states(tools: Tools, tmp_path: Path, start: in
 
 @pytest.mark.parametrize("name", ["data", "failures", "transitions"])
 def test_robots_with_inputs_have_as_many_states(tools: Tools, tmp_path: Path, name: str) -> None:
-    """For CIF an input is part of the state, and one of an enumeration can be each literal."""
+    """In CIF, an input is part of the state, and an input of an enumeration can have each literal."""
     robot = robosc.load(_ROOT / "tests" / "every_view" / f"{name}.rscd")
     model = robosc.to_sct(robot)
     states = robosc.synthesize(model).controlledStates
@@ -140,7 +140,7 @@ def test_the_transformation_that_a_finding_names_takes_the_construct_out(
 
 
 def test_the_transformation_that_gives_edges_an_event(tools: Tools, tmp_path: Path) -> None:
-    """Of which kind it is has to be said."""
+    """The user must declare whether the new event is controllable."""
     path, without = tmp_path / "with.cif", tmp_path / "without.cif"
     path.write_text("plant p: location a: initial; marked; edge tau goto b; location b: marked; end")
     assert "cif2cif -t elim-tau-event`" in (read(path).findings[0].hint or "")
@@ -153,7 +153,7 @@ def test_the_transformation_that_gives_edges_an_event(tools: Tools, tmp_path: Pa
 
 
 def _values(parameter: sct.Input) -> int:
-    """How many values an input has."""
+    """Return the number of values of an input."""
     declared = parameter.type
     if isinstance(declared, ex.IntegerType):
         return declared.maximum - declared.minimum + 1
@@ -162,7 +162,7 @@ def _values(parameter: sct.Input) -> int:
 
 @pytest.mark.parametrize("start", range(0, 40, 10))
 def test_random_robots_have_as_many_states(tools: Tools, tmp_path: Path, start: int) -> None:
-    """To CIF the values of inputs are part of a state, each of them at any time."""
+    """In CIF, the values of inputs are part of a state and can change at any time."""
     compared = 0
     for seed in range(start, start + 10):
         _, robot = checked(seed, tmp_path / "robot.rscd")
@@ -190,26 +190,26 @@ def test_what_is_written_of_robots(tools: Tools, tmp_path: Path, path: Path) -> 
     [plants] = set(tmp_path.glob("*.cif")) - {supervised}
     checked = tools.is_valid(supervised)
     assert checked.status == 0, checked.output
-    # Synthesis takes no supervisors: as plants they leave what they left before.
+    # Synthesis does not support supervisors: as plants, they must leave the number of states unchanged.
     as_plants = tmp_path / "as_plants.cif"
     tools.call(TRANSFORMER, str(supervised), "-t", "relabel-supervisors-as-plants", "-o", str(as_plants))
     counted = tools.synthesize(as_plants)
     assert counted.states is not None, counted.call.output
     assert counted.states == tools.synthesize(plants).states
-    # The check for confluence takes time by the product of all domains.
+    # The run time of the confluence check is proportional to the product of all domains.
     checked_path = str(tmp_path / "checked.cif")
     properties = tools.call(CONTROLLER_CHECK, str(supervised), "--confluence-check=no", "-o", checked_path)
     assert "CONCLUSION" in properties.output, properties.output
 
 
-#: Folders of specifications below CIF's own tests, where ESCET_HOME has them in its folder `tests`.
+#: The folder below ESCET_HOME with specifications of CIF's own tests, if it exists.
 _OWN = "tests/datasynth"
-#: More states than these take the explorer long.
+#: The explorer is slow beyond this number of states.
 _MOST = 20_000
 
 
 def _both(tools: Tools, path: Path, folder: Path) -> tuple[Explored, Explored] | None:
-    """A specification under the supervisor that is written for it, and under that of CIF; None where there is none."""
+    """Explore a specification under the generated supervisor and under CIF's own; return None if there is none."""
     result = CliRunner().invoke(main, ["transform", str(path), "--to", "cif", "-o", str(folder)])
     if result.exit_code != 0:
         return None
@@ -217,7 +217,10 @@ def _both(tools: Tools, path: Path, folder: Path) -> tuple[Explored, Explored] |
 
 
 def test_written_specifications_run_to_the_states_of_cifs_own_supervisor(tools: Tools, tmp_path: Path) -> None:
-    """Each construct, and random specifications; an update out of its range ends the explorer in an error."""
+    """The specifications are one per construct, and random ones.
+
+    An update outside its range ends the explorer in an error.
+    """
     texts = {f"construct_{number}": {"": text} for number, (text, _) in enumerate(COUNTS.values())}
     for seed in range(60):
         specification = Specification(seed, narrow=True)
@@ -230,7 +233,7 @@ def test_written_specifications_run_to_the_states_of_cifs_own_supervisor(tools: 
         for file, text in files.items():
             (folder / (file or "random.cif")).write_text(without_inputs(text) if name.startswith("construct") else text)
         both = _both(tools, folder / "random.cif", folder)
-        # What CIF's own synthesis refuses it has no supervisor for.
+        # CIF's own synthesis has no supervisor for specifications that it rejects.
         if both is not None and both[1].call.status == 0:
             ours, theirs = both
             assert ours.size is not None, f"{name}: {files} {ours.call.output}"
@@ -248,13 +251,13 @@ def test_cifs_own_tests_run_to_the_states_of_its_supervisor(tools: Tools, tmp_pa
     explored = 0
     for path in sorted((folder / _OWN).glob("*.cif")):
         if path.name.count(".") > 1:
-            continue  # What a test expects.
+            continue  # The expected output of a test.
         both = _both(tools, path, tmp_path)
         if both is None or both[1].call.status != 0:
             continue
         ours, theirs = both
         if "Input variable" in ours.call.output:
-            continue  # The explorer takes none.
+            continue  # The explorer does not support inputs.
         assert ours.size is not None, f"{path.name}: {ours.call.output}"
         assert ours.size == theirs.size, path.name
         explored += 1

@@ -1,4 +1,4 @@
-"""What is wrong with a specification is said where it is, how to mend it, and all in one run."""
+"""Faults in a specification are reported with their positions and hints, and all in one run."""
 
 import random
 import re
@@ -19,7 +19,7 @@ _P = "plant p: location a: initial; marked; edge c; end\n"
 
 
 def findings(text: str) -> list[tuple[str, str, str | None]]:
-    """Place, message and hint of all findings."""
+    """Return the position, message and hint of all findings."""
     return [
         (f"{finding.span.line}:{finding.span.column}", finding.message, finding.hint)
         for finding in reading(main=text).findings
@@ -149,8 +149,7 @@ def test_a_fault_is_said_at_its_place(name: str) -> None:
         assert mend is None or mend == hint
 
 
-#: What is nested, in lines of one level each: before, at each level, inside, at the end of each, after, and in which
-#: column a level begins.
+#: Nested constructs, one level per line: text before, opening, core, closing, text after, and the column of a level.
 NESTED = {
     "parentheses": ("requirement\n", "(\n", "p.a", ")", ";", 1),
     "negations": ("requirement\n", "not(\n", "p.a", ")", ";", 4),
@@ -179,9 +178,12 @@ NESTED = {
 
 @pytest.mark.parametrize("name", NESTED)
 def test_what_is_nested_too_deep_is_found_at_its_place(name: str) -> None:
-    """On a stack of 512 KiB, too, and with what is as deep as it may be just before."""
+    """Nesting beyond the limit is reported at its position, on a stack of 512 KiB.
+
+    Nesting at the limit has no finding.
+    """
     before, opening, core, closing, after, column = NESTED[name]
-    # The parentheses of the innermost definition are a level, too, and the first to be too deep.
+    # The parentheses of the innermost definition are a level, too, and the first one beyond the limit.
     most = DEEPEST - ("definitions" in name)
     texts = [
         "controllable c;\n" + _P + before + opening * depth + core + closing * depth + after
@@ -198,7 +200,7 @@ def test_what_is_nested_too_deep_is_found_at_its_place(name: str) -> None:
 
 @pytest.mark.parametrize("statement", ["while true:", "if true: x := 1; elif false: x := 2; else"])
 def test_statements_of_functions_that_are_nested_too_deep_are_found_at_their_place(statement: str) -> None:
-    """Groups around count, what functions and types of functions there are before does not."""
+    """Surrounding groups count as levels; earlier functions and types of functions do not."""
     before = "".join(
         f"type t{number} = func int(int a); "
         f"func int g{number}(int a): while true: x := if a = 1: 1 else 2 end; end end\n"
@@ -224,7 +226,7 @@ def test_what_is_not_closed_makes_nothing_deep() -> None:
     assert not any("levels deep" in message for _, message, _ in found)
 
 
-#: So many definitions, one made of the other, are more than Python's stack is deep.
+#: A chain of this many definitions exceeds the depth of Python's stack.
 _MANY = 400
 
 
@@ -330,8 +332,8 @@ def test_an_unknown_annotation_is_warned_about() -> None:
 _LIST = "a variable for each element"
 _TYPES = "synthesis takes `bool`, ranges of `int` and `enum`"
 _COMPUTED = "write an algebraic variable"
-#: What is outside: where it stands (`{}` of the plant: a declaration, what is on its edge), what it is called, and what
-#: the hint says, CIF's own transformation where there is one.
+#: Constructs outside of CIF's synthesis: the text (`{}` of the plant: a declaration or a part of its edge), the
+#: construct's name, and the hint, with CIF's own transformation if there is one.
 OUTSIDE = [
     ("cont x der 1.0; {}", "continuous variables", "leave them to simulation"),
     ("cont x; {location a: equation x' = 1.0;}", "continuous variables", "leave them to simulation"),
@@ -381,7 +383,7 @@ OUTSIDE = [
 
 
 def _outside(statement: str) -> str:
-    """A specification with a statement, its plant made of what stands in braces."""
+    """Return a specification with a statement; its plant contains the text in braces."""
     before, inner, after = re.fullmatch(r"([^{]*)\{(.*)\}([^}]*)", statement).groups()  # type: ignore[union-attr]
     edge = inner[inner.index("edge ") :] if "edge " in inner else "edge c"
     location = inner if inner.startswith("location") else "location a:"
@@ -409,7 +411,7 @@ def test_two_edges_of_a_controllable_event_exclude_each_other() -> None:
 
 
 def damaged(text: str, some: random.Random) -> str:
-    """A text with a piece taken out, doubled or put elsewhere."""
+    """Remove, duplicate or move a piece of the text."""
     start = some.randrange(len(text))
     end = min(len(text), start + some.choice([1, 1, 2, 5, 20, 60]))
     piece, rest = text[start:end], text[:start] + text[end:]

@@ -1,7 +1,7 @@
-"""What a CIF specification may say, each construct with its count of controlled states.
+"""Constructs of CIF specifications, each with its number of controlled states.
 
-The numbers are those of CIF's data-based synthesis (ESCET 5.0-dev, forward reachability), but where a comment says that
-CIF's own tool refuses the construct.
+The numbers are those of CIF's data-based synthesis (ESCET 5.0-dev, forward reachability), unless a comment says that
+CIF's own tool rejects the construct.
 """
 # ruff: noqa: E501, ISC004 - specifications are easier to read in one piece
 
@@ -159,7 +159,7 @@ COUNTS = {
         "namespace a.b;" + _EVENTS + _ROOM + "initial p.x = 0; requirement p.x != 2;",
         2,
     ),
-    # CIF's synthesis refuses what follows.
+    # CIF's synthesis rejects the rest.
     "min, max, abs and products": (
         _EVENTS + "plant p: disc int[-2..9] x; location: initial; marked;"
         "edge c do x := min(x + 2, 4); edge d do x := max(abs(x) * -1, -1); end",
@@ -176,7 +176,7 @@ COUNTS = {
 
 
 def reading(**texts: str):  # type: ignore[no-untyped-def]
-    """What reading `main` says, with other files beside it."""
+    """Read `main` with other files in its folder."""
     paths = {name: Path(f"{name}.cif").resolve() for name in texts}
     return read(paths["main"], Documents({str(paths[name]): text for name, text in texts.items()}))
 

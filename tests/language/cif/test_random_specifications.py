@@ -1,4 +1,4 @@
-"""Random CIF specifications agree with synthesis by the definition, state by state."""
+"""Synthesis of random CIF specifications agrees with the definition, state by state."""
 
 import pytest
 
@@ -24,7 +24,7 @@ def test_as_many_states_as_by_the_definition(start: int) -> None:
 
 
 def supervised(seed: int) -> sct.SupervisoryControlModel | None:
-    """A random specification with its supervisor; None where it is refused or has none."""
+    """Return a random specification with its supervisor; None if it is rejected or has none."""
     model = reading_of(Specification(seed)).model
     if model is None:
         return None

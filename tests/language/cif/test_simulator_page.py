@@ -1,4 +1,4 @@
-"""docs/cif-simulator.md is true: its commands, the events that it names, and the lines that it puts into the file."""
+"""docs/cif-simulator.md is correct: its commands, its event names, and the lines that it adds to the file."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PRESSED = 'message_pressed.u_response {"value": true}'
 
 
 def call(*words: str, given: str = "") -> str:
-    """What a command prints that ends well."""
+    """Return the output of a command that succeeds."""
     done = CliRunner().invoke(main, words, input=given)
     assert done.exit_code == 0, done.output
     return done.stdout
@@ -26,7 +26,7 @@ def call(*words: str, given: str = "") -> str:
 
 @pytest.fixture
 def supervised(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The file that the page's first command writes."""
+    """Return the file that the page's first command writes."""
     monkeypatch.chdir(ROOT)
     [command] = re.findall(r"^robosc (transform .*) -o build/cif$", PAGE, re.MULTILINE)
     call(*command.split(), "-o", str(tmp_path))
@@ -63,12 +63,12 @@ def test_the_same_steps_on_the_desk(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_an_input_that_changes(supervised: Path) -> None:
-    """Tried on the plants and requirements, since no supervisor is synthesized for what has one."""
+    """The test uses the plants and requirements, since a model with an input has no synthesized supervisor."""
     model = supervised.with_name("LineFollower.cif")
     [plant] = re.findall(r"^```\n(plant world:.*?)```$", PAGE, re.MULTILINE | re.DOTALL)
     [(old, new)] = re.findall(r"replace the line `(.*?)`\s+with\s+`(alg .*?)`", PAGE)
     text = model.read_text()
     assert text.count(old) == supervised.read_text().count(old) == 1
     model.write_text(f"{text.replace(old, new)}\n{plant}")
-    # The value of the input has become part of the state.
+    # The value of the input is now part of the state.
     assert json.loads(call("synthesize", str(model), "--json"))["controlled_states"] == 384

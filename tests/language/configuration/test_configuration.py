@@ -1,4 +1,4 @@
-"""The configuration: what it may say, where it is found, and what is said about its faults."""
+"""The configuration: its settings, its location, and the findings about its faults."""
 
 import json
 import os
@@ -153,7 +153,7 @@ def test_settings_for_what_the_robot_does_not_have(tmp_path: Path) -> None:
         ("warning", 14, '"frameId": the robot has no scam', 'did you mean "scan"?'),
         ("warning", 51, '"qos": the robot has no odom', "known here: scan, stop"),
     ]
-    # What the node does not send on shutdown is an error of the generators.
+    # The generators report unsendable shutdown messages, not this function.
     assert {unknown_name.hint for unknown_name in configuration.unknown_names([])} == {None}
 
 

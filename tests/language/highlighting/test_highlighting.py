@@ -1,4 +1,4 @@
-"""Texts are coloured as they are parsed: by Pygments, and by the TextMate grammar in editors/vscode, from one table."""
+"""Pygments and the TextMate grammar in editors/vscode color texts as the parser reads them, from one table."""
 
 import json
 import re
@@ -32,7 +32,7 @@ Words = dict[int, str]
 
 
 def parsed(text: str) -> Words:
-    """The words of the language in a text, where the parser finds them, by their offsets."""
+    """Return the language's words that the parser recognizes, by their offsets."""
     tree = parse(text, "Base")
     assert not isinstance(tree, Failure)
     return {node.position: node.value for node in leaves(tree) if is_word(node)}
@@ -54,7 +54,7 @@ def is_word(leaf: Node) -> bool:
 
 
 def coloured(text: str) -> Words:
-    """The same, as Pygments colours them."""
+    """Return the same words as Pygments colors them."""
     found = RoboscLexer().get_tokens_unprocessed(text)
     return {offset: word for offset, token, word in found if token in WORD_TOKENS}
 
@@ -74,7 +74,7 @@ def test_there_are_texts() -> None:
 
 
 def test_the_table_has_the_words_of_the_grammar() -> None:
-    """A new word of the grammar has to get a kind."""
+    """Each new word of the grammar needs a kind."""
     words = {word for word in words_of("Base") if word.isalpha() and word.islower()}
     reserved = {word for words in rules.RESERVED.values() for word in words}
     in_context = {word for words in rules.IN_CONTEXT.values() for word in words}
@@ -119,7 +119,7 @@ def test_the_textmate_grammar_is_up_to_date(golden: Callable[[Path, str], None])
 
 @pytest.mark.parametrize("path", TEXTS[::6], ids=lambda path: str(path.relative_to(ROOT)))
 def test_the_textmate_grammar_colours_the_same(path: Path) -> None:
-    """Line by line, the first pattern that matches at the nearest place, as editors do it."""
+    """Match line by line as editors do: the first pattern that matches at the nearest position."""
     document = json.loads(grammar())
     block, *patterns = document["patterns"]
     compiled = [(re.compile(pattern["match"]), pattern) for pattern in patterns]

@@ -1,4 +1,4 @@
-"""What the transformation makes keeps to what CIF has, and leaves the model that it is given as it was."""
+"""The transformation uses only features of CIF and does not change its input model."""
 
 from collections.abc import Iterator
 
@@ -19,7 +19,7 @@ LACKING = (ex.Multiplication, ex.Division, ex.Subtraction, ex.UnaryMinus, ex.Fun
 
 
 def expressions(made: sct.SupervisoryControlModel) -> Iterator[ex.Expression]:
-    """The outermost expressions, of what is assigned with a `-` its operands."""
+    """Return the outermost expressions; for an assigned subtraction, its two operands."""
     for _, element in tree(made):
         if isinstance(element, ex.Expression) and not isinstance(element.eContainer(), ex.Expression):
             assigned = isinstance(element.eContainer(), sct.Update) and isinstance(element, ex.Subtraction)
@@ -33,7 +33,7 @@ def test_only_what_cif_has_is_left(given: sct.SupervisoryControlModel) -> None:
     before = xmi.to_texts({"given": given})
     made = transform(given).model
     assert xmi.to_texts({"given": given}) == before
-    xmi.to_texts({"made": made})  # It refers to nothing outside.
+    xmi.to_texts({"made": made})  # It has no references to other models.
     for _, element in tree(made):
         assert not isinstance(element, ex.IntegerType) or element.minimum >= 0
     for expression in expressions(made):

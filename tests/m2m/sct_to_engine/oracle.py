@@ -1,4 +1,4 @@
-"""The meaning of sct models, read from their definition and not from what the tool makes of them."""
+"""The meaning of sct models, derived from their definition and not from the tool's transformations."""
 
 from collections.abc import Mapping, Sequence
 
@@ -8,12 +8,12 @@ from robosc.model.semantics.edges import edges_from, edges_of
 from robosc.model.semantics.evaluation import evaluate, saturate
 from robosc.model.semantics.start import first_state
 
-#: The location of each plant, and the value of each variable: an integer, a boolean or a literal.
+#: The location of each plant and the value of each variable: an integer, a boolean or a literal.
 State = dict[sct.Plant | sct.DiscreteVariable, object]
 
 
 def started(model: sct.SupervisoryControlModel) -> State:
-    """The initial state; of several the first that the supervisor keeps."""
+    """Return the initial state, or the first initial state that the supervisor permits."""
     found = first_state(model)
     state: State = {}
     for plant in model.plants:
@@ -25,7 +25,7 @@ def started(model: sct.SupervisoryControlModel) -> State:
 
 
 def value(expression: ex.Expression, state: State, inputs: Mapping[sct.Input, object] | None = None) -> object:
-    """The value of an expression in a state."""
+    """Return the value of an expression in a state."""
 
     def read(reference: ex.Expression) -> object:
         match reference:
@@ -42,7 +42,7 @@ def value(expression: ex.Expression, state: State, inputs: Mapping[sct.Input, ob
 
 
 def blocked(model: sct.SupervisoryControlModel, event: sct.Event, state: State) -> str | None:
-    """What keeps an event from happening, the first of plant, requirement and synthesis; None where it can happen."""
+    """Return the first cause that blocks an event (plant, requirement or synthesis), or None if it can happen."""
     guard = next((guard for guard in model.supervisor.guards if guard.event is event), None)
     if without_edge(model, event, state):
         return "plant"
@@ -52,7 +52,7 @@ def blocked(model: sct.SupervisoryControlModel, event: sct.Event, state: State) 
 
 
 def failing(model: sct.SupervisoryControlModel, event: sct.Event, state: State) -> list[sct.Requirement]:
-    """The requirements on an event that forbid it."""
+    """Return the requirements that forbid an event."""
     return [
         requirement
         for requirement in model.requirements
@@ -62,8 +62,8 @@ def failing(model: sct.SupervisoryControlModel, event: sct.Event, state: State) 
 
 
 def without_edge(model: sct.SupervisoryControlModel, event: sct.Event, state: State) -> list[tuple[str, str]]:
-    """The plants that keep an event from happening, each with its location."""
-    # Whether there is one does not depend on the data: that comes when the event is happening already.
+    """Return the plants that block an event, each with its location."""
+    # The data do not decide this: they arrive when the event already happens.
     data = {declared: next(iter(values(declared.type))) for declared in event.inputs}
     possible = _possible(model, event, state, data)
     return [(plant.name, state[plant].name) for plant, edges in possible.items() if not edges]
@@ -72,9 +72,10 @@ def without_edge(model: sct.SupervisoryControlModel, event: sct.Event, state: St
 def after(
     model: sct.SupervisoryControlModel, event: sct.Event, state: State, inputs: Mapping[sct.Input, object]
 ) -> list[State]:
-    """The states in which an event that can happen may end, first that of the edges that come first in the text.
+    """Return the states that a possible event can lead to, in the text order of its edges.
 
-    There is one, but for uncontrollable events of models from CIF, of which a plant may have several possible edges.
+    There is one state, except for uncontrollable events of models from CIF. There, a plant may have several possible
+    edges.
     """
     states = [dict(state)]
     for edges in _possible(model, event, state, inputs).values():
@@ -83,7 +84,7 @@ def after(
 
 
 def values(kind: ex.Type) -> Sequence[object]:
-    """All values of a type."""
+    """Return all values of a type."""
     match kind:
         case ex.BooleanType():
             return (False, True)
@@ -109,7 +110,7 @@ def _possible(
     state: State,
     inputs: Mapping[sct.Input, object] | None = None,
 ) -> dict[sct.Plant, list[sct.Edge]]:
-    """The edges that each plant with the event in its alphabet may take."""
+    """Return the possible edges of each plant that has the event in its alphabet."""
     return {
         plant: [edge for edge in edges_from(state[plant]) if edge.event is event and _holds(edge.guard, state, inputs)]
         for plant in model.plants

@@ -1,4 +1,4 @@
-"""What is known about values before the robot runs, against what they are."""
+"""Intervals known before the robot runs contain the actual values."""
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -139,7 +139,7 @@ def test_no_storage_is_wider_than_64_bits() -> None:
 
 @pytest.mark.parametrize("last", [2**31, 2**32, 2**62, 2**63 - 2, 2**63 - 1])
 def test_as_many_values_as_64_bits_have(last) -> None:
-    """`len` of a range ends at 2^63 - 1 values."""
+    """`len` of a range is limited to 2^63 - 1 values."""
     p = plant(
         "p",
         {"here": [edge("u_response", when="n > 3 and n < 5")]},

@@ -1,4 +1,4 @@
-"""What the transformation makes of small models, and that it means what the sct model does."""
+"""The engine models of small robots, and their equivalence with the sct models."""
 
 import sys
 from collections.abc import Sequence
@@ -34,7 +34,7 @@ _SYMBOLS = {
 
 
 def text(node: ex.Expression | None) -> str:  # noqa: C901, PLR0912 - one case a class
-    """An expression of an engine model, every operand that is not a leaf in parentheses."""
+    """Return an expression of an engine model, with every compound operand in parentheses."""
     match node:
         case None:
             return "true"
@@ -91,7 +91,7 @@ def effect_of(made: engine.EngineModel, name: str) -> list[str]:
 
 
 def machine(when: str | None = None, guards: object = (None, None), **do: str) -> sct.SupervisoryControlModel:
-    """One plant with three locations, an event from the first, and variables of every type."""
+    """Return one plant with three locations, an event from the first, and variables of every type."""
     return model(
         [
             plant(
@@ -402,14 +402,14 @@ def test_of_several_edges_that_may_be_taken_one_is_with_all_that_it_changes() ->
     for seed in (68, 185, *range(examples(30))):
         made = reading_of(Specification(seed)).model
         if made is not None:
-            with suppress(ModelError):  # there is no supervisor, or none that can be executed
+            with suppress(ModelError):  # no supervisor, or one that the engine cannot execute
                 supervise(made)
                 several += _follow(made, Random(seed))  # noqa: S311 - nothing is secret
     assert several
 
 
 def _follow(made: sct.SupervisoryControlModel, random: Random) -> int:
-    """Lets random events happen, and compares with the definition; how many could end in more than one state."""
+    """Perform random events and compare with the definition; return how many events had several outcomes."""
     events, several = [event for plant in made.plants for event in plant.events], 0
     executed, state = Engine(made), oracle.started(made)
     names = dict(zip(events, executed.events, strict=True))
@@ -444,7 +444,7 @@ def _shown(value: object) -> object:
 
 
 def _without_edge(executed: Engine, event: sct.Event) -> list[tuple[str, str]]:
-    """What the engine model says of the plants that keep an event from happening now: each with its location."""
+    """Return the plants that block an event now according to the engine model, each with its location."""
     (element,) = (element for element in executed.executed.events if element.event is event)
     found = []
     for reason in element.reasons:
@@ -508,7 +508,7 @@ def _long(operators: int, *, nested: bool) -> sct.SupervisoryControlModel:
 @pytest.mark.slow
 @pytest.mark.parametrize("nested", [False, True])
 def test_long_expressions_need_no_deep_calls(nested: bool) -> None:
-    """In a thread with half a megabyte, under the limit that Python sets."""
+    """Runs in a thread with a stack of half a megabyte, under Python's default recursion limit."""
     made = _long(3000, nested=nested)
     on_small_stack(lambda: Engine(made).perform("p.c_tau1"))
     assert sys.getrecursionlimit() <= 3000
@@ -516,7 +516,7 @@ def test_long_expressions_need_no_deep_calls(nested: bool) -> None:
 
 @pytest.mark.slow
 def test_the_transformation_is_linear() -> None:
-    """Counted, not timed: how many elements come of an expression."""
+    """The test counts the elements that an expression produces instead of measuring time."""
     steps = (500, 2000)
     sizes = [sum(1 for _ in tree(transform(_long(count, nested=True)))) for count in steps]
     assert sizes[1] <= sizes[0] * (steps[1] / steps[0]) * 1.1
@@ -543,7 +543,7 @@ def test_the_transformation_is_linear() -> None:
     ],
 )
 def test_transitions_that_are_tried_in_order_leave_nothing_open(guards: Sequence[str]) -> None:
-    """Of an answer whose conditions read its data, and the bounds of a variable: it is never blocked."""
+    """A response is never blocked by conditions that read its data or by the bounds of a variable."""
     for most in (3, 3000):
         assert always_possible([guard.replace("= 3", f"= {most}") for guard in guards], most)
 
@@ -566,7 +566,7 @@ def test_an_answer_is_never_blocked_by_its_data(guards: list[str]) -> None:
 
 
 def always_possible(guards: Sequence[str], most: int) -> bool:
-    """Whether an answer to which transitions with these guards and one without react can come at any time."""
+    """Return whether a response with these guarded transitions and an unguarded one can always happen."""
     transitions = "\n".join(f"on response from gripped if {guard} do times := times + 1" for guard in guards)
     text = f"""robot R {{ component G {{
         outgoing message gripped with type: boolean

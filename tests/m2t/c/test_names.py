@@ -14,7 +14,7 @@ _words = st.sampled_from(["a", "b", "a_b", "b_a", "a_b_a", "int", "event", "name
 
 
 def _all(names: CNames, made: sct.SupervisoryControlModel) -> tuple[list[str], list[str], list[str]]:
-    """Names at file level, members of the state, members of the inputs."""
+    """Return the names at file level, of the state's members and of the inputs' members."""
     enumerators = [
         names.enumerator(element) for owner in made.plants for element in (*owner.events, *owner.locations)
     ] + [names.enumerator(literal) for owner in made.enumerations for literal in owner.literals]

@@ -1,4 +1,4 @@
-"""What the engine in C refuses, where, and that the rule's page is right about it."""
+"""Models that the C engine rejects, with positions; the rule's page lists them correctly."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""How a model read back from CIF differs from the one it was generated from."""
+"""Compare a model read back from CIF with the one it was generated from."""
 
 from collections.abc import Callable, Iterator
 from itertools import product, zip_longest
@@ -12,17 +12,18 @@ from robosc.model.semantics.evaluation import Program, saturate
 from robosc.model.semantics.printing import conjunction
 from robosc.model.semantics.walks import copied
 
-#: Valuations that two expressions are compared under.
+#: The number of valuations for comparing two expressions.
 _MOST = 400
 
 
 def differences(
     mine: sct.SupervisoryControlModel, yours: sct.SupervisoryControlModel, *, exact: bool = False
 ) -> list[str]:
-    """What is in one model and not in the other, of what CIF holds.
+    """Return the differences between two models in the elements that CIF has.
 
-    Expressions are the same where they have the same value in all states (of many states: in some, the first and the
-    last among them), updates after saturation; with `exact`, where they are the same tree.
+    Expressions are equal if they have the same value in all states; updates are compared after saturation. With many
+    states, the comparison takes a sample that includes the first and last. With `exact`, expressions are equal if they
+    are the same tree.
     """
     return list(_Comparison(mine, yours, exact).run())
 
@@ -31,7 +32,7 @@ class _Comparison:
     def __init__(self, mine: Any, yours: Any, exact: bool) -> None:
         self.mine, self.yours, self.exact = mine, yours, exact
         events = {_name(event) for plant in yours.plants for event in plant.events}
-        #: Events that CIF need not have, since they can't happen.
+        #: Events that can never happen: CIF may omit them.
         self.absent = {
             event
             for plant in mine.plants
@@ -59,7 +60,7 @@ class _Comparison:
                 yield from self.expression("synthesis part", mine.synthesis, yours.synthesis)
 
     def requirements(self) -> Iterator[str]:
-        """What is asked of one event twice in the same words may stand there once."""
+        """Compare requirements; two equal ones on one event may be merged."""
         mine, yours = [], list(self.yours.requirements)
         for requirement in self.mine.requirements:
             again = [
@@ -82,7 +83,7 @@ class _Comparison:
     def plant(self, mine: sct.Plant, yours: sct.Plant) -> Iterator[str]:
         for members in ("events", "inputs", "variables", "locations"):
             if mine.kind == sct.PlantKind.message and members == "locations":
-                continue  # its only location has no name in CIF
+                continue  # the only location has no name in CIF
             there = [member for member in getattr(mine, members) if member not in self.absent]
             yield from self.names(f"{members} of {mine.name}", there, getattr(yours, members))
         events = [event for event in mine.events if event not in self.absent]
@@ -180,7 +181,7 @@ def _states(mine: Any, yours: Any) -> list[dict[str, Any]]:
 
 
 def _program(expression: Any) -> Program[Any]:
-    """The expression as a program over a state."""
+    """Return the expression as a program over a state."""
 
     def reader(reference: Any) -> Callable[[dict[str, Any]], Any]:
         match reference:
@@ -222,7 +223,7 @@ def _shape(expression: Any) -> Any:
 
 
 def _guard(edge: sct.Edge) -> ex.Expression | None:
-    """An edge's guard, behind conditions that exclude what an input of the plant's own event can't be."""
+    """Return an edge's guard after conditions that exclude impossible values of the plant's own inputs."""
     excluded: list[ex.Expression] = []
     for carried in edge.event.inputs if edge.eContainer() in edge.event.eContainer().locations else ():
         kind = carried.type

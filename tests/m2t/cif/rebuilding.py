@@ -1,4 +1,4 @@
-"""Takes what was read back from generated CIF for the sct model that it came from: kinds, shifts, guards."""
+"""Rebuild the original sct model from generated CIF that was read back: kinds, shifts, guards."""
 
 import re
 from typing import Any
@@ -15,10 +15,10 @@ _SHIFTED = re.compile(r'  @doc\("\$?(\w+) \+ (\d+), with \$?\1 in (-\d+)\.\.(-?\
 
 
 def rebuild(text: str) -> sct.SupervisoryControlModel:
-    """The model that a specification says; raises CifError where it says none.
+    """Return the model of a specification; raises CifError if it has none.
 
-    A variable that was shifted is shifted back, as the remark behind it says: every reading of it has the shift added,
-    every value subtracted.
+    A shifted variable is shifted back, as its comment states: each read adds the shift, each assigned value subtracts
+    it.
     """
     specification = read(text)
     model = specification.model
@@ -41,7 +41,7 @@ def rebuild(text: str) -> sct.SupervisoryControlModel:
 
 
 def _give_locations(model: sct.SupervisoryControlModel) -> None:
-    """Gives data plants that have the numbers of locations in a variable locations, and edges that leave all."""
+    """Restore the locations of data plants that CIF numbers in a variable, with edges from all of them."""
     numbers = {}
     for plant in model.plants:
         if plant.name.startswith("data_") and [location.name for location in plant.locations] == [""]:
@@ -67,7 +67,7 @@ def _give_locations(model: sct.SupervisoryControlModel) -> None:
 
 
 def _name_kinds(plant: sct.Plant) -> None:
-    """The kinds of a plant and its events, which generated names begin with, and the event of an input."""
+    """Restore the kinds of a plant and its events from the prefixes of their names, and the event of an input."""
     plant.kind = getattr(sct.PlantKind, _KINDS.get(plant.name.partition("_")[0], "behaviour"))
     for event in plant.events:
         stem = event.name.partition("_")[2].rstrip("_0123456789")
@@ -79,7 +79,7 @@ def _name_kinds(plant: sct.Plant) -> None:
 
 
 def _shifts(model: sct.SupervisoryControlModel, text: str) -> dict[Any, int]:
-    """How much is added to each variable and input; its type becomes that of the model."""
+    """Return the shift of each variable and input; restore the model's types."""
     shifts = {}
     members = {
         (plant.name, member.name): member for plant in model.plants for member in (*plant.variables, *plant.inputs)

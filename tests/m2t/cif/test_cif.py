@@ -1,4 +1,4 @@
-"""CIF text: listing by listing as in the thesis, readable by a grammar of CIF, and equal in meaning to the model."""
+"""CIF text: equal to the thesis' listings, readable by a CIF grammar, and equivalent to the model."""
 
 import re
 from pathlib import Path
@@ -38,7 +38,7 @@ def generated(given: sct.SupervisoryControlModel) -> dict[str, str]:
 
 
 def listings() -> sct.SupervisoryControlModel:
-    """The plants, requirements and the enumeration that thesis 5.2 prints, with an instance of each."""
+    """Return the plants, requirements and the enumeration of thesis 5.2, one instance of each."""
     none = "not component_X.state1 and not component_X.state2"
     provided = [
         edge("c_d1", "d1", when="component_X.state1"),
@@ -160,7 +160,7 @@ def test_plain_models_come_back_as_they_were() -> None:
 def test_every_model_keeps_its_meaning(given: sct.SupervisoryControlModel) -> None:
     text = generated(given)["robot.cif"]
     assert differences(given, rebuild(text)) == []
-    # Synthesis takes no `*`, and a `-` only between the two sides of what is assigned.
+    # Synthesis supports no `*`, and `-` only between the two operands of an assigned value.
     plain = re.sub('".*"', "", text)
     assert "*" not in plain
     for value in re.findall(":= ([^,;]*-[^,;]*)", plain):
@@ -186,17 +186,17 @@ def test_whole_robots_keep_their_meaning(path: Path) -> None:
 
 
 def expression(text: str, **kinds: str) -> sct.SupervisoryControlModel:
-    """A model with one guard and the variables that it reads."""
+    """Return a model with one guard and the variables that it reads."""
     return model([plant("p", {"l": [edge("e", when=text)]}, controllable=["e"], variables=kinds)])
 
 
 def updated(target: str, text: str, **kinds: str) -> sct.SupervisoryControlModel:
-    """A model with one update of `t`, a variable of the type `target`."""
+    """Return a model with one update of `t`, a variable of the type `target`."""
     return model([plant("p", {"l": [edge("e", do={"t": text})]}, controllable=["e"], variables={"t": target, **kinds})])
 
 
 def said(given: sct.SupervisoryControlModel) -> str:
-    """What follows the event of the only edge."""
+    """Return the text after the event of the only edge."""
     text = generated(given)["robot.cif"]
     assert differences(given, rebuild(text)) == []
     found = re.search(r"edge e(?: when| do t :=) (.*);", text)
@@ -345,7 +345,7 @@ def test_a_robot_without_a_plant_is_no_cif(tmp_path: Path) -> None:
 
 
 def provided(*conditions: str) -> sct.SupervisoryControlModel:
-    """A data plant with the event `c_none` under the last condition."""
+    """Return a data plant with the event `c_none` under the last condition."""
     names = [f"c_d{number}" for number, _ in enumerate(conditions[:-1], 1)] + ["c_none"]
     edges = [edge(name, name[2:], when=condition) for name, condition in zip(names, conditions, strict=True)]
     locations = ["none", *(name[2:] for name in names[:-1])]
@@ -369,7 +369,7 @@ def test_an_event_that_can_never_happen_is_left_out() -> None:
 
 
 def chosen(number: int) -> sct.SupervisoryControlModel:
-    """A data plant with so many choices, each by a value of its own."""
+    """Return a data plant with this number of choices, each under a different value."""
     names = [f"d{index}" for index in range(1, number + 1)]
     edges = [edge(f"c_{name}", name, when=f"p.n == {at}") for at, name in enumerate(names, 1)]
     edges.append(edge("c_none", "none", when=" and ".join(f"not (p.n == {at})" for at in range(1, number + 1))))
@@ -408,7 +408,7 @@ def test_a_variable_holds_the_number_of_the_choice() -> None:
         ) in text
         assert " message_x.c_trigger needs not (data_x.choice = 1);" in text
         assert differences(given, rebuild(text)) == []
-    # It counts as the locations would.
+    # It has as many states as with locations.
     read_back, synthesis = synthesize(read_cif(generated(given)["robot.cif"]).model), synthesize(given)
     counts = synthesis.uncontrolled_states, synthesis.controlled_states
     assert (read_back.uncontrolled_states, read_back.controlled_states) == counts

@@ -1,4 +1,4 @@
-// What the programs of this folder that check shared headers have in common: a fault is printed with its line, and counted.
+// Common code of the programs that check shared headers: it prints each fault with its line and counts faults.
 #ifndef CHECKS_HPP_
 #define CHECKS_HPP_
 

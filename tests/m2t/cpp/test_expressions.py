@@ -1,4 +1,4 @@
-"""Expressions of the node in C++ have the values, or the faults, that the reference in Python gives."""
+"""Expressions of the C++ node have the values or faults of the Python reference."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from robosc.run.runtime.core.node_data import NodeData
 pytestmark = pytest.mark.build
 
 INCLUDE = Path(robosc.__file__).parent / "m2t" / "ros" / "include"
-#: By the type of their value, in the words of `language-2.md`, "Expressions".
+#: Expressions by the type of their value, grouped by the language's rules.
 EXPRESSIONS = {
     # `if C then A else B`
     "integer": [
@@ -32,7 +32,7 @@ EXPRESSIONS = {
         "abs(value.i)",
         "min(value.i, 3) - max(value.i, -2)",
         "mod(value.i, 3) + abs(-7)",
-        # `floor ceil round` (double to integer, halves away from zero); of NaN can't be read; saturate at 32 bits
+        # `floor ceil round` (double to integer, halves away from zero); NaN cannot be read; results saturate at 32 bits
         "floor(value.x)",
         "ceil(value.x)",
         "round(value.x)",
@@ -63,19 +63,19 @@ EXPRESSIONS = {
         "cos(value.i) + 0.0",
         "atan2(value.x, value.i) + 0.0",
         "double(value.i) / 3",
-        # `min(a)` and `max(a)` pass over NaN, `min` of nothing can't be read
+        # `min(a)` and `max(a)` skip NaN; `min` of an empty array cannot be read
         "min(value.a)",
         "max(value.a[0..1])",
         "value.poses[size(value.poses) - 1].x",
         "if value.i = 0 then 0.5 else value.a[value.i]",
     ],
     "boolean": [
-        # `all` of nothing is true
+        # `all` of an empty array is true
         "all r in value.a: r > 0.0",
         "any r in value.a[0..2]: r < 0.5 and r > -1.0 or value.i = 7",
         "any p in value.poses: p.x > 0.0 and (any t in p.tags: t = value.i)",
         "all f in value.flags: f",
-        # from left to right, no further than needed
+        # evaluation from left to right with short circuits
         "value.i > 0 and value.n[2] > 0",
         "value.i > 0 => value.a[0] < 1.0",
         "size(value.n) > 0 and (all r in value.n: r = 0 or value.n[r] > 0)",
@@ -238,7 +238,7 @@ def same(found: str, wanted: Any, text: str) -> bool:
         value = float(found)
         if math.isnan(wanted) or math.isnan(value):
             return math.isnan(wanted) and math.isnan(value)
-        # Of these functions one unit in the last place may differ; 0 and -0 do not.
+        # These functions may differ by one unit in the last place; 0 and -0 must not be confused.
         return math.copysign(1, value) == math.copysign(1, wanted) and (
             value == wanted or (close and abs(value - wanted) <= math.ulp(wanted))
         )

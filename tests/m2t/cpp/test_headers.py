@@ -1,4 +1,4 @@
-"""The headers that generated packages share: in good form, compiled one by one, called."""
+"""The headers that generated packages share: style, separate compilation, behavior."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
 
 
 def run(compiler: str, source: str, sanitizers: str, files: dict[str, str], folder: Path) -> tuple[int, str, str]:
-    """Builds a program with the headers of a package, runs it in a folder; how it ends and what it prints."""
+    """Build a program with the headers of a package and run it in a folder; return its exit status and output."""
     for path, text in files.items():
         if path.startswith("include/"):
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
@@ -42,7 +42,7 @@ def run(compiler: str, source: str, sanitizers: str, files: dict[str, str], fold
     program = folder / "program"
     options = ["-std=c++17", "-g", *WARNINGS, f"-fsanitize={sanitizers}", "-pthread", f"-I{folder / 'include'}"]
     subprocess.run([compiler, *options, Path(__file__).parent / source, "-o", program], check=True)
-    # The program's addresses stay where ThreadSanitizer expects them.
+    # ThreadSanitizer needs the program at its expected addresses.
     command = ["setarch", "--addr-no-randomize", program, folder]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=900)
     return done.returncode, done.stdout, done.stderr
@@ -65,7 +65,10 @@ def test_all_are_of_one_version_and_guarded_by_their_names() -> None:
 
 
 def test_their_version_follows_what_stands_in_them(golden: Callable[[Path, str], None]) -> None:
-    """Packages of one process may come from two versions of the tool: what differs has another name for the linker."""
+    """The headers' namespace has a version that depends on their content.
+
+    One process may contain packages of two versions of the tool: different code needs different linker names.
+    """
     texts = [f"{header}\n{(INCLUDE / header).read_text(encoding='utf-8')}" for header in HEADERS if header != VERSION]
     digest = hashlib.sha256("".join(texts).encode()).hexdigest()
     place = INCLUDE / VERSION
@@ -74,7 +77,7 @@ def test_their_version_follows_what_stands_in_them(golden: Callable[[Path, str],
 
 
 def middleware(header: str) -> list[str] | None:
-    """Options that find what a header includes of its middleware; None where that is not installed."""
+    """Return the options that find a header's middleware includes; None if the middleware is not installed."""
     if header.startswith("robosc_ros1/"):
         return [] if Path("/usr/include/ros/ros.h").exists() and Path("/usr/include/actionlib").exists() else None
     if header.startswith("robosc_ros2/"):
@@ -86,7 +89,7 @@ def middleware(header: str) -> list[str] | None:
 
 @pytest.fixture(scope="module")
 def node_handle(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
-    """How a compiler is called that has read `<ros/node_handle.h>` already."""
+    """Return a compiler command that has precompiled `<ros/node_handle.h>`."""
     compiler = ["clang++", "-std=c++17", *WARNINGS]
     if shutil.which(compiler[0]) is None:
         return ["g++", *compiler[1:]]
@@ -104,7 +107,7 @@ def test_compiles_alone(header: str, request: pytest.FixtureRequest) -> None:
     compiler = ["g++", "-std=c++17", *WARNINGS]
     includes = re.findall(r"^#include <(.*)>", (INCLUDE / header).read_text(encoding="utf-8"), re.MULTILINE)
     if {"ros/node_handle.h", "ros/ros.h"} & {*includes}:
-        # What it includes itself is read once for all such headers: it takes longer than all of theirs.
+        # Its own includes are compiled once for all such headers: they take longer than all these headers.
         compiler = request.getfixturevalue("node_handle")
     command = [*compiler, "-fsyntax-only", f"-I{INCLUDE}", *found, "-x", "c++", "-"]
     text = f'#include "{header}"\n'

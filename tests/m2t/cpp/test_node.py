@@ -1,4 +1,4 @@
-"""What the templates print, where no model that the language accepts leads there yet."""
+"""Output of the templates for graphs that no accepted model produces yet."""
 
 from __future__ import annotations
 

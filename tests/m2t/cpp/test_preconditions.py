@@ -1,4 +1,4 @@
-"""What keeps a model from becoming a node, each with the place where it must change."""
+"""Models that cannot become a node, each with the position that must change."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Text of a model in code of C++, in XML and in JSON: nothing gets out of its place."""
+"""Text of a model in C++ code, XML and JSON stays inside its literal or comment."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def test_folding_keeps_to_the_width_where_it_can() -> None:
 
 def test_folding_keeps_a_comment_behind_code_whole() -> None:
     code = "  std::optional<geometry_msgs::msg::PoseWithCovarianceStamped> initial_pose_estimate_handed_;"
-    comment = "// As long as it could have been sent again."
+    comment = "// The data handed over last, while the message stays enabled."
     assert fold(f"{code}  {comment}\n") == f"{code}\n      {comment}\n"
 
 

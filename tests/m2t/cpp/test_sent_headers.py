@@ -1,4 +1,4 @@
-"""Headers that a node fills in, and those that it leaves to the model."""
+"""Headers that a node fills in, and headers that it leaves to the model."""
 
 from pathlib import Path
 
@@ -16,7 +16,7 @@ NAVIGATION = HERE.parents[2] / "examples" / "simple_navigation" / "simple_naviga
     [
         (HERE / "porter.rscd", "travel", ["", "pose", "pose.pose", "pose.pose.position"]),
         (HERE / "porter.rscd", "grip", [""]),
-        # The model gives this goal's frame itself.
+        # The model sets this goal's frame itself.
         (NAVIGATION, "navigate", ["", "pose.pose", "pose.pose.orientation", "pose.pose.position"]),
     ],
 )

@@ -15,7 +15,7 @@ find_package(catkin REQUIRED COMPONENTS
   xmlrpcpp)
 find_package(Threads REQUIRED)
 
-# In the devel space each file is where it is installed to.
+# In the devel space, each file has the same place as after the installation.
 configure_file(${CMAKE_CURRENT_LIST_DIR}/include/porter_controller/porter_supervisor.h
   ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_INCLUDE_DESTINATION}/porter_controller/porter_supervisor.h COPYONLY)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/include/porter_controller/definition.hpp
@@ -68,7 +68,7 @@ if(CATKIN_ENABLE_TESTING)
   file(MAKE_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION})
   file(CREATE_LINK ${CMAKE_CURRENT_LIST_DIR}/test/porter_controller_play_trace.py
     ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION}/porter_controller_play_trace.py SYMBOLIC)
-  # Each trace is played against a node of its own, also the logs of robots that are put into the package.
+  # One node per trace. Logs of robots that the package contains are played, too.
   file(GLOB traces CONFIGURE_DEPENDS
     ${CMAKE_CURRENT_LIST_DIR}/test/traces/*.jsonl
     ${CMAKE_CURRENT_SOURCE_DIR}/test/traces/*.jsonl)

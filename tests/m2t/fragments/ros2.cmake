@@ -68,7 +68,7 @@ install(FILES ${CMAKE_CURRENT_LIST_DIR}/config/porter_controller.yaml
 
 if(BUILD_TESTING)
   find_package(launch_testing_ament_cmake REQUIRED)
-  # Each trace is played against a node of its own, also the logs of robots that are put into the package.
+  # One node per trace. Logs of robots that the package contains are played, too.
   file(GLOB traces CONFIGURE_DEPENDS
     ${CMAKE_CURRENT_LIST_DIR}/test/traces/*.jsonl
     ${CMAKE_CURRENT_SOURCE_DIR}/test/traces/*.jsonl)

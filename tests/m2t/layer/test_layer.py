@@ -1,4 +1,4 @@
-"""The packages of a supervisory layer, file by file; that they build and work, `tests/ros` shows."""
+"""The packages of a supervisory layer, file by file; `tests/ros` shows that they build and work."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_every_file(
 
 @pytest.mark.parametrize("logs", [False, True])
 def test_parameters_of_the_model_have_a_file(logs: bool) -> None:
-    """Declared in parameter YAML and launch file; a layer whose model has none needs no file."""
+    """The parameter YAML and the launch file declare them; a layer without parameters has no YAML file."""
     models = models_of(HERE.parents[1] / "run" / "runtime" / "cruise.rscd")
     behind = config.ExistingController(launch=config.Launch(package_name="drive", file="drive.launch.py"))
     settings = Configuration(write_events_to_log=logs, supervisor=config.Supervisor(controller=behind))
@@ -68,7 +68,7 @@ def test_parameters_of_the_model_have_a_file(logs: bool) -> None:
     file, *others = node.named["parameters"]
     assert file.positional == ("params_file",)
     assert len(others) == (not logs)
-    # The controller that is launched behind it has a file of its own.
+    # The controller that is launched behind it has its own file.
     assert '"params_file"' in files["launch/cruise_layer.launch.py"].partition("hidden = [")[2].partition("]")[0]
     assert "install(DIRECTORY config launch" in files["CMakeLists.txt"]
 
@@ -102,7 +102,7 @@ def test_the_launch_file_re_maps_everything(usher: robosc.Models, settings: Conf
     assert driver.named["remappings"] == [(name, f"/usher_layer/controller/{name.lstrip('/')}") for name in names]
     moved = launched(text, namespace="/left/", name="gate").of("Node")[1]
     assert moved.named["remappings"][0] == ("/stop", "/left/gate/controller/stop")
-    # Where another launch file has pushed a namespace, the layer is below it, but for an absolute one of its own.
+    # The layer is below a namespace that another launch file has pushed, unless its own namespace is absolute.
     for namespace, layer in {"": "/hall/usher_layer", "left": "/hall/left/usher_layer", "/": "/usher_layer"}.items():
         pushed = launched(text, ros_namespace="/hall", namespace=namespace).of("Node")[1]
         assert pushed.named["remappings"][0] == ("/stop", f"{layer}/controller/stop")
@@ -174,7 +174,7 @@ def test_quality_of_service(usher: robosc.Models) -> None:
     settings = Configuration.model_validate({"qos": chosen})
     assert TARGETS[TARGET].findings(usher, settings) == []
     node = " ".join(robosc.generate(TARGET, usher, settings)["src/usher_layer_node.cpp"].split())
-    # Received as the configuration says, handed on reliably.
+    # Received with the configured QoS, forwarded reliably.
     kept = "rclcpp::QoS(10){}.transient_local()".format
     speed, battery = ".keep_last(3).best_effort()", ".keep_last(7)"
     for given in (
@@ -245,7 +245,7 @@ def test_settings_that_mean_nothing_to_a_layer(usher: robosc.Models) -> None:
 
 
 def test_says_what_synthesis_added_is_the_reason(usher: robosc.Models) -> None:
-    # A message needs nothing: whatever blocks it is what synthesis added.
+    # A message has no requirement: only synthesis blocks it.
     text = robosc.generate(TARGET, usher)["src/usher_layer_node.cpp"]
     label = text.partition("bool pass_message_label()")[2].partition("}\n\n")[0]
     assert "add_requirement" not in label

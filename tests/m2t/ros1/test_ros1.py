@@ -1,4 +1,4 @@
-"""The ROS 1 package of the courier, file by file; that it builds and works, `tests/ros` shows."""
+"""The ROS 1 package of the courier, file by file; `tests/ros` shows that it builds and works."""
 
 from __future__ import annotations
 

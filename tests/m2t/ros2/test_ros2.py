@@ -1,4 +1,4 @@
-"""The ROS 2 package of the courier, file by file; that it builds and works, `tests/ros` shows."""
+"""The ROS 2 package of the courier, file by file; `tests/ros` shows that it builds and works."""
 
 from __future__ import annotations
 
@@ -176,7 +176,7 @@ def test_every_text_ends_with_a_line(files: dict[str, str], managed_files: dict[
 @pytest.mark.parametrize("name", ["courier", "porter", "managed"])
 def test_the_platform_s_linter_is_content(name: str, request: pytest.FixtureRequest, tmp_path: Path) -> None:
     files = request.getfixturevalue("files" if name == "courier" else f"{name}_files")
-    # As ament_lint_cmake calls it.
+    # The options of ament_lint_cmake.
     filters = "--filter=-convention/filename,-package/consistency,-package/stdargs"
     (tmp_path / "CMakeLists.txt").write_text(files["CMakeLists.txt"], encoding="utf-8")
     command = [sys.executable, "-m", "cmakelint.main", filters, "--linelength=140", tmp_path / "CMakeLists.txt"]

@@ -1,4 +1,4 @@
-"""Models at the corners of what the engine in C must handle."""
+"""Models at the limits of the C engine."""
 
 from robosc.model import sct
 from robosc.model.places import Place
@@ -6,7 +6,7 @@ from tests.sct_models import edge, model, plant
 
 
 def _one(name: str, events: dict[str, str], **more):
-    """A plant with two locations between which each event goes."""
+    """Return a plant with two locations; each event leads from one to the other."""
     there_and_back = {
         "here": [edge(event, to="there") for event in events],
         "there": [edge(event, to="here") for event in events],
@@ -31,49 +31,49 @@ def _still(name: str, events: list[str], **more):
 
 
 def nothing() -> sct.SupervisoryControlModel:
-    """No event, no state."""
+    """Return a model without events and states."""
     return model([_still("p", [])], guards={}, name="Nothing")
 
 
 def incoming() -> sct.SupervisoryControlModel:
-    """Nothing to send."""
+    """Return a model without commands."""
     return model([_one("p", {"u_response": ""})], guards={}, name="Incoming")
 
 
 def triggers() -> sct.SupervisoryControlModel:
-    """Triggers that share no topic, always possible."""
+    """Return triggers that share no topic and are always possible."""
     return model([_still("p", ["c_trigger"]), _still("q", ["c_trigger"])], guards={}, name="Triggers")
 
 
 def one_trigger() -> sct.SupervisoryControlModel:
-    """A single trigger, of a service."""
+    """Return a single trigger, of a service."""
     return model([_one("p", {"c_trigger": ""}, kind="service")], guards={}, name="OneTrigger")
 
 
 def cancels() -> sct.SupervisoryControlModel:
-    """Cancels without triggers."""
+    """Return cancels without triggers."""
     return model([_one("p", {"c_cancel": ""}), _one("q", {"c_cancel": ""})], guards={}, name="Cancels")
 
 
 def cancel_and_trigger() -> sct.SupervisoryControlModel:
-    """One of each."""
+    """Return a cancel and a trigger."""
     return model([_one("p", {"c_cancel": "", "c_trigger": ""}, kind="action")], guards={}, name="CancelAndTrigger")
 
 
 def silent() -> sct.SupervisoryControlModel:
-    """A silent event that never rests."""
+    """Return a silent event that never comes to rest."""
     return model([_one("p", {"c_tau1": ""})], guards={}, name="Silent")
 
 
 def data() -> sct.SupervisoryControlModel:
-    """Data that nothing sends."""
+    """Return data without a command."""
     steps = [edge("c_d1", to="d1", when="p.here"), edge("c_none", to="none", when="not p.here")]
     chosen = plant("data_p", {"none": steps, "d1": steps}, controllable=["c_d1", "c_none"], kind="data", origin="P.p")
     return model([_one("p", {"u_response": ""}), chosen], guards={}, name="Data")
 
 
 def swap() -> sct.SupervisoryControlModel:
-    """Updates that need the values before, within a plant, between plants and by location."""
+    """Return updates that need the old values, within a plant, between plants and by location."""
     return model(
         [
             plant(
@@ -97,7 +97,7 @@ def swap() -> sct.SupervisoryControlModel:
 
 
 def wide() -> sct.SupervisoryControlModel:
-    """Ranges and computations up to 64 bits."""
+    """Return ranges and computations up to 64 bits."""
     biggest = 2**63 - 1
     return model(
         [
@@ -131,7 +131,7 @@ def wide() -> sct.SupervisoryControlModel:
 
 
 def names() -> sct.SupervisoryControlModel:
-    """Names that are keywords or macros of C and C++, clash with each other or with the engine, or are not ASCII."""
+    """Return names that are keywords or macros of C and C++, clash with other names or the engine, or are not ASCII."""
     return model(
         [
             plant("int", {"if": [edge("u_response", to="else")], "else": []}, uncontrollable=["u_response"]),
@@ -151,7 +151,7 @@ def names() -> sct.SupervisoryControlModel:
 
 
 def texts() -> sct.SupervisoryControlModel:
-    """Words of the model that try to leave their comment."""
+    """Return texts that try to end the comment around them."""
     evil = 'needs */ int main; /* ??/\n// \\ \u202e\u2066 "%s" /*/ */*/ ??) ' + "x" * 200
     made = model(
         [
@@ -175,7 +175,7 @@ def texts() -> sct.SupervisoryControlModel:
 
 
 def shared() -> sct.SupervisoryControlModel:
-    """Guards with conditions in common: as a whole, within others, denied; and comparisons that many have."""
+    """Return guards with common conditions (whole, nested, negated) and comparisons that many guards share."""
     steps = {
         "u_response": {"n": "n + 1", "m": "m - 1"},
         "u_error": {"n": "n - 2", "m": "m + 3"},
@@ -203,7 +203,7 @@ def shared() -> sct.SupervisoryControlModel:
 
 
 def large() -> sct.SupervisoryControlModel:
-    """So many events that sets of them need words of words, and all that the control loop does with them."""
+    """Return a large model: event sets need a second level of words, and all features of the control loop occur."""
     counts = [edge("a0.u_error", do={"n": "n + 30"}), edge("a1.u_error", do={"n": "n - 25"})]
     plants = [plant("hub", {"only": counts}, variables={"n": "0..99"})]
     for number in range(180):

@@ -1,4 +1,4 @@
-"""A program around a generated engine that executes a script and says after each line what came of it."""
+"""A program around a generated engine that executes a script and prints the outcome of each line."""
 
 import subprocess
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ from robosc.model import expression as ex
 from robosc.model import sct
 
 FLAGS = ("-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
-#: What a user of the engine is promised to draw no warning.
+#: The flags under which the engine promises no warnings.
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Wpedantic", "-Werror")
 
 _PROGRAM = """\
@@ -110,7 +110,7 @@ int main(int arguments, char **argument)
 
 
 def program(model: sct.SupervisoryControlModel) -> str:
-    """The source of the program."""
+    """Return the source of the program."""
     names = CNames(model)
     values = []
     for plant in model.plants:
@@ -154,7 +154,7 @@ def write(
     *,
     small: int = sct_to_engine.POLLED,
 ) -> Path:
-    """Writes header and source; returns the source. With `small=0` the control loop is that of a large robot."""
+    """Write header and source; return the source. With `small=0` the control loop is that of a large robot."""
     with patch.object(sct_to_engine, "POLLED", small):
         files = engine.generate(sct_to_engine.transform(model), settings or ControlLoop())
     for name, text in files.items():
@@ -169,7 +169,7 @@ def build(
     *,
     small: int = sct_to_engine.POLLED,
 ) -> Path:
-    """Compiles engine and program, the engine without a warning."""
+    """Compile the engine and the program, the engine without a warning."""
     source, main, built = write(model, folder, settings, small=small), folder / "main.c", folder / "main"
     main.write_text(program(model))
     compiled = folder / "engine.o"
@@ -183,7 +183,7 @@ def build(
 
 
 def run(built: Path, script: Sequence[str], *arguments: str) -> list[str]:
-    """What the program says, a line for each operation of the script."""
+    """Return the program's output, a line for each operation of the script."""
     command = [built, *arguments]
     done = subprocess.run(command, input="\n".join(script), capture_output=True, text=True, check=False, timeout=600)
     assert done.returncode == 0, done.stderr

@@ -1,4 +1,4 @@
-"""Computations over wide ranges, under the sanitizers: what the preconditions allow never overflows."""
+"""Computations over wide ranges, under sanitizers: models that meet the preconditions never overflow."""
 
 import tempfile
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What the engine promises of its cost (docs/engine.md): counts, which are the same on each machine."""
+"""The engine's promises on its cost (docs/engine.md): counts that are the same on every machine."""
 
 import re
 import shutil
@@ -17,7 +17,7 @@ from robosc.model import sct
 pytestmark = pytest.mark.build
 
 DISPATCH = 64
-#: The deepest stack of any engine, however many events it has.
+#: The maximum stack of any engine, whatever its number of events.
 STACK = {"x86-64": 360, "Cortex-M3": 240}
 
 
@@ -49,7 +49,7 @@ def _counted(costs: Costs) -> Costs:
 
 def test_the_dispatch_of_an_event_does_not_grow_with_their_number(costs: Costs) -> None:
     most = _counted(costs).perform.most
-    # An event that moves a plant can't be had for less: a walk that performs nothing would pass else.
+    # An event that moves a plant costs more than this: the bound detects a walk without events.
     assert 20 < most <= DISPATCH
 
 
@@ -84,7 +84,7 @@ def test_the_stack_is_that_of_the_deepest_calls() -> None:
 
 
 def test_the_page_keeps_its_aims() -> None:
-    """The tables are as the benchmark wrote them; the aim holds for the cells of every size in them."""
+    """The page has the benchmark's tables, which meet its aim for cells of every size."""
     text = (Path(__file__).parents[3] / "docs" / "engine.md").read_text()
     cells = [line.split("|") for line in text.splitlines() if re.match(r"\| \d+ independent cells", line)]
     performs = [int(row[4]) for row in cells if len(row) == 13]

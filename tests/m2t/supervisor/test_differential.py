@@ -1,4 +1,4 @@
-"""The engine in C does what the interpreter does, event for event: `benchmarks/search.py` tries more models."""
+"""The C engine and the interpreter agree event by event: `benchmarks/search.py` tries more models."""
 
 import tempfile
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""MISRA C:2012, as cppcheck's add-on knows it: what it finds is what docs/engine.md lists."""
+"""MISRA C:2012 as cppcheck's add-on checks it: docs/engine.md lists exactly its findings."""
 
 import re
 import shutil
@@ -18,7 +18,7 @@ pytestmark = pytest.mark.build
 ROOT = Path(__file__).parents[3]
 EXAMPLES = [path for path in sorted((ROOT / "examples").glob("*/*.rscd")) if path.stem == path.parent.name]
 
-#: With a layer, with actions, and the one with the most of everything; `benchmarks/matrix.py` looks at the others.
+#: A layer, actions, and the largest example; `benchmarks/matrix.py` checks the others.
 CHOSEN = ("supervised_line_follower", "simple_navigation", "warehouse_robot")
 
 
@@ -26,12 +26,12 @@ def guard() -> sct.SupervisoryControlModel:
     return supervised(ROOT / "tests" / "run" / "runtime" / "guard.rscd")
 
 
-#: What no example needs: wide ranges, enumerations, names that nothing bounds, times.
+#: Features that no example has: wide ranges, enumerations, unbounded names, timers.
 OTHERS = (dock, guard, corners.shared, corners.swap, corners.data, corners.incoming, corners.cancels)
 
 
 def found(sources: Sequence[Path]) -> set[str]:
-    """The rules that the add-on sees broken."""
+    """Return the rules that the add-on reports as violated."""
     if shutil.which("cppcheck") is None:
         pytest.skip("cppcheck is not installed")
     folder = sources[0].parent
@@ -45,12 +45,12 @@ def found(sources: Sequence[Path]) -> set[str]:
 
 
 def documented() -> dict[str, str]:
-    """The rules of the page, and whether each is required."""
+    """Return the rules of the page, and whether each is required."""
     return dict(re.findall(r"^\| (\d+\.\d+) \| (\w+) \| \S", (ROOT / "docs" / "engine.md").read_text(), re.MULTILINE))
 
 
 def in_examples(folder: Path, names: Sequence[str]) -> set[str]:
-    """The rules that the add-on sees broken in examples; of the required ones these may be one alone."""
+    """Return the rules that examples violate; only one of the required rules may be among them."""
     folder.mkdir()
     paths = [path for path in EXAMPLES if path.stem in names]
     assert len(paths) == len(names)

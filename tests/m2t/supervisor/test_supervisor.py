@@ -1,4 +1,4 @@
-"""The generated C as its users get it: compilers, linker, CMake; and what it promises about itself."""
+"""The generated C in use: compilers, linker, CMake, and the promises about the code itself."""
 
 import re
 import shutil
@@ -54,7 +54,7 @@ def line_follower() -> sct.SupervisoryControlModel:
 
 @pytest.fixture(scope="module")
 def sources(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    """The sources of all corner models and of two real ones, each as it is and as if it were large."""
+    """Return the sources of all corner models and of two real ones, as small and as large robots."""
     models = [make() for make in corners.ALL] + [dock(), line_follower()]
     return [
         write(path, folder, small=small)
@@ -153,7 +153,7 @@ def test_the_engine_needs_nothing_and_keeps_nothing(sources: Sequence[Path], tmp
 
 
 def test_no_function_calls_itself(sources: Sequence[Path]) -> None:
-    """A call graph without a circle, of static functions also without a declaration ahead."""
+    """The call graph has no cycle, and static functions need no forward declaration."""
     for source in sources:
         code = re.sub(r"/\*.*?\*/|\".*?\"", "", source.read_text(), flags=re.DOTALL)
         starts = list(re.finditer(r"^(\w[\w *]*?)\b(\w+)\([^;{]*\)\n\{", code, flags=re.MULTILINE))

@@ -1,4 +1,4 @@
-"""Times in the engine in C: it is told what time it is, and says when it wants to be called."""
+"""Timers in the C engine: the caller passes the time, and the engine returns when to call it next."""
 
 import re
 import shutil
@@ -28,7 +28,7 @@ def made(path: Path) -> sct.SupervisoryControlModel:
 
 @pytest.mark.parametrize("small", [64, 0])
 def test_it_is_correct_over_the_wrap_of_32_bits(tmp_path: Path, small: int) -> None:
-    """`now` (milliseconds, wrapping 32 bits): a time that starts 400 ms before the wrap is up after it."""
+    """`now` is in milliseconds and wraps at 32 bits: a timer that starts 400 ms before the wrap expires after it."""
     start = 2**32 - 400
     built = build(made(GUARD), tmp_path, small=small)
     script = []
@@ -48,7 +48,7 @@ def test_it_is_correct_over_the_wrap_of_32_bits(tmp_path: Path, small: int) -> N
 
 
 def test_a_time_that_goes_back_starts_all_times_anew(tmp_path: Path) -> None:
-    """Also where the clock has wrapped meanwhile."""
+    """This includes a clock that has wrapped meanwhile."""
     script = ["now 200", "tick", f"now {2**32 - 5}", "tick", "expire"]
     lines = run(build(made(GUARD), tmp_path), script, "100")
     assert [line.split("; ")[1].split(";")[0] for line in lines] == ["400", "500", "500"]
@@ -58,7 +58,7 @@ def test_a_time_that_goes_back_starts_all_times_anew(tmp_path: Path) -> None:
 def test_the_struct_says_how_long_a_time_is_that_is_set_on_the_robot(
     tmp_path: Path, length: int | None, expired: int
 ) -> None:
-    """The C supervisor takes such durations in its struct, and has no other parameter."""
+    """Durations that are parameters are members of the C supervisor's struct, which has no other parameters."""
     model = made(CRUISE)
     assert [duration.parameter for duration in model.durations] == ["Lamp.pause", "Lamp.pause"]
     script = [] if length is None else [f"set 0 {length}"]
@@ -75,13 +75,13 @@ def test_without_times_nothing_is_added() -> None:
 
 
 def test_it_reads_no_clock_and_allocates_nothing() -> None:
-    """It reads no clock; no heap."""
+    """The engine reads no clock and uses no heap."""
     text = "".join(engine.generate(transform(made(GUARD)), ControlLoop()).values())
     assert set(re.findall(r"#include <(.*)>", text)) == {"stdbool.h", "stdint.h", "stddef.h"}
 
 
 def ring(folder: Path, states: int) -> sct.SupervisoryControlModel:
-    """A component with so many states that each wait for a time and for a silence."""
+    """Return a component with this number of states, each with a timeout and a silence."""
     text = "".join(
         f"{'' if number else 'initial marked '}state s{number} {{ after {number + 1} s goto s{(number + 1) % states}"
         f" on response from next goto s{(number + 1) % states} }}\n"
@@ -99,9 +99,10 @@ def ring(folder: Path, states: int) -> sct.SupervisoryControlModel:
 
 @pytest.mark.slow
 def test_more_timed_states_cost_no_more_per_tick(tmp_path: Path) -> None:
-    """Counted in instructions, which are the same on each machine.
+    """The test counts instructions, which are the same on every machine.
 
-    Both rings count their states in 16 bits, and their times go on while it is measured: those of a larger one may not.
+    Both rings count their states in 16 bits, and their timers run during the measurement.
+    Timers of a larger ring might not.
     """
     if shutil.which("valgrind") is None:
         pytest.skip("valgrind is not installed")

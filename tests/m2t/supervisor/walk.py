@@ -1,4 +1,4 @@
-"""A random walk of the control loop in Python, as a script for the generated engine and with what it is to say."""
+"""A random walk of the control loop in Python, as a script for the generated engine with the expected output."""
 
 from random import Random
 
@@ -9,10 +9,10 @@ from robosc.model.semantics.domains import domain
 
 
 class Walk:
-    """Performs random operations; `script` and `said` grow with each."""
+    """Random operations; each extends `script` and `said`."""
 
     def __init__(self, model: sct.SupervisoryControlModel, settings: Settings, seed: int, start: int = 0) -> None:
-        """`start` is what the clock of 32 bits shows at first, in models with times."""
+        """`start` is the initial value of the 32-bit clock, in models with timers."""
         self._start = start
         self.random = Random(seed)  # noqa: S311
         self.script: list[str] = []
@@ -25,7 +25,7 @@ class Walk:
             Hooks(lambda event: event not in self._withheld, self._happened.append, self._livelock),
         )
         roles = self.loop.engine.roles
-        #: Events as the header orders them.
+        #: Events in the order of the header.
         data = (event for events in roles.data for event in events)
         order = (*roles.cancels, *roles.triggers, *roles.silent, *data, *roles.incoming, *roles.timeouts)
         self._events = [f"{event.eContainer().name}.{event.name}" for event in order]
@@ -60,7 +60,7 @@ class Walk:
         self._operate("end")
 
     def wait(self) -> None:
-        """Lets time go by, often until something is up, and now and then backwards."""
+        """Advance the clock, often to the next expiry, and occasionally backward."""
         timers = self.loop.timers
         left = timers.wait or 0
         step = self.random.choice((left, left, left - 1, self.random.randint(0, 3000), -self.random.randint(0, 20)))

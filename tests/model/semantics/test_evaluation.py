@@ -1,4 +1,4 @@
-"""The value of an expression where Python's own arithmetic would differ or fail."""
+"""Values of expressions where Python's own arithmetic would differ or fail."""
 
 import math
 from typing import Any
@@ -14,7 +14,7 @@ def integer(value: int) -> ex.Expression:
 
 
 def huge() -> ex.Expression:
-    """An integer that no double holds."""
+    """Return an integer beyond the range of double."""
     product: ex.Expression = integer(10**18)
     for _ in range(20):
         product = ex.Multiplication(left=product, right=integer(10**18))

@@ -1,4 +1,4 @@
-"""`abs min max` of what the supervisor computes: calls in the sct model, written out by cases in C and CIF."""
+"""`abs`, `min` and `max` for the supervisor: calls in the sct model, expanded into cases in C and CIF."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ robot Round {
 
 
 def test_supervisor_and_engine_agree() -> None:
-    """`abs min max` (integers or doubles)."""
+    """`abs`, `min` and `max` of integers and doubles agree in the supervisor and the engine."""
     robot = robosc.load(text=MODEL)
     assert robosc.check(robot) == []
     model = robosc.to_sct(robot)
@@ -56,7 +56,7 @@ def test_supervisor_and_engine_agree() -> None:
 
 
 def test_each_stays_one_element() -> None:
-    """However deep they are nested: their arguments are not copied."""
+    """Arguments are not copied, however deep the calls are nested."""
 
     def size(depth: int) -> int:
         nested = "Counter.near"
@@ -89,12 +89,15 @@ HALVES = [
 
 @pytest.mark.parametrize(("value", "rounded"), HALVES)
 def test_halves_go_away_from_zero(value: float, rounded: int) -> None:
-    """`floor ceil round` (double to integer, halves away from zero); integers of the node saturate at 32 bits."""
+    """`floor`, `ceil` and `round` turn a double into an integer.
+
+    Halves round away from zero; integers of the node saturate at 32 bits.
+    """
     assert call("round", value) == rounded
 
 
 def test_nan_cannot_be_rounded() -> None:
-    """`floor ceil round` of NaN can't be read."""
+    """`floor`, `ceil` and `round` of NaN cannot be read."""
     for function in ("floor", "ceil", "round"):
         with pytest.raises(UnreadableError):
             call(function, math.nan)
@@ -102,7 +105,7 @@ def test_nan_cannot_be_rounded() -> None:
 
 
 def test_where_ieee_754_has_nan() -> None:
-    """`sqrt sin cos atan2`."""
+    """`sqrt`, `sin`, `cos` and `atan2`."""
     for function, value in [("sqrt", -1.0), ("sin", math.inf), ("cos", -math.inf)]:
         found = call(function, value)
         assert isinstance(found, float)

@@ -1,4 +1,4 @@
-"""`mod(a, b)` from the text to what is generated; a variable may have the function's name."""
+"""`mod(a, b)` from the text to the generated files; a variable may have the function's name."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Expressions of sct models as text for a person, and copies of them."""
+"""Print expressions of sct models for readers, and copy them."""
 
 import pytest
 from hypothesis import given

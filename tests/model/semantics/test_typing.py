@@ -1,4 +1,4 @@
-"""Table 4.1 cell by cell, and the types of what names and events stand for."""
+"""Table 4.1 cell by cell, and the types of names and events."""
 
 import pytest
 
@@ -66,7 +66,7 @@ def data_type(kind: Type) -> rsc.DataType | None:
 
 
 def variable(kind: Type) -> rsc.Access:
-    """An expression of a type; an access to nothing for UNKNOWN."""
+    """Return an expression of a type: for UNKNOWN, an access without an item."""
     if kind == UNKNOWN:
         return rsc.Access()
     return rsc.Access(item=rsc.Variable(name="v", type=data_type(kind)))
@@ -151,7 +151,7 @@ def test_segments() -> None:
     index, x = rsc.IndexSegment(index=0), rsc.PropertySegment(property=POINT.properties[0])
     read = rsc.Access(value=True, segments=[index, rsc.IndexSegment(index=3), x])
     assert infer(read, grid) == DOUBLE
-    assert infer(read, ArrayType(DOUBLE)) == DOUBLE  # A resolved property has its type whatever stands before it.
+    assert infer(read, ArrayType(DOUBLE)) == DOUBLE  # A resolved property has its own type, whatever precedes it.
     assert infer(rsc.Access(value=True, segments=[rsc.IndexSegment(index=0)]), grid) == ArrayType(ObjectType(POINT))
     assert infer(rsc.Access(value=True, segments=[rsc.IndexSegment(index=0)]), DOUBLE) == UNKNOWN
     assert infer(rsc.Access(value=True, segments=[rsc.PropertySegment()]), ObjectType(POINT)) == UNKNOWN

@@ -1,4 +1,4 @@
-"""Long expressions need neither a large stack nor another limit of recursion than Python's own."""
+"""Long expressions need neither a large stack nor a higher recursion limit than Python's default."""
 
 import subprocess
 import sys
@@ -10,7 +10,7 @@ import robosc
 from benchmarks.walk_families import write
 
 ROOT = Path(__file__).parents[3]
-#: All of robosc, on a thread with a stack of 512 KiB.
+#: Run all of robosc on a thread with a stack of 512 KiB.
 SCRIPT = """
 import sys
 import threading

@@ -1,4 +1,4 @@
-"""The rules that models keep beyond classes and multiplicities, each broken once."""
+"""Validity rules of models beyond classes and multiplicities, each violated once."""
 
 from collections.abc import Callable
 from typing import Any
@@ -324,7 +324,7 @@ def test_sct(break_it: Callable[[Any], None], wanted: list[str]) -> None:
 
 
 def graph() -> rosgraph.RosGraph:
-    """A graph with one of everything that can disagree."""
+    """Return a graph with one of every feature that can be inconsistent."""
     of = valid()
     p, _ = of.plants
     of.plants.append(

@@ -1,4 +1,4 @@
-/* Another package asks the engine of the follower what it allows before anything has happened. */
+/* Another package prints which events the engine of the follower permits in its initial state. */
 #include <stdio.h>
 
 #include "person_follower_controller/person_follower_supervisor.h"

@@ -1,4 +1,4 @@
-"""A base with a lift, between a server that carries out its goals and a world that steers it and hears the lift."""
+"""A base with a lift, the server that executes its goals, and the world that sends orders and receives lift calls."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ TRIGGER, CANCEL, FEEDBACK, CANCELED, RESPONSE, ERROR = (
     f"action_navigate.{event}"
     for event in ("c_trigger", "c_cancel", "u_feedback", "u_canceled", "u_response", "u_error")
 )
-#: How long the node under test waits for a goal's acceptance, and for the answer to a cancel.
+#: Timeout of the node under test for the acceptance of a goal and for the answer to a cancel, in milliseconds.
 WAIT_MS = 2000
 LATE = f"/navigate: not accepted within {WAIT_MS} ms"
 ATTEMPTS = 10
@@ -41,7 +41,7 @@ RAISE = "service_raise.c_trigger"
 
 @dataclass
 class Base:
-    """A base under way. Its node is a controller, or a layer before a controller that takes no care."""
+    """A running base. Its node is a controller, or a layer before a controller without any safety conditions."""
 
     nodes: Workspace | Runner
     layer: bool
@@ -71,7 +71,7 @@ class Base:
 
     @property
     def name(self) -> str:
-        """The name of the node under test."""
+        """Return the name of the node under test."""
         return "carrier_layer" if self.layer else "carrier_controller"
 
     def _meet(self, name: str) -> Peer:
@@ -81,7 +81,7 @@ class Base:
     # The node
 
     def start(self) -> None:
-        """Starts the node, and behind a layer the controller; waits until the base is at rest."""
+        """Start the node, and the controller behind a layer; wait until the base is at rest."""
         self._nodes += 1
         self.node = self.processes.start(f"node{self._nodes}", self._command())
         if self.layer and self._nodes == 1:
@@ -99,7 +99,7 @@ class Base:
         return one_process(self.nodes, self.name, *parameters)
 
     def _careless(self) -> list[str | Path]:
-        """Return the command of the controller behind the layer: compiled or from its model, as the layer."""
+        """Return the command of the controller behind the layer: compiled or run from its model, like the layer."""
         names = [*TOPICS, SERVICE, *(f"{ACTION}/{part}" for part in PARTS)]
         remappings = [f"{name}:=/{self.name}/{below_layer(name)}" for name in names]
         if isinstance(self.nodes, Workspace):
@@ -109,32 +109,32 @@ class Base:
 
     @property
     def log(self) -> Path:
-        """The event log."""
+        """Return the path of the event log."""
         return self.folder / f"events{self._nodes}.jsonl"
 
     @property
     def output(self) -> str:
-        """What the node printed."""
+        """Return the output of the node."""
         return (self.folder / f"node{self._nodes}.log").read_text(errors="replace")
 
     def events(self, since: int = 0) -> list[str]:
-        """The events of the action and the lift, from a line of the log on."""
+        """Return the events of the action and of the lift, from a line of the log on."""
         text = self.log.read_text() if self.log.exists() else ""
         entries = [json.loads(line) for line in text[: text.rfind("\n") + 1].splitlines()[since:]]
         happened = [entry["event"] for entry in entries if entry["direction"] != "blocked"]
         return [event for event in happened if event.startswith(("action", "service")) and "reset" not in event]
 
     def lines(self) -> int:
-        """How long the log is."""
+        """Return the number of lines in the log."""
         return self.log.read_text().count("\n") if self.log.exists() else 0
 
     def state(self, component: str) -> str:
-        """The state of a component, as last reported."""
+        """Return the state of a component in the last report."""
         reports = [entry for entry in self.world.said if entry.get("heard") == f"/{self.name}/state"]
         return json.loads(reports[-1]["data"]["data"])["components"][component]["state"] if reports else ""
 
     def warns(self, text: str) -> bool:
-        """Whether the last diagnostics warn of something."""
+        """Whether the last diagnostics contain a warning with this text."""
         reports = [entry["data"]["status"] for entry in self.world.said if entry.get("heard") == DIAGNOSTICS]
         own = [status for status in (reports[-1] if reports else ()) if status["name"].startswith(f"{self.name}: ")]
         return any(status["level"] == 1 and text in status["message"] for status in own)
@@ -142,11 +142,11 @@ class Base:
     # The world
 
     def send(self, topic: str, value: bool) -> None:
-        """Publishes a message."""
+        """Publish a message."""
         self.world.do("publish", topic=topic, fields={"data": value})
 
     def rest(self) -> None:
-        """Takes back all that was ordered; waits until the base stands, with its lift down."""
+        """Withdraw all orders; wait until the base stands and its lift is down."""
 
         def at_rest() -> bool:
             for topic in ("/wanted", "/pressed"):
@@ -158,47 +158,47 @@ class Base:
         self.until(at_rest, "the base is at rest")
 
     def lifted(self, since: int) -> bool:
-        """Whether the lift was called."""
+        """Whether the node called the lift."""
         return bool(self.world.all("called", since))
 
     def until(self, condition: Callable[[], object], what: str) -> None:
-        """Waits for a condition."""
+        """Wait for a condition."""
         self.processes.wait_until(lambda: bool(condition()), what)
 
     def until_event(self, name: str, since: int) -> None:
-        """Waits until an event is in the log."""
+        """Wait until an event is in the log."""
         self.until(lambda: name in self.events(since), f"{name} happens")
 
     # The server
 
     def serve(self) -> None:
-        """A server: what becomes of a goal, the test decides."""
+        """Start the server; the test decides about each goal."""
         self.server = self._meet("server")
         self.server.do("act", name=ACTION, kind="nav2_msgs/NavigateToPose")
 
     def kill_server(self) -> None:
-        """Ends the server as a crash does."""
+        """End the server like a crash."""
         self.server.process.kill()
         self.server.process.wait()
         self._killed = time.monotonic()
 
     def outlive_server(self) -> None:
-        """Waits until nothing is left of a server that was killed."""
+        """Wait until the ROS graph contains nothing of a killed server."""
         if self.version == 2:
             time.sleep(max(0.0, self._killed + LEASE - time.monotonic()))
 
     def pause_server(self) -> None:
-        """The server does nothing any more, and says so to nobody."""
+        """Stop the server process; the node gets no notice."""
         os.kill(self.server.process.pid, signal.SIGSTOP)
 
     def resume_server(self) -> None:
-        """The server goes on where it was."""
+        """Resume the server process."""
         os.kill(self.server.process.pid, signal.SIGCONT)
 
 
 @contextmanager
 def under_way(nodes: Workspace | Runner, folder: Path, *, layer: bool) -> Iterator[Base]:
-    """A base, its world and its server, each a process."""
+    """Run a base, its world and its server, each in a process of its own."""
     with middleware(nodes, folder) as processes:
         base = Base(nodes, layer, processes, folder)
         try:
@@ -206,12 +206,12 @@ def under_way(nodes: Workspace | Runner, folder: Path, *, layer: bool) -> Iterat
         finally:
             base.resume_server()
             for peer in (base.world, base.server):
-                peer.process.kill()  # nobody waits for their farewell
+                peer.process.kill()  # the peers need no orderly end
 
 
 @dataclass
 class Drive:
-    """A goal under way: its number at the server, and how much there was of everything when it began."""
+    """A goal under way: its number at the server, and the lengths of all records at its start."""
 
     base: Base
     number: int
@@ -221,7 +221,7 @@ class Drive:
 
     @classmethod
     def begin(cls, base: Base, accept: bool = True) -> Drive:
-        """The base sets off, and knows that its goal was accepted. On a busy machine that takes it several attempts."""
+        """Set off and wait until the node has its goal accepted, in several attempts on a busy machine."""
         for _ in range(ATTEMPTS):
             base.server.do("on_cancel", answer="ignore")
             base.server.do("accept_at_once", accept=accept)
@@ -243,58 +243,58 @@ class Drive:
         raise AssertionError(f"no goal in time in {ATTEMPTS} attempts")
 
     def ordered(self) -> bool:
-        """Orders the base to set off, again and again: who shall hear it may not be there yet."""
+        """Order the base to set off. The order is repeated because the node may not be connected yet."""
         self.base.send("/wanted", value=True)
         return bool(self.goals) or ERROR in self.events
 
     @property
     def goals(self) -> list[int]:
-        """The goals that have come to the server since."""
+        """Return the numbers of the goals that the server received during this drive."""
         return [entry["goal"] for entry in self.base.server.all("goal", self.server)]
 
     @property
     def events(self) -> list[str]:
-        """What has happened since, of the action and the lift."""
+        """Return the events of the action and of the lift during this drive."""
         return self.base.events(self.lines)
 
     def press(self) -> None:
-        """The button is pressed: the base has the goal canceled."""
+        """Press the button and wait until the node cancels the goal."""
         self.base.send("/pressed", value=True)
         self.until(CANCEL)
 
     def until(self, event: str) -> None:
-        """Waits for an event of this drive."""
+        """Wait for an event of this drive."""
         self.base.until_event(event, self.lines)
 
     def until_asked(self, count: int = 1) -> None:
-        """Waits until the server was asked to cancel the goal so often."""
+        """Wait until the server received a number of requests to cancel the goal."""
         self.base.until(lambda: self.asked >= count, f"the server is asked {count} times to cancel the goal")
 
     @property
     def asked(self) -> int:
-        """How often the server was asked to cancel the goal."""
+        """Return the number of requests to cancel the goal that the server received."""
         return len([entry for entry in self.base.server.all("cancel", self.server) if entry["cancel"] == self.number])
 
     def rolls(self, seconds: float) -> None:
-        """The wheels turn for so long: the lift is not called, and the model knows that the goal has not ended."""
+        """Let the wheels turn for some seconds; check that the lift stays down and the goal counts as running."""
         time.sleep(seconds)
         assert not self.base.lifted(self.world)
         assert self.base.state("Navigation") in ("driving", "stopping")
         assert not {CANCELED, RESPONSE, ERROR, RAISE} & set(self.events)
 
     def end(self, how: str) -> None:
-        """The wheels stop: the goal ends."""
+        """End the goal: the wheels have stopped."""
         self.base.server.do("end", number=self.number, how=how)
 
     def until_lifted(self, end: str) -> None:
-        """Waits until the lift is called, which follows the end of the goal."""
+        """Wait until the node calls the lift, and check that the call follows the end of the goal."""
         self.base.until(lambda: self.base.lifted(self.world), "the lift is called")
         self.until(RAISE)
         events = self.events
         assert events.index(end) < events.index(RAISE)
 
     def never_lifted(self, seconds: float = 1.0) -> None:
-        """The lift is not called: nobody knows whether the wheels turn."""
+        """Check that the node never calls the lift after a lost goal, because the wheels may still turn."""
         self.base.until(lambda: self.base.state("Navigation") == "lost", "the base is lost")
         time.sleep(seconds)
         assert not self.base.lifted(self.world)

@@ -1,7 +1,8 @@
-"""A lift that must not rise before the wheels have stopped: whatever the server of the wheels' action does.
+"""A lift must not rise before the wheels have stopped, for any behavior of the action server of the wheels.
 
-The model is `carrier.rscd`, of a controller and of a layer; behind the layer stands `careless.rscd`, which raises the
-lift as soon as the button is pressed. The server's goal ends where the test says that the wheels have stopped.
+The model `carrier.rscd` becomes a controller and a layer. The controller behind the layer is `careless.rscd`, which
+raises the lift as soon as the button is pressed. The server ends its goal when the test decides that the wheels have
+stopped.
 """
 
 from __future__ import annotations
@@ -21,9 +22,9 @@ if TYPE_CHECKING:
 
 REFUSED = "the server refuses to cancel the goal"
 UNANSWERED = f"the server does not answer the request to cancel the goal within {WAIT_MS} ms"
-#: Seconds longer than the node waits for an answer.
+#: Longer than the node waits for an answer, in seconds.
 LONG = WAIT_MS / 1000 + 0.5
-#: The node: compiled, or run from its model; over which ROS; whether it is a layer.
+#: Kinds of the node under test: compiled or run from its model, version of ROS, controller or layer.
 NODES = [
     pytest.param(kind, layer, id=f"{kind}-{'layer' if layer else 'controller'}")
     for kind in ("ros1", "run-ros2", "ros2")
@@ -40,7 +41,7 @@ def base(
     kept: Callable[[str, Callable[[], Any]], Base],
     tmp_path_factory: pytest.TempPathFactory,
 ) -> Iterator[Base]:
-    """A base at rest; what a test that fails has left behind is nothing for the next."""
+    """A base at rest; after a failed test, a new server takes the place of the old one."""
     nodes = nodes_of(request, kind)
     layer = request.param
     folder = tmp_path_factory.mktemp("ends") / "run"
@@ -59,7 +60,7 @@ def base(
 
 @pytest.mark.parametrize(("how", "event"), [("cancelled", CANCELED), ("succeeded", RESPONSE)])
 def test_it_brakes(base: Base, how: str, event: str) -> None:
-    """The goal ends as canceled, or reaches its end before it has stopped."""
+    """The lift rises after the braking goal ends, as canceled or as succeeded."""
     drive = Drive.begin(base)
     drive.press()
     drive.until_asked()
@@ -128,7 +129,7 @@ def test_it_accepts_late(base: Base) -> None:
 
 
 def test_someone_else_stops_it(base: Base) -> None:
-    """The goal is being canceled already when the base wants that, too."""
+    """The base cancels a goal that another client is already canceling."""
     drive = Drive.begin(base)
     base.server.do("cancel_elsewhere", number=drive.number)
     drive.rolls(LONG)
@@ -158,7 +159,7 @@ def test_it_dies(base: Base) -> None:
 
 
 def test_it_is_started_anew(base: Base) -> None:
-    """The new server does not know the goal, and offers all that the old one did."""
+    """The new server does not know the goal, but offers everything that the old one offered."""
     drive = Drive.begin(base)
     base.kill_server()
     base.serve()

@@ -1,4 +1,4 @@
-"""Nodes of `scout.rscd`, compiled for ROS 1 or 2 or run from the model; the world and the server that they meet."""
+"""Nodes of `scout.rscd`, compiled for ROS 1 or 2 or run from the model, with their world and their server."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parent
 MODEL = HERE / "scout.rscd"
 PACKAGE = "scout_controller"
-#: How long a patient node waits for a goal's acceptance.
+#: Time for which a patient node waits for the acceptance of a goal.
 ACCEPTANCE_SECONDS = 60
 
 
 @dataclass(frozen=True)
 class Compiled:
-    """A node that was generated and built."""
+    """A generated and compiled node."""
 
     place: workspaces.Workspace
 
     def command(self, *parameters: str) -> list[str | Path]:
-        """Starts the node, as one process, with parameters (`name:=value`)."""
+        """Return the command that starts the node as one process, with parameters (`name:=value`)."""
         if self.place.ros.version == 2:
             return self.place.node(PACKAGE, *parameters)
         executable = self.place.folder / f"devel/lib/{PACKAGE}/{PACKAGE}"
@@ -42,12 +42,12 @@ class Compiled:
 
 @dataclass(frozen=True)
 class Running:
-    """A node straight from the model."""
+    """A node run from its model."""
 
     place: running.Runner
 
     def command(self, *parameters: str) -> list[str | Path]:
-        """Starts the node, as one process, with parameters (`name:=value`)."""
+        """Return the command that starts the node as one process, with parameters (`name:=value`)."""
         return [*self.place.command(MODEL, *parameters)]
 
 
@@ -62,7 +62,7 @@ def controller(request: pytest.FixtureRequest) -> Controller:
 
 @contextmanager
 def scouting(controller: Controller, folder: Path, *parameters: str, clock: float | None = None) -> Iterator[Scout]:
-    """A node under way, among its peers; on simulated time where there is a clock, which shows these seconds."""
+    """Run a node among its peers, in real time or, with `clock`, in simulated time from this second on."""
     ros = controller.place.ros
     peers: list[Peer] = []
     with workspaces.middleware(controller.place, folder, simulated=clock is not None) as processes:
@@ -84,40 +84,40 @@ def scouting(controller: Controller, folder: Path, *parameters: str, clock: floa
             scout.world.do("clock", seconds=clock)
         yield scout.ready()
         for peer in peers:
-            # Nobody waits for their farewell.
+            # The peers need no orderly end.
             peer.process.kill()
 
 
 @pytest.fixture
 def under_way(controller: Controller, kept: Keep, tmp_path_factory: pytest.TempPathFactory) -> Scout:
-    """One node for all faults that it outlives: it reports a silent sensor, and drives on."""
+    """A node that reports a silent sensor and drives on, shared by the tests of all faults that it survives."""
     return kept("under way", lambda: scouting(controller, tmp_path_factory.mktemp("faults") / "run"))
 
 
 @pytest.fixture
 def scout(under_way: Scout, request: pytest.FixtureRequest) -> Iterator[Scout]:
-    """The node, at rest, driving."""
+    """The shared node, at rest and driving."""
     with resting(under_way, request):
         yield under_way
 
 
 @pytest.fixture
 def with_patience(controller: Controller, kept: Keep, tmp_path_factory: pytest.TempPathFactory) -> Scout:
-    """A node that waits long for a goal's acceptance and for an answer, which take their time on a busy machine."""
+    """A node with long timeouts for the acceptance of a goal and for an answer, for busy machines."""
     parameters = [f"{name}_timeout_ms:={1000 * ACCEPTANCE_SECONDS}" for name in ("action", "service")]
     return kept("with patience", lambda: scouting(controller, tmp_path_factory.mktemp("patient") / "run", *parameters))
 
 
 @pytest.fixture
 def patient(with_patience: Scout, request: pytest.FixtureRequest) -> Iterator[Scout]:
-    """That node, at rest, driving."""
+    """The patient node, at rest and driving."""
     with resting(with_patience, request):
         yield with_patience
 
 
 @contextmanager
 def resting(scout: Scout, request: pytest.FixtureRequest) -> Iterator[None]:
-    """A node, at rest; what a test that fails has left on the server is nothing for the next."""
+    """Bring a node to rest; after a failed test, replace the server with its open calls and goals."""
     scout.rest()
     failed = request.session.testsfailed
     yield
@@ -129,14 +129,14 @@ def resting(scout: Scout, request: pytest.FixtureRequest) -> Iterator[None]:
 
 @pytest.fixture
 def with_guard(controller: Controller, kept: Keep, tmp_path_factory: pytest.TempPathFactory) -> Scout:
-    """A node that stops when its sensor is silent, and for tests that end it; it waits long for a goal's acceptance."""
+    """A node that stops when its sensor is silent, for tests that end it, with a long timeout for goals."""
     parameters = ["watchdog_stops:=true", "action_timeout_ms:=15000"]
     return kept("with guard", lambda: scouting(controller, tmp_path_factory.mktemp("guarded") / "run", *parameters))
 
 
 @pytest.fixture
 def guarded(with_guard: Scout) -> Scout:
-    """That node; another one where a test has ended it."""
+    """The guarded node, restarted if a test has ended it."""
     if with_guard.process.poll() is not None:
         with_guard.restart()
         with_guard.ready()

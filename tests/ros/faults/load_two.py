@@ -1,4 +1,4 @@
-"""Loads two controllers into one component container of ROS 2: the second one's topics begin with /second.
+"""Load two controllers into one component container of ROS 2. The topics of the second one begin with /second.
 
 python3 load_two.py PACKAGE
 """

@@ -1,4 +1,4 @@
-"""The test's ends of what it steers: peers, and the node that they meet."""
+"""The partners of a test: peers, and the node under test among them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parent
 DOCUMENTATION = HERE.parents[2] / "docs" / "faults.md"
 STATE = "/scout_controller/state"
-#: What the world hears of the node, and what it sends: all but /bumper.
+#: Topics of the world: `HEARD` it receives from the node, `SENT` it publishes, all but /bumper.
 DIAGNOSTICS = "/diagnostics"
 HEARD = {
     "/cmd_vel": "geometry_msgs/Twist",
@@ -39,19 +39,19 @@ SENT = {
     "/stop": "std_msgs/Empty",
     "/continue": "std_msgs/Empty",
 }
-#: What the node sends in each tick of the control loop where nothing keeps it.
+#: The command that the node sends in each tick of the control loop if no condition prevents it.
 MOVE = "message_move.c_trigger"
 PACE = 0.25
-#: The way is clear; the second ray gives the pace.
+#: A scan with a clear way; the second ray sets the pace.
 CLEAR = {"ranges": [1.0, PACE]}
-#: Seconds for what should happen at once, on a machine that is busy.
+#: Seconds for an immediate effect on a busy machine.
 PATIENCE = 120.0
-#: Seconds for which ROS 2 takes a server that was killed to be there.
+#: Seconds for which ROS 2 still lists a killed server.
 LEASE = 21.0
 
 
 class Peer:
-    """A program `peer.py` under way: a node on the robot's side. All that it says is in `said`."""
+    """A running program `peer.py`: a node on the robot's side. `said` contains all its lines."""
 
     def __init__(self, processes: Processes, python: str, version: int, name: str) -> None:
         self.name = name
@@ -65,18 +65,18 @@ class Peer:
         self._reply("start")
 
     def do(self, command: str, **arguments: Any) -> Any:
-        """Has the peer do something; what it answers."""
+        """Execute a command in the peer and return its result."""
         assert self.process.stdin is not None
         self.process.stdin.write(json.dumps({"do": command, **arguments}).encode() + b"\n")
         self.process.stdin.flush()
         return self._reply(command)
 
     def all(self, kind: str, since: int = 0) -> list[dict[str, Any]]:
-        """What the peer said with a certain key, such as `heard` or `goal`."""
+        """Return the lines of the peer with a certain key, such as `heard` or `goal`."""
         return [entry for entry in self.said[since:] if kind in entry]
 
     def wait(self, kind: str, since: int = 0, value: Any = None, seconds: float = PATIENCE) -> dict[str, Any]:
-        """The first thing that the peer says with a certain key, and a certain value where one is given."""
+        """Wait for a line with a certain key, and with a certain value if there is one; return the first."""
 
         def found() -> list[dict[str, Any]]:
             return [entry for entry in self.all(kind, since) if value is None or entry[kind] == value]
@@ -106,7 +106,7 @@ class Peer:
 
 @dataclass
 class Moment:
-    """How much there was of everything at one time."""
+    """Lengths of all records at one time."""
 
     events: int
     output: int
@@ -115,10 +115,10 @@ class Moment:
 
 @dataclass
 class Scout:
-    """A node of `scout.rscd` under way, with the world around it and the server that it calls.
+    """A running node of `scout.rscd`, the world around it, and the server that it calls.
 
-    `world` publishes the topics and hears the commands and reports; `server`, where there is one, offers service and
-    action. `start` starts a node with a name for its output, `meet` a peer.
+    `world` publishes the topics and receives the commands and reports. `server`, if any, offers services and actions.
+    `start` starts a node with a name for its output; `meet` starts a peer.
     """
 
     version: int
@@ -145,12 +145,12 @@ class Scout:
         self.restart()
 
     def restart(self) -> None:
-        """Starts the node, a new process with an output of its own."""
+        """Start the node as a new process with a log file of its own."""
         self.starts += 1
         self.process = self.start(f"node{self.starts}")
 
     def ready(self) -> Scout:
-        """Waits until the node is connected, then gives it all that it needs to drive, and waits until it does."""
+        """Wait until the node is connected, publish everything that it needs to drive, and wait until it drives."""
         self.until(lambda: all(self.world.do("listeners", topic=topic) for topic in SENT), "the node listens")
         since = self.now()
         self.world.do("repeat", topic="/scan", fields=CLEAR, hz=20)
@@ -159,7 +159,7 @@ class Scout:
         return self
 
     def rest(self) -> None:
-        """Ends all that was ordered, and what hinders the robot."""
+        """Withdraw all orders and remove all obstacles; wait until the robot drives."""
         self.world.do("repeat", topic="/scan", fields=CLEAR, hz=20)
         for topic in ("/light", "/travel_order", "/survey_order", "/tour_order"):
             self.send(topic, data=False)
@@ -170,7 +170,7 @@ class Scout:
         self.until(lambda: PACE in self.speeds(since), "the robot drives")
 
     def serve(self, succeed: bool = False) -> Peer:
-        """The server, started where there is none; all waits for what the test decides, but for goals that succeed."""
+        """Start the server if necessary. It waits for decisions of the test; with `succeed`, all goals succeed."""
         server = self.server or self.meet("server")
         server.do("answer_at_once", fields=None)
         server.do("accept_at_once", accept=succeed, succeed=succeed)
@@ -184,7 +184,7 @@ class Scout:
         return server
 
     def dismiss_server(self) -> None:
-        """Ends the server in order; afterwards there is none, nor what is left of one that was killed."""
+        """End the server in order, and wait until the ROS graph contains nothing of a killed server."""
         if self.server is not None:
             assert self.server.process.stdin is not None
             self.server.process.stdin.close()
@@ -194,7 +194,7 @@ class Scout:
             self.nothing(max(0.0, self._killed + LEASE - time.monotonic()))
 
     def kill_server(self) -> None:
-        """Ends the server as a crash does."""
+        """End the server like a crash."""
         if self.server is not None:
             self.server.process.kill()
             self.server.process.wait()
@@ -202,11 +202,11 @@ class Scout:
             self._killed = time.monotonic()
 
     def now(self) -> Moment:
-        """Where everything stands."""
+        """Return the current lengths of all records."""
         return Moment(len(self.log()), len(self.output()), len(self.world.said))
 
     def log(self, since: Moment | None = None) -> list[dict[str, Any]]:
-        """The event log."""
+        """Return the entries of the event log."""
         if self.event_log.exists():
             with self.event_log.open("rb") as file:
                 file.seek(self._read)
@@ -217,43 +217,43 @@ class Scout:
         return self._events[since.events if since else 0 :]
 
     def events(self, since: Moment, name: str) -> list[dict[str, Any]]:
-        """The events of a certain name."""
+        """Return the entries of one event."""
         return [entry for entry in self.log(since) if entry["event"] == name]
 
     def output(self, since: Moment | None = None) -> str:
-        """What the node printed."""
+        """Return the output of the node."""
         text = (self.folder / f"node{self.starts}.log").read_text(errors="replace")
         return text[since.output if since else 0 :]
 
     def commands(self, since: Moment) -> list[dict[str, Any]]:
-        """What the world received on /cmd_vel."""
+        """Return the messages that the world received on /cmd_vel."""
         return [entry for entry in self.world.all("heard", since.world) if entry["heard"] == "/cmd_vel"]
 
     def speeds(self, since: Moment) -> list[float]:
-        """The forward speeds that the world received."""
+        """Return the forward speeds that the world received."""
         return [command["data"]["linear"]["x"] for command in self.commands(since)]
 
     def ticked_between(self, since: Moment, first: str, last: str) -> bool:
-        """Whether the node drove on between an event and another one, each where it happened first."""
+        """Whether the node drove between the first occurrences of two events."""
         names = [entry["event"] for entry in self.log(since)]
         return MOVE in names[names.index(first) : names.index(last)]
 
     def states(self, since: Moment) -> list[dict[str, Any]]:
-        """What the node reported of its state."""
+        """Return the state reports of the node."""
         heard = self.world.all("heard", since.world)
         return [json.loads(entry["data"]["data"]) for entry in heard if entry["heard"] == STATE]
 
     def until_reported(self) -> None:
-        """Waits for a report on all that has happened until now; what comes first may have been on its way already."""
+        """Wait for a report that covers all events until now; reports may be outdated on arrival."""
         last = self.log()[-1]["time"]
         self.until(lambda: self._last_report()["time"] >= last, "the state is reported")
 
     def state(self, component: str) -> Any:
-        """The state of a component, as last reported."""
+        """Return the state of a component in the last report."""
         return self._last_report()["components"][component]["state"]
 
     def variable(self, component: str, name: str) -> Any:
-        """The value of a variable, as last reported."""
+        """Return the value of a variable in the last report."""
         return self._last_report()["components"][component]["variables"][name]
 
     def _last_report(self) -> Any:
@@ -261,7 +261,7 @@ class Scout:
         return json.loads(last["data"]["data"])
 
     def until_diagnosed(self, component: str, message: str, **values: str) -> None:
-        """Waits until a monitor of robots is told this of a component; `request_to_x` stands for `request to x`."""
+        """Wait until the diagnostics contain this status of a component; `request_to_x` stands for `request to x`."""
         expected = {name.replace("_to_", " to "): value for name, value in values.items()}
 
         def told() -> bool:
@@ -278,37 +278,37 @@ class Scout:
 
     @staticmethod
     def nothing(seconds: float) -> None:
-        """Lets time pass in which something must not happen."""
+        """Let time pass in which something must not happen."""
         time.sleep(seconds)
 
     def until(self, condition: Callable[[], object], what: str, seconds: float = PATIENCE) -> None:
-        """Waits for a condition."""
+        """Wait for a condition."""
         self.processes.wait_until(lambda: bool(condition()), what, seconds)
 
     def until_event(self, since: Moment, name: str, count: int = 1, seconds: float = PATIENCE) -> dict[str, Any]:
-        """Waits until an event has happened so many times; its last entry in the log."""
+        """Wait until an event has occurred `count` times; return that entry of the log."""
         self.until(lambda: len(self.events(since, name)) >= count, f"{count} times {name}", seconds)
         return self.events(since, name)[count - 1]
 
     def until_state(self, component: str, state: str, seconds: float = PATIENCE) -> None:
-        """Waits until a component is reported to be in a state."""
+        """Wait until the node reports a component in a state."""
         self.until(lambda: self.state(component) == state, f"{component} is {state}", seconds)
 
     def until_says(self, since: Moment | None, text: str, seconds: float = PATIENCE) -> None:
-        """Waits until the node has printed what the documentation quotes."""
+        """Wait until the node prints a message that the documentation quotes."""
         self.until(lambda: self.says(since, text), f"the node says {text!r}", seconds)
 
     def says(self, since: Moment | None, text: str) -> int:
-        """How often the node printed what the documentation quotes; `…` there stands for any part of a line."""
+        """Count the occurrences of a quoted message in the output; `…` in it matches any part of a line."""
         assert f"`{text}`" in DOCUMENTATION.read_text(), f"{DOCUMENTATION.name} does not quote {text!r}"
         return len(re.findall(".*?".join(map(re.escape, text.split("…"))), self.output(since)))
 
     def memory(self) -> float:
-        """What the node holds of the machine's memory, in MB."""
+        """Return the resident memory of the node, in MB."""
         found = re.search(r"VmRSS:\s+(\d+)", Path(f"/proc/{self.process.pid}/status").read_text())
         assert found
         return int(found[1]) / 1024
 
     def send(self, topic: str, **fields: Any) -> None:
-        """Publishes a message of the world's."""
+        """Publish a message of the world."""
         self.world.do("publish", topic=topic, fields=fields)

@@ -1,11 +1,11 @@
-"""The robot's side of a node under test: publishes, listens, serves, well or badly, as it is told.
+"""The robot's side of a node under test: publishers, listeners and servers, correct or faulty, by command.
 
 python3 peer.py 1|2 NAME
 
-Reads commands from its standard input, a line of JSON each, such as `{"do": "silence", "topic": "/scan"}`; the values
-of `do` are the public methods of `Peer`. Each is answered with a line `{"did": ..., "result": ...}`. All else that
-happens is a line, too: `{"heard": topic, "at": seconds, "data": ...}`, `{"called": number}`, `{"goal": number}`,
-`{"cancel": number}`, `{"sent": topic, "count": ...}`. Ends with its input.
+Reads commands from standard input, one JSON object a line, such as `{"do": "silence", "topic": "/scan"}`. The values of
+`do` are the public methods of `Peer`. Each command gets a line `{"did": ..., "result": ...}`. Each other event is a
+line, too: `{"heard": topic, "at": seconds, "data": ...}`, `{"called": number}`, `{"goal": number}`,
+`{"cancel": number}`, `{"sent": topic, "count": ...}`. The program ends at the end of its input.
 """
 
 import importlib
@@ -25,7 +25,7 @@ PATIENCE = 120.0
 
 
 class Peer:
-    """One robot-side node. Numbers count the calls and the goals that came in, from 0."""
+    """A node on the robot's side. It numbers incoming calls and goals from 0."""
 
     def __init__(self, version, name, say):
         self.say = say
@@ -53,7 +53,7 @@ class Peer:
         return self.ros.listeners(self.publishers[topic][1])
 
     def asked_for(self, topic):
-        """How reliably the topic's listeners want it (ROS 2)."""
+        """Return the reliability that each listener of the topic requests (ROS 2)."""
         return self.ros.asked_for(topic)
 
     def publish(self, topic, fields):
@@ -61,7 +61,7 @@ class Peer:
         publisher.publish(fill(kind(), fields))
 
     def repeat(self, topic, fields, hz):
-        """Publishes a message again and again, in the place of the one before; returns when it is the last one sent."""
+        """Publish a message repeatedly, instead of the previous one; return after its first publication."""
         self.silence(topic)
         stop, sent = threading.Event(), threading.Event()
         thread = threading.Thread(target=self._repeat, args=[topic, fields, 1 / hz, stop, sent], daemon=True)
@@ -76,14 +76,14 @@ class Peer:
             stop.wait(period)
 
     def silence(self, topic):
-        """Publishes a message no more; returns when the last one is sent."""
+        """Stop the repeated message; return after its last publication."""
         if topic in self.repeating:
             stop, thread = self.repeating.pop(topic)
             stop.set()
             thread.join()
 
     def flood(self, topic, hz, count):
-        """Publishes the numbers from 1 to a count; says when it is done how many they were."""
+        """Publish the numbers from 1 to `count`; report their count at the end."""
         threading.Thread(target=self._flood, args=[topic, hz, count], daemon=True).start()
 
     def _flood(self, topic, hz, count):
@@ -98,7 +98,7 @@ class Peer:
         self.say(sent=topic, count=sent, seconds=time.monotonic() - start)
 
     def clock(self, seconds):
-        """Publishes simulated time, from now on from a certain time; None: time stands still."""
+        """Publish simulated time from a certain second on; None stops the clock."""
         if "/clock" not in self.publishers:
             self.advertise("/clock", "rosgraph_msgs/Clock")
             threading.Thread(target=self._clock, daemon=True).start()
@@ -114,7 +114,7 @@ class Peer:
             time.sleep(0.005)
 
     def serve(self, name, kind):
-        """Offers a service. What comes of a call says `answer`, or beforehand `answer_at_once`."""
+        """Offer a service. `answer`, or `answer_at_once` in advance, determines the result of a call."""
         self.ros.serve(name, kind, self._called)
 
     def _called(self, request):
@@ -124,15 +124,15 @@ class Peer:
         return self.at_once.get("answer") or answers.get(timeout=PATIENCE)
 
     def answer_at_once(self, fields):
-        """The answer to all calls from now on; None: they wait."""
+        """Set the immediate answer to all later calls; None lets them wait for `answer`."""
         self.at_once["answer"] = fields
 
     def answer(self, number, fields):
-        """Answers a call; without fields it fails."""
+        """Answer a call; without fields the call fails."""
         self.calls[number].put(fields)
 
     def act(self, name, kind):
-        """Offers an action. What comes of a goal say `accept`, `reject`, `progress`, `end`."""
+        """Offer an action. `decide`, `progress` and `end` determine the course of a goal."""
         self.ros.act(name, kind, self._asked, self._cancelled)
 
     def _asked(self, goal, request):
@@ -150,34 +150,34 @@ class Peer:
         return self.at_once.get("cancel", "grant")
 
     def accept_at_once(self, accept, succeed=False):
-        """Whether all goals from now on are accepted at once, and reached; else they wait."""
+        """Set whether all later goals are accepted and succeed at once, or wait for a decision."""
         self.at_once |= {"accept": accept, "succeed": accept and succeed}
 
     def on_cancel(self, answer):
-        """Set the answer to requests to cancel: `grant`, `ignore` (taken, but the goal goes on), `refuse`, `mistake`.
+        """Set the answer to requests to cancel: `grant`, `ignore` (granted, but the goal goes on), `refuse`, `mistake`.
 
-        By mistake another goal is canceled (ROS 2).
+        `mistake` cancels another goal (ROS 2).
         """
         self.at_once["cancel"] = answer
         self.ros.mistaken = answer == "mistake"
 
     def decide(self, number, accept):
-        """Accepts or rejects a goal."""
+        """Accept or reject a goal."""
         self.goals[number].decision.put(accept)
 
     def progress(self, number, fields):
-        """Sends feedback on a goal."""
+        """Send feedback on a goal."""
         self.goals[number].progress(fields)
 
     def end(self, number, how, fields=None):
-        """Ends a goal that was accepted: `succeeded`, `aborted`, `cancelled`; with fields of its result.
+        """End an accepted goal as `succeeded`, `aborted` or `cancelled`, with fields of its result.
 
-        `open`: its result comes with a status that is no end, and it goes on.
+        With `open`, the result has a status that is no end, and the goal goes on.
         """
         self.goals[number].end(how, fields or {})
 
     def cancel_elsewhere(self, number):
-        """Has another client cancel a goal that was accepted; it goes on until it is ended."""
+        """Cancel an accepted goal from another client; the goal goes on until `end`."""
         self.goals[number].cancel_elsewhere()
 
 
@@ -197,10 +197,10 @@ def main(version, name):
         do = command.pop("do")
         try:
             say(did=do, result=getattr(peer, do)(**command))
-        except Exception:  # the test says what it was
+        except Exception:  # the test prints the error
             say(did=do, failed=traceback.format_exc())
     peer.ros.stop()
-    # Threads that still publish are not waited for.
+    # Exit without waiting for threads that still publish.
     os._exit(0)
 
 

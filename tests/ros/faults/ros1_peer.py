@@ -1,4 +1,4 @@
-"""What a peer does over ROS 1. The tests import it only by its name, in ROS 1's own Python."""
+"""ROS 1 part of a peer. The tests import it only by name, in the Python of ROS 1."""
 
 import importlib
 import threading
@@ -90,7 +90,7 @@ class _Goal:
             self.grant()
 
     def cancel_requested(self):
-        """Whether the goal was accepted and shall be cancelled."""
+        """Whether the goal is accepted and a client requests its cancellation."""
         return self.handle.get_goal_status().status == GoalStatus.PREEMPTING
 
     def grant(self):
@@ -115,7 +115,7 @@ class _Goal:
         set_end[how](fill(self.result(), fields or {}))
 
     def cancel_elsewhere(self):
-        """Another client asks for it."""
+        """Cancel the goal from another client."""
         self.accepted.wait()
         self.cancels.publish(GoalID(id=self.handle.get_goal_id().id))
         while not self.cancel_requested():

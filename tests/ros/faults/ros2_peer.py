@@ -1,4 +1,4 @@
-"""What a peer does over ROS 2. The tests import it only by its name, in ROS 2's own Python."""
+"""ROS 2 part of a peer. The tests import it only by name, in the Python of ROS 2."""
 
 import importlib
 import threading
@@ -26,7 +26,7 @@ class Ros:
         rclpy.init()
         self.node = rclpy.create_node(name)
         self.group = ReentrantCallbackGroup()
-        # Only calls and goals wait for what a test has them do; several threads cost several times as much.
+        # Only calls and goals wait for decisions of the test. Several threads cost several times as much CPU time.
         self.executor = MultiThreadedExecutor(num_threads=8) if name == "server" else SingleThreadedExecutor()
         self.executor.add_node(self.node)
         self.actions = None
@@ -43,7 +43,7 @@ class Ros:
     def stop(self):
         self.executor.shutdown(timeout_sec=2)
         self.spinning.join(2)
-        # Without this the others would see its servers for another 20 s.
+        # Otherwise the ROS graph would list the servers for another 20 s.
         if self.actions is not None:
             self.actions.destroy()
         self.node.destroy_node()
@@ -128,7 +128,7 @@ class Ros:
 
 
 class _Server(ActionServer):
-    """Can do what no library's server does."""
+    """Action server with capabilities that no library offers."""
 
     def __init__(self, ros, *arguments, **options):
         super().__init__(*arguments, **options)
@@ -145,7 +145,7 @@ class _Server(ActionServer):
         self._handle.send_cancel_response(header, CancelGoal.Response(goals_canceling=[other]))
 
     def send_open_result(self, identifier):
-        """Answers whoever waits for a goal's result that it is executing."""
+        """Answer the clients that wait for a goal's result with the status of a running goal."""
         response = self._action_type.Impl.GetResultService.Response(status=GoalStatus.STATUS_EXECUTING)
         self._result_futures[bytes(identifier.uuid)].set_result(response)
 
@@ -184,7 +184,7 @@ class _Goal:
         self.ends.put((how, fields or {}))
 
     def cancel_elsewhere(self):
-        """Only a client can have a goal canceled: another one cancels all that there are."""
+        """Cancel all goals from another client, because only a client can cancel a goal."""
         self.accepted.wait()
         self.foreign = True
         self.cancel_all.call(CancelGoal.Request())

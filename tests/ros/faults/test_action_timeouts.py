@@ -1,4 +1,4 @@
-"""An action whose server is absent, dies, is late."""
+"""An action whose server is absent, dies, or accepts too late."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from tests.ros.faults.test_actions import ERROR, TRIGGER, travel
 if TYPE_CHECKING:
     from tests.ros.faults.partners import Peer, Scout
 
-#: Seconds, as `controller-config.json` has them.
+#: Seconds, as in `controller-config.json`.
 TIMEOUT, RETRY = 1.0, 0.4
 GONE = "/travel: the server is gone"
 
 
 @pytest.fixture
 def server(scout: Scout) -> Peer:
-    """The server; every goal that the test leaves behind is over afterwards."""
+    """The server, with no open goal of an earlier test."""
     return scout.serve()
 
 
@@ -41,13 +41,13 @@ def test_absent_at_start(scout: Scout) -> None:
 def test_accepted_late(scout: Scout, server: Peer) -> None:
     since, number = travel(scout, server, accept=None)
     scout.until_says(since, "/travel: not accepted within 1000 ms")
-    # The goal may still begin; so it has not ended, and there is no other.
+    # The goal may still begin, so it has not ended, and the node sends no other goal.
     scout.nothing(RETRY + 0.4)
     assert scout.events(since, ERROR) == []
     assert len(scout.events(since, TRIGGER)) == 1
     assert scout.state("Navigator") == "travelling"
     heard = len(server.said) if scout.version == 2 else 0
-    server.do("accept_at_once", accept=True, succeed=True)  # what comes after it
+    server.do("accept_at_once", accept=True, succeed=True)  # for later goals
     server.do("decide", number=number, accept=True)
     server.wait("cancel", heard, value=number)
     error = scout.until_event(since, ERROR)
@@ -72,19 +72,19 @@ def test_dies_with_the_goal(scout: Scout, server: Peer) -> None:
 
 @pytest.mark.usefixtures("server")
 def test_comes_back_between_two_goals(scout: Scout) -> None:
-    """That a server has died is said of a goal that it had, of nothing else."""
+    """The node reports the death of a server only for a goal of that server."""
     scout.kill_server()
     since = scout.now()
     scout.serve(succeed=True)
     assert scout.says(since, GONE) == 0
     scout.send("/travel_order", data=True)
     arrive_sometime(scout)
-    # The node may hear of the death when the goal is on its way already, which is lost then.
+    # The node may notice the death after it has sent the goal, which is lost then.
     assert scout.says(since, GONE) <= len(scout.events(since, ERROR))
 
 
 def arrive_sometime(scout: Scout) -> None:
-    """A goal succeeds at a server that is new, perhaps not the first one."""
-    # ROS 2 does not tell it from the remains of one before it, nor whether its answers find the node yet: a goal that
-    # is sent too soon is lost, which takes 30 s, and one more may be.
+    """Wait until a goal succeeds at a new server; earlier goals may be lost."""
+    # ROS 2 does not distinguish the new server from the remains of the old one, and does not report whether the answers
+    # of the server reach the node yet. A goal sent too early is lost after 30 s, and so may be the next.
     scout.until_state("Navigator", "arrived", seconds=3 * PATIENCE)

@@ -1,4 +1,4 @@
-"""A goal that comes to nothing; a goal that is given up. How long its server takes to accept it does not matter."""
+"""Goals that fail and goals that are canceled, independent of the time for their acceptance."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def scout(patient: Scout) -> Scout:
 
 @pytest.fixture
 def server(scout: Scout) -> Peer:
-    """The server; every goal that the test leaves behind is over afterwards."""
+    """The server, with no open goal of an earlier test."""
     return scout.serve()
 
 
@@ -71,7 +71,7 @@ def test_result_after_cancel(scout: Scout, server: Peer) -> None:
     scout.send("/travel_order", data=False)
     scout.until_event(since, CANCEL)
     server.wait("cancel", value=number)
-    # It goes on, and what it says happens; another goal waits for its end.
+    # The goal goes on and its feedback arrives; the next goal waits for its end.
     server.do("progress", number=number, fields={"distance_remaining": 9.0})
     scout.until(lambda: scout.variable("Navigator", "distance") == 9.0, "feedback arrives")
     scout.send("/travel_order", data=True)
@@ -95,13 +95,13 @@ def test_canceled_before_acceptance(scout: Scout, server: Peer) -> None:
     scout.until_state("Navigator", "home")
     scout.send("/travel_order", data=True)
     succeed(scout, server, number + 1)
-    scout.until_event(since, RESPONSE)  # a report may be heard before the lines of its tick are read
+    scout.until_event(since, RESPONSE)  # a report may arrive before the log lines of its tick
     assert scout.events(since, ERROR) == []
     assert len(scout.events(since, RESPONSE)) == 1
 
 
 def test_rejected_after_cancel(scout: Scout, server: Peer) -> None:
-    """The next goal has waited for the end of this one."""
+    """The next goal waits for the end of the rejected one."""
     since, number = travel(scout, server, accept=None)
     scout.send("/travel_order", data=False)
     scout.until_event(since, CANCEL)
@@ -121,7 +121,7 @@ def test_cancel_refused(scout: Scout, server: Peer) -> None:
     scout.until_event(since, CANCEL)
     server.wait("cancel", value=number)
     if scout.version == 2:
-        # A server of ROS 1 can't refuse, it can only go on.
+        # A server of ROS 1 can't refuse a cancel; it can only continue the goal.
         scout.until_says(since, "/travel: the server refuses to cancel the goal")
         heard = len(server.said)
         server.wait("cancel", heard, value=number)
@@ -159,7 +159,7 @@ def test_second_server(scout: Scout, server: Peer) -> None:
     fault = "/travel: /rival and /server serve it: only one answer counts"
     scout.until_says(since, fault)
     scout.until_diagnosed("Navigator", f"home; {fault}")
-    # The rejection of one is the end of the goal, whatever the other one does.
+    # The rejection of this goal is its end, independent of the other goal.
     _, number = travel(scout, server, accept=None)
     scout.send("/travel_order", data=False)
     scout.until_event(since, CANCEL)
@@ -176,7 +176,10 @@ def test_second_server(scout: Scout, server: Peer) -> None:
 
 
 def travel(scout: Scout, server: Peer, accept: bool | None = True) -> tuple[Moment, int]:
-    """Has the robot set off; when that began, and the number of its goal. `accept`: None leaves the goal waiting."""
+    """Order the robot to set off; return the moment before the order and the number of the goal.
+
+    `accept` decides about the goal; None leaves the goal waiting.
+    """
     since, heard = scout.now(), len(server.said)
     scout.send("/travel_order", data=True)
     goal = server.wait("goal", heard)
@@ -187,7 +190,7 @@ def travel(scout: Scout, server: Peer, accept: bool | None = True) -> tuple[Mome
 
 
 def succeed(scout: Scout, server: Peer, number: int) -> None:
-    """A goal comes in, or has come, and reaches its end."""
+    """Wait for a goal, and let it succeed."""
     server.wait("goal", value=number)
     server.do("decide", number=number, accept=True)
     server.do("end", number=number, how="succeeded")

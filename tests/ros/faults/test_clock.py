@@ -1,4 +1,4 @@
-"""Simulated time that stands still and jumps."""
+"""Simulated time that stops and jumps."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from tests.ros.faults.partners import Moment, Scout
 
 START = 1000.0
-#: Messages sent at a time.
+#: Number of messages in one flood.
 PORTION = 1000
 
 
 @pytest.fixture
 def simulated(controller: Controller, kept: Keep, tmp_path_factory: pytest.TempPathFactory) -> Scout:
-    """A node on simulated time; no topic has a watchdog."""
+    """A node in simulated time without watchdogs."""
     names = {1: ["watchdog_ms/scan:=0"], 2: ["watchdog_ms.scan:=0", "use_sim_time:=true"]}
     parameters = names[controller.place.ros.version]
 
@@ -34,18 +34,18 @@ def simulated(controller: Controller, kept: Keep, tmp_path_factory: pytest.TempP
 
 
 def ticks(scout: Scout, since: Moment) -> int:
-    """How often the node ticked, as far as it drives."""
+    """Count the ticks in which the node drives."""
     return len(scout.events(since, MOVE))
 
 
 def jump(scout: Scout, seconds: float) -> None:
-    """Sets the clock, and waits until the node ticks by it."""
+    """Set the clock, and wait until the node uses the new time."""
     scout.world.do("clock", seconds=seconds)
     scout.until(lambda: seconds <= scout.log()[-1]["time"] < seconds + 60, "the node knows the time")
 
 
 def stop(scout: Scout) -> Moment:
-    """Stops the clock, and waits until the node has come to the end of its time; when that was."""
+    """Stop the clock, and wait until the node no longer ticks; return the moment after that."""
 
     def nothing_more() -> bool:
         since = scout.now()
@@ -69,7 +69,7 @@ def test_clock_stands_still(simulated: Scout) -> None:
     since = stop(simulated)
     simulated.nothing(0.7)
     assert ticks(simulated, since) == 0
-    # What comes in is still seen, and what may not wait does not.
+    # The node still receives messages, and sends reactions at once.
     simulated.world.do("repeat", topic="/scan", fields={"ranges": [0.1]}, hz=20)
     simulated.until_event(since, "message_halt.c_trigger")
     simulated.world.do("clock", seconds=3 * START)
@@ -77,14 +77,14 @@ def test_clock_stands_still(simulated: Scout) -> None:
 
 
 def test_events_while_the_clock_stands_still(simulated: Scout) -> None:
-    """They are reported when it goes on, the last ones of very many."""
+    """The node reports events after the clock continues; of too many events it keeps the last ones."""
     since = stop(simulated)
     pulse = "message_pulse.u_response"
 
     def arrived() -> list[Any]:
         return [entry["data"]["value"] for entry in simulated.events(since, pulse)]
 
-    # As many as it takes: ROS 1 drops what a busy node has no place for, but not the last one.
+    # ROS 1 drops messages that a busy node has no room for, but not the last one, so the number of floods varies.
     while len(arrived()) <= TRANSITIONS_KEPT:
         told = simulated.now()
         simulated.world.do("flood", topic="/pulse", hz=2000, count=PORTION)
@@ -104,7 +104,7 @@ def test_clock_jumps(simulated: Scout, seconds: float) -> None:
     jump(simulated, seconds)
     start = simulated.now()
     simulated.until(lambda: ticks(simulated, start) > 20, "it ticks after the jump")
-    # Ticks that were missed are not made up for: one in 50 ms, and what was late.
+    # The node does not make up for missed ticks: it makes one tick in 50 ms and at most a few late ones.
     times = [entry["time"] for entry in simulated.events(start, MOVE)]
     assert len(times) <= (times[-1] - times[0]) / 0.05 + 3
 

@@ -1,4 +1,4 @@
-"""Data that is short, no number, too large: what counts as received, what the node stores, and what it sends."""
+"""Data that is too short, not a number, or out of range: reception, stored values and commands."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ def scout(patient: Scout) -> Scout:
 
 
 def scan(scout: Scout, *ranges: float) -> Moment:
-    """Lets the lidar publish this alone; the time from which on the node knows nothing else."""
+    """Publish only this scan; return the moment from which the node has received no other."""
     scout.world.do("repeat", topic="/scan", fields={"ranges": ranges}, hz=20)
-    # Others may be on their way, or be answered at this moment.
+    # Earlier scans may still be on their way or in reaction.
     scout.until_event(scout.now(), "message_view.u_response", count=9)
     scout.until_reported()
     return scout.now()
@@ -32,15 +32,15 @@ def test_array_too_short(scout: Scout) -> None:
     since = scan(scout, 1.0)
     scans = scout.variable("Lidar", "scans")
     scout.until_says(before, "/scan: there is no element 1 in an array of 1")
-    # The watchdog has heard nothing that counts.
+    # A message that the node cannot read does not reset the watchdog.
     scout.until_says(before, "/scan: silent for 500 ms")
     scout.until(lambda: len(scout.speeds(since)) > 5, "the robot drives on")
     assert set(scout.speeds(since)) == {PACE}
-    # The other event of the same message goes on; this one has not happened.
+    # The same message has two events: this one occurs, the unreadable one does not.
     scout.until_event(since, "message_view.u_response")
     assert scout.events(since, "message_rays.u_response") == []
     assert (scout.variable("Lidar", "pace"), scout.variable("Lidar", "scans")) == (PACE, scans)
-    # At most one report in five seconds.
+    # The node prints the warning at most once in five seconds.
     assert scout.says(before, "/scan: there is no element 1 in an array of 1") == 1
 
 
@@ -61,7 +61,7 @@ def test_answer_too_short(scout: Scout) -> None:
     scout.until_reported()
     assert scout.variable("Surveyor", "low") != 2.5
     assert scout.variable("Surveyor", "failures") > failures
-    # What could be read of it is in the log; the reason is said once.
+    # The log contains the readable part of the answer, and the reason once.
     assert error["data"] == {"value": {"costs": {"0": 2.5}}, "reason": "unreadable"}
     assert scout.variable("Surveyor", "why") == "unreadable"
     assert scout.says(since, "/survey: there is no element 1 in an array of 1") == 1
@@ -93,7 +93,7 @@ def test_result_too_short(scout: Scout) -> None:
 
 
 def test_result_of_an_aborted_goal(scout: Scout) -> None:
-    """An error brings the result: a condition on an element that is missing is false, and nothing is stored of it."""
+    """An error carries the result: a condition on a missing element is false, and the node stores no such element."""
     server, since = scout.serve(), scout.now()
     heard = len(server.said)
     scout.send("/tour_order", data=True)
@@ -105,7 +105,7 @@ def test_result_of_an_aborted_goal(scout: Scout) -> None:
         server.do("decide", number=number, accept=True)
         server.do("end", number=number, how="aborted", fields={"missed_waypoints": missed})
         error = scout.until_event(since, "action_tour.u_error", count=count)
-        # The log shows the elements that anything reads.
+        # The log contains the elements that any expression reads.
         shown = {str(index): value for index, value in enumerate(missed)}
         assert error["data"] == ({"value": {"missed_waypoints": shown}} if shown else {}) | {"reason": "aborted"}
         scout.until_reported()
@@ -134,7 +134,7 @@ def test_no_number_is_sent(scout: Scout) -> None:
     scout.until_diagnosed(
         "Platform", "has no states; move is withheld", request_to_move="held back: its data can't be sent"
     )
-    # In its place what the configuration names, once, though no requirement allows it.
+    # The node sends the configured command instead, once, although a requirement forbids it.
     assert [entry["event"] for entry in scout.log(before) if entry["direction"] == "outside"] == [
         "message_halt.c_trigger"
     ]
@@ -159,7 +159,7 @@ def test_feedback_out_of_range(scout: Scout, sent: int, stored: int, cancelled: 
     server.do("progress", number=number, fields={"distance_remaining": math.nan, "number_of_recoveries": sent})
     scout.until_event(since, "action_travel.u_feedback")
     if cancelled:
-        # It counts as 3: the requirement on the action falls, and `on canceled` forgets the number.
+        # The value saturates at 3: the node cancels because of a requirement, and `on canceled` resets the number.
         server.wait("cancel", heard, value=number)
         scout.until_event(since, "action_travel.u_canceled")
     else:

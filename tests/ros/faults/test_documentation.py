@@ -1,4 +1,4 @@
-"""What the page on faults quotes, the tests look for; what they look for, `Scout.says` finds on the page."""
+"""The tests cover each message that the page on faults quotes; `Scout.says` finds their messages on the page."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 
 from tests.ros.faults.partners import DOCUMENTATION, HERE
 
-#: A quoted message: it begins with a topic, a service or an action, or says what is withheld.
+#: A quoted message: it begins with a topic, a service or an action, or reports a withheld command.
 MESSAGE = re.compile(r"`((?:/\w+: |\w+ is withheld: )[^`]+)`")
 
 

@@ -1,4 +1,4 @@
-"""A node that ends while the robot drives, and one that comes back."""
+"""A node that ends while the robot drives, and a node that restarts."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ HALT = ("outside", "message_halt.c_trigger")
 
 
 def under_way(scout: Scout) -> tuple[Peer, int]:
-    """Sets off: the robot drives, and a goal is under way; the server and the number of the goal."""
+    """Start a goal on a driving robot; return the server and the number of the goal."""
     scout.rest()
     server = scout.serve()
     heard = len(server.said)
@@ -62,7 +62,7 @@ def test_shutdown_before_acceptance(guarded: Scout) -> None:
     goal = server.wait("goal", heard)["goal"]
     since = guarded.now()
     os.kill(guarded.process.pid, signal.SIGINT)
-    # It waits no longer than `action_timeout_ms` for the goal's acceptance: this is decided as soon as it ends.
+    # The node waits at most `action_timeout_ms` for the acceptance of the goal, so the decision follows at once.
     guarded.until(lambda: HALT in [(entry["direction"], entry["event"]) for entry in guarded.log(since)], "it stops")
     server.do("decide", number=goal, accept=True)
     server.wait("cancel", heard, value=goal)
@@ -80,7 +80,7 @@ def test_killed_and_restarted(guarded: Scout) -> None:
     assert guarded.commands(dead) == []
     guarded.restart()
     guarded.until(lambda: guarded.states(dead), "the new node reports")
-    # What it was told before is forgotten.
+    # The new node does not know the orders to the old one.
     first = guarded.states(dead)[0]["components"]
     assert first["Navigator"]["state"] == "home"
     assert not any(first["Operator"]["variables"].values())

@@ -1,4 +1,4 @@
-"""2,000 messages a second, for two seconds, or `ROBOSC_FLOOD_SECONDS`; a minute of them: `benchmarks/flood.py`."""
+"""2,000 messages a second for two seconds, or `ROBOSC_FLOOD_SECONDS`. `benchmarks/flood.py` runs for a minute."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 RATE = 2000
 SECONDS = int(os.environ.get("ROBOSC_FLOOD_SECONDS", "2"))
-#: On a busy machine a node may be late with what it must not lose.
+#: On a busy machine a node may process the messages late.
 PATIENCE = SECONDS + 240
 
 
@@ -29,12 +29,12 @@ def test_flood(scout: Scout) -> None:
     scout.world.do("flood", topic="/pulse", hz=RATE, count=number)
     scout.nothing(2.0)
     memory = scout.memory()
-    # What matters comes through in the middle of it: an answer, a result, and each message of the topics beside.
+    # The node receives everything else during the flood: an answer, a result, and each message of the other topics.
     server.do("answer_at_once", fields={"success": True, "message": "seen"})
     server.do("accept_at_once", accept=True, succeed=True)
     scout.send("/light", data=True)
     scout.send("/travel_order", data=True)
-    # Before the first stop, which would cancel it.
+    # The first stop would cancel the goal.
     scout.until_state("Navigator", "arrived", PATIENCE)
     for count in range(1, 6):
         scout.send("/stop")
@@ -48,7 +48,7 @@ def test_flood(scout: Scout) -> None:
     def logged() -> list[int]:
         return [entry["data"]["value"] for entry in scout.events(since, "message_pulse.u_response")]
 
-    # A report may be heard before the lines of its tick are read.
+    # A report may arrive before the log lines of its tick.
     scout.until(lambda: logged()[-1:] == [number], "the log tells of the last one", seconds=PATIENCE)
     grown = scout.memory() - memory
     received = logged()
@@ -58,7 +58,7 @@ def test_flood(scout: Scout) -> None:
     if scout.version == 2:
         assert received == list(range(1, number + 1))
     else:
-        # ROS 1 drops the oldest of a topic whose queue of ten is full: how many of them, the machine decides.
+        # ROS 1 drops the oldest messages of a topic with a full queue of ten; their number depends on the machine.
         assert len(received) > number / 20
     assert len(scout.events(since, "message_stop.u_response")) == 5
     assert grown < 10

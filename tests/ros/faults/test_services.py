@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from tests.ros.faults.partners import Scout
 
 TRIGGER, RESPONSE, ERROR = (f"service_lamp.{event}" for event in ("c_trigger", "u_response", "u_error"))
-#: Seconds, as `controller-config.json` has them.
+#: Seconds, as in `controller-config.json`.
 TIMEOUT, RETRY = 1.0, 0.4
 LIT = {"success": True, "message": "lit"}
 
@@ -20,7 +20,7 @@ def test_absent_at_start(scout: Scout) -> None:
     since = scout.now()
     scout.send("/light", data=True)
     assert scout.until_event(since, ERROR, count=2)["data"] == {"reason": "unavailable"}
-    # Once for one reason, however often it is tried.
+    # The node reports each reason once, for any number of attempts.
     assert scout.says(since, "/lamp: no server within 1000 ms") == 1
     assert scout.ticked_between(since, TRIGGER, ERROR)
     scout.until_diagnosed("Lamp", "dark; /lamp: no server within 1000 ms")
@@ -99,17 +99,17 @@ def test_answers_late(scout: Scout) -> None:
     assert scout.ticked_between(since, TRIGGER, ERROR)
     assert error["data"] == {"reason": "timeout"}
     scout.until_says(since, "/lamp: no answer within 1000 ms")
-    # The answer to the first call comes while the second one waits: it belongs to neither.
+    # The answer to the first call arrives during the second call and counts for neither.
     server.wait("called", heard, value=first + 1)
     server.do("answer", number=first, fields={"success": True, "message": "first"})
     scout.nothing(0.3)
     assert scout.events(since, RESPONSE) == []
     second = {"success": True, "message": "second"}
-    server.do("answer_at_once", fields=second)  # where a busy machine has needed more than its second until now
+    server.do("answer_at_once", fields=second)  # for later calls, if the second one has timed out on a busy machine
     server.do("answer", number=first + 1, fields=second)
     scout.until_state("Lamp", "lit")
     assert scout.variable("Lamp", "answer") == "second"
-    scout.until_event(since, RESPONSE)  # a report may be heard before the lines of its tick are read
+    scout.until_event(since, RESPONSE)  # a report may arrive before the log lines of its tick
     assert len(scout.events(since, RESPONSE)) == 1
 
 

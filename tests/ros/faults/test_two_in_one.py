@@ -1,4 +1,4 @@
-"""Two controllers in one process: they don't know of each other."""
+"""Two controllers in one process are independent of each other."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_two_in_one(controller: Controller, tmp_path: Path) -> None:
 
 
 def two_models(controller: Compiled, processes: Processes) -> None:
-    """The scout and the courier in one program of ROS 1: both listen to /scan."""
+    """Run the scout and the courier in one program of ROS 1; both receive /scan."""
     ros = controller.place.ros
     process = processes.start("both", [controller.place.folder / "devel/lib/two_in_one/two_in_one"])
     world = Peer(processes, ros.python, ros.version, "world")
@@ -57,7 +57,7 @@ def two_models(controller: Compiled, processes: Processes) -> None:
 
 
 def two_components(controller: Compiled, processes: Processes) -> None:
-    """The scout twice in one container of ROS 2, the second time under other topics."""
+    """Run the scout twice in one container of ROS 2, the second one with other topics."""
     ros = controller.place.ros
     prefixes = ros.environment["AMENT_PREFIX_PATH"].split(os.pathsep)
     containers = (Path(prefix) / "lib/rclcpp_components/component_container" for prefix in prefixes)
@@ -86,15 +86,15 @@ def two_components(controller: Compiled, processes: Processes) -> None:
 
 
 def heard(world: Peer, topic: str, value: Callable[[Any], Any]) -> list[Any]:
-    """The values that the world heard on a topic."""
+    """Return the values that the world received on a topic."""
     return [value(entry["data"]) for entry in world.all("heard") if entry["heard"] == topic]
 
 
 def speed(twist: Any) -> Any:
-    """The forward speed."""
+    """Return the forward speed."""
     return twist["linear"]["x"]
 
 
 def plain(message: Any) -> Any:
-    """What a message of std_msgs holds."""
+    """Return the value of a std_msgs message."""
     return message["data"]

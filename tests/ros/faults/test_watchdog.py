@@ -1,4 +1,4 @@
-"""A sensor that falls silent."""
+"""A silent sensor."""
 
 from __future__ import annotations
 
@@ -47,14 +47,14 @@ def test_silent_with_watchdog_that_stops(guarded: Scout) -> None:
     server.wait("cancel", heard, value=number)
     scout.until_says(since, "/travel: canceled by the controller itself, an error to the model")
     assert scout.says(since, "/travel: canceled by someone else") == 0
-    # The server may hear of the cancel before the node has got to its last message.
+    # The server may receive the cancel before the node sends its last message.
     scout.until(lambda: [entry for entry in scout.log(since) if entry["direction"] == "outside"], "it sends onShutdown")
     outside = [entry for entry in scout.log(since) if entry["direction"] == "outside"]
     assert [entry["event"] for entry in outside] == ["message_halt.c_trigger"]
     tripped = scout.now()
-    # No requirement allows to halt here: it is sent all the same, and then nothing until the sensor speaks.
+    # The node sends halt although a requirement forbids it here, and nothing else until the sensor speaks again.
     scout.until(lambda: scout.speeds(since)[-1] == 0.0, "the robot is told to halt")
-    halted = scout.now()  # what was sent before has arrived now
+    halted = scout.now()  # earlier messages have arrived now
     scout.send("/light", data=True)
     scout.nothing(0.7)
     assert [entry["event"] for entry in scout.log(tripped) if entry["direction"] == "out"] == []

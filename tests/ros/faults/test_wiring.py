@@ -1,4 +1,4 @@
-"""Who else is on the topics: nobody, the wrong ones, one too many. Each is reported by name, once."""
+"""Missing, incompatible and surplus partners on the topics. The node reports each of them once, by name."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ START = None
 
 @pytest.fixture
 def stranger(under_way: Scout, kept: Callable[..., Peer]) -> Peer:
-    """Somebody else's node."""
+    """A node that does not belong to the robot."""
     return kept("stranger", lambda: nullcontext(under_way.meet("stranger")))
 
 
 def once(scout: Scout, since: Moment, text: str) -> None:
-    """The node says something, and does not repeat it."""
+    """Check that the node prints a message exactly once."""
     scout.until_says(since, text)
     scout.nothing(2.5)
     assert scout.says(since, text) == 1

@@ -1,4 +1,4 @@
-"""A controller as a node without ROS: the player plays traces against it as it does against a real one."""
+"""A controller as a node without ROS: the player plays traces against it as against a real node."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ class _Goal(RunningGoal):
     def cancel(self) -> None:
         super().cancel()
         self.asked()
-        # As the servers of the player do: a request without an answer is made again.
+        # The player's servers behave like this: the client repeats an unanswered request.
         self.handlers.cancel_answered(CancelAnswer.ACCEPTED)
 
 
 class _Robot(Robot):
-    """Everything that is sent goes to the player."""
+    """A robot that passes all sent data to the player."""
 
     port: Port
 
@@ -61,7 +61,7 @@ class _Robot(Robot):
 
 
 class _AtOnce(EventLog):
-    """Writes a line of a log to the file before anything else happens."""
+    """A log that writes each line to its file immediately."""
 
     active = True
 
@@ -113,7 +113,7 @@ class InProcessNode(Port):
         self._work()
 
     def fail(self, service: str) -> None:
-        """As in ROS 2 it is not answered."""
+        """Leave the call unanswered, as in ROS 2."""
 
     def feed_back(self, action: str, fields: dict[str, Any]) -> None:
         client, goal = self._goal(action)

@@ -1,4 +1,4 @@
-"""What decision diagrams say of a supervised system is what its control loop can show."""
+"""The control loop reaches every condition that decision diagrams report as reachable."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
 def test_every_condition_of_the_sprayer_can_be_seen() -> None:
-    """Each is false alone in a state in which no cancel is due, since `drive` runs on until its goal has ended.
+    """Each condition is false alone in a state without a due cancel, since `drive` runs until its goal ends.
 
-    A cancel comes before all else: where one is due no tick and no message finds the controller.
+    A cancel comes before all else: no tick and no message reaches the controller while one is due.
     """
     model = robosc.to_sct(robosc.load(EXAMPLES / "sprayer" / "sprayer.rscd"))
     robosc.synthesize(model)

@@ -1,4 +1,4 @@
-"""Tours, and the player that plays them: against the same controller, and against some that are not the same."""
+"""Tours, and their player: against the same controller, and against faulty ones."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def robot_of(name: str) -> tuple[rosgraph.RosGraph, config.Configuration]:
 
 @pytest.fixture(scope="session")
 def made(planned_once: Callable[..., list[TraceTest]]) -> Callable[[str], TraceTest]:
-    """The test of a robot. Of the examples those of reports look at the same."""
+    """Return the test of a robot. Report tests of the examples share it."""
 
     @cache
     def planned(name: str) -> TraceTest:
@@ -84,14 +84,14 @@ def made(planned_once: Callable[..., list[TraceTest]]) -> Callable[[str], TraceT
 
 
 class Case:
-    """A robot and its test. The graph is a new one each time: tests may break it."""
+    """A robot and its test. Each case has its own graph, which a test may break."""
 
     def __init__(self, name: str, test: TraceTest, folder: Path) -> None:
         self.graph, self.configuration = robot_of(name)
         self.test = test
         self.files = self.test.files
         self.connections: dict[str, Any] = json.loads(self.files["connections.json"])
-        #: Its traces; `trace` is the first.
+        #: The traces; `trace` is the first one.
         self.traces = [
             [json.loads(line) for line in text.splitlines()]
             for file, text in self.files.items()
@@ -101,7 +101,7 @@ class Case:
         self._folder = folder
 
     def play(self) -> None:
-        """Plays the traces, as they are now, against the graph, as it is now."""
+        """Play the current traces against the current graph."""
         for trace in self.traces:
             self._play(trace)
 
@@ -114,7 +114,7 @@ class Case:
 
 
 def be_impatient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The node without ROS does at once what it does."""
+    """Shorten all waiting times: the node without ROS reacts at once."""
     for name, seconds in {"SETTLED": 0.0, "REACTION": 0.0, "ANSWER": 0.0, "PATIENCE": 0.05}.items():
         monkeypatch.setattr(trace_player, name, seconds)
 
@@ -128,7 +128,7 @@ def case(
     return Case(name, made(name), tmp_path)
 
 
-#: The sprayer's tours take longest to plan. In a run of all tests there are those of the other large robot.
+#: The sprayer's tours take longest to plan. A run of all tests plans those of the other large robot.
 ROBOTS = [
     *slow_but(["line_follower", "porter", "kept"], [name for name in MODELS if name != "sprayer"]),
     *matrix_but([], ["sprayer"]),
@@ -157,13 +157,13 @@ def test_tours_see_every_event(case: Case) -> None:
         event_name(event)
         for plant in case.graph.model.plants
         for event in plant.events
-        if event.name != "c_none"  # a provide statement always holds
+        if event.name != "c_none"  # a provide statement always has a true case
     }
 
 
 @pytest.mark.parametrize("case", ["porter", "kept", "line_follower"], indirect=True)
 def test_the_same_call_gives_the_same_test(case: Case) -> None:
-    """Also one that was planned once for ROS 1 and 2, as those of all cases are."""
+    """This includes a test that was planned once for ROS 1 and 2, as for all cases."""
     assert trace_test(case.graph, case.configuration, 2) == case.test
 
 
@@ -190,7 +190,7 @@ def test_a_tour_with_other_settings_is_another_one() -> None:
     indirect=True,
 )
 def test_a_log_without_messages_is_played(case: Case) -> None:
-    """What the node read is enough to make messages that it reads like that, also of what it keeps to hand it on."""
+    """The data that the node reads suffice to make equivalent messages, also for stored data that it sends."""
     for line in case.trace:
         line.pop("message", None)
     case.play()
@@ -213,7 +213,7 @@ def test_what_can_not_be_played_is_said(case: Case) -> None:
         case.play()
 
 
-#: Why a goal fails, what the log has of its result, and what to send for it.
+#: Reasons of failed goals, the logged result, and the message to send for it.
 GOALS = [
     ("aborted", {"code": 8, "rest": 0, "path": {"1": 0.25, "2": 3}}, {"path": {"0": 0.0, "1": 0.25, "2": 3.0}}),
     ("aborted", {"code": 8, "rest": 0}, None),
@@ -227,7 +227,7 @@ GOALS = [
 def test_an_error_has_its_reason_and_its_result(
     case: Case, reason: str, value: dict[str, Any], message: dict[str, Any] | None
 ) -> None:
-    """Also without the message that a tool notes for it, as in a log of a robot."""
+    """The message that a tool notes for the result is optional, as in a log of a robot."""
     failed = case.trace[0] | {"direction": "in", "event": "action_go.u_error"}
     failed["data"] = {"value": value, "reason": reason}
     if message is not None:
@@ -248,7 +248,7 @@ def test_a_reason_that_no_server_brings_about(case: Case, reason: str) -> None:
 @pytest.mark.parametrize("reason", ["failed", "unavailable", "unreadable", "timeout"])
 @pytest.mark.parametrize("case", ["crane"], indirect=True)
 def test_a_call_fails_for_its_reason(case: Case, reason: str) -> None:
-    """Where a call can't fail at once, as in ROS 2; `unreadable` needs an answer."""
+    """This includes servers that cannot fail a call at once, as in ROS 2; `unreadable` needs an answer."""
     trace = next(lines for lines in case.traces if "service_lift.c_trigger" in [line["event"] for line in lines])
     before = [line["event"] for line in trace].index("service_lift.c_trigger")
     failed = trace[before] | {"direction": "in", "event": "service_lift.u_error", "data": {"reason": reason}}
@@ -298,17 +298,17 @@ def test_half_a_message_is_refused(case: Case) -> None:
 
 @pytest.mark.slow
 def test_the_log_of_a_drive_is_played(case: Case, tmp_path: Path) -> None:
-    """In it messages come before the first tick, and at the very time of others."""
+    """Its messages come before the first tick, or at the same time as others."""
     log = tmp_path / "drive.jsonl"
     command = [sys.executable, ROOT / "examples" / "simulator", "--scenario", "line_follower", "--until", "9"]
-    subprocess.run([*command, "--log", log], check=False, capture_output=True)  # it does not get to its goal
+    subprocess.run([*command, "--log", log], check=False, capture_output=True)  # the run ends before the goal
     case.trace = [json.loads(line) for line in log.read_text().splitlines()]
     assert [line["direction"] for line in case.trace[:3]] == ["internal", "internal", "in"]
     assert {"message_halt.c_trigger", "message_move.c_trigger"} <= {line["event"] for line in case.trace}
     case.play()
 
 
-# Nodes that are not what they should be
+# Faulty nodes
 
 
 def requirements() -> list[str]:
@@ -369,7 +369,7 @@ def test_a_node_that_forgets_is_noticed(case: Case) -> None:
         case.play()
 
 
-# What is sent
+# Sent data
 
 
 @every_model
@@ -398,7 +398,7 @@ def test_all_literals_that_can_meet_are_found(case: Case) -> None:
 
 
 def test_the_player_runs_where_ros_1_does() -> None:
-    """Python 3.8, without anything but the standard library."""
+    """The player needs only Python 3.8 and its standard library."""
     text = locate("run/node_tests/trace_player.py").read_text(encoding="utf-8")
     tree = ast.parse(text, feature_version=(3, 8))
     names = {

@@ -1,4 +1,4 @@
-"""The report says what verify says, what the generated code says, and what the tests show, measured another way."""
+"""The report agrees with `verify`, the generated code and the tests, by independent measurements."""
 
 import json
 import re
@@ -30,9 +30,9 @@ Told: TypeAlias = Callable[[str], dict[str, Any]]
 Planned: TypeAlias = Callable[[str, int], TraceTest]
 ROOT = Path(__file__).parents[3]
 QUICK = "supervised_line_follower"
-#: The warehouse's robot has all kinds of what is in the reports of these.
+#: The warehouse robot covers all features in the reports of these.
 MORE = ("maze_solver", "object_finder", "person_follower", "push_ball", "sprayer")
-#: With other robots, in a run of all tests; those of one robot look at the same report.
+#: A run of all tests adds other robots; the tests of one robot share its report.
 EACH = [
     QUICK,
     *(
@@ -52,7 +52,7 @@ EACH = [
 
 @pytest.fixture(scope="session")
 def planned(planned_once: Callable[..., list[TraceTest]]) -> Planned:
-    """The tests of the package of a robot: the report, `transform` and the tests here ask for the same."""
+    """Return the tests of a robot's package, shared by the report, `transform` and the tests here."""
 
     @cache
     def both(name: str) -> list[TraceTest]:
@@ -65,7 +65,7 @@ def planned(planned_once: Callable[..., list[TraceTest]]) -> Planned:
 
 @contextmanager
 def with_tours_of(planned: Planned, name: str) -> Iterator[pytest.MonkeyPatch]:
-    """While it lasts, tours of a robot are those of `planned`; only of one they are planned each time."""
+    """Replace the tours of a robot by those of `planned` within the context, except for the quick robot."""
     with pytest.MonkeyPatch.context() as patch:
         if name != QUICK:
             patch.setattr(
@@ -77,7 +77,7 @@ def with_tours_of(planned: Planned, name: str) -> Iterator[pytest.MonkeyPatch]:
 
 @pytest.fixture(scope="session")
 def told(verified_once: Callable[[Path], Callable[..., Any]], planned: Planned) -> Told:
-    """The report of a robot. What `verify` says of it, it says to others, too: only of one it is asked anew."""
+    """Return the report of a robot. Only the quick robot is verified again; others share their verdicts."""
 
     @cache
     def report(name: str) -> dict[str, Any]:
@@ -93,7 +93,7 @@ def told(verified_once: Callable[[Path], Callable[..., Any]], planned: Planned) 
 
 @pytest.fixture(scope="session")
 def written(tmp_path_factory: pytest.TempPathFactory, planned: Planned) -> Callable[[str], Path]:
-    """The folder with all that is generated of a robot."""
+    """Return the folder with all generated files of a robot."""
 
     @cache
     def folder(name: str) -> Path:
@@ -170,7 +170,7 @@ def test_the_digests_are_those_of_what_is_written(name: str, written: Callable[[
 
 
 def trace_of(planned: Planned, name: str, path: str) -> str:
-    """A trace of the tests of a package, by its path among what is generated."""
+    """Return a trace of a package's tests, by its path among the generated files."""
     return planned(name, int(path.removeprefix("ros")[0])).files[f"traces/{path.rpartition('/')[2]}"]
 
 
@@ -213,7 +213,10 @@ int main(void)
 @pytest.mark.build
 @pytest.mark.parametrize("name", EACH)
 def test_gcov_counts_as_often_that_a_guard_is_true(name: str, tmp_path: Path, told: Told, planned: Planned) -> None:
-    """The C engine, compiled to count its lines, performs the trace; each guard is asked in each of the states."""
+    """gcov counts how often the C engine evaluates each guard while it performs the trace.
+
+    Each guard is evaluated in each of the states.
+    """
     if shutil.which("gcc") is None or shutil.which("gcov") is None:
         pytest.skip("there is no gcc with gcov")
     models = models_of(name)
@@ -250,7 +253,7 @@ def test_gcov_counts_as_often_that_a_guard_is_true(name: str, tmp_path: Path, to
             if simulation.perform(step.event, step.data).accepted
         ]
         played += len(script)
-        # The counts of all runs are added up.
+        # gcov adds the counts of all runs.
         subprocess.run(["./driver"], cwd=tmp_path, input="\n".join(script), text=True, check=True)
     subprocess.run(["gcov", "driver-driver.gcda"], cwd=tmp_path, check=True, capture_output=True)
     counted = {}
@@ -317,7 +320,7 @@ def test_the_needs_are_linked(told: Told) -> None:
 
 
 def test_the_texts_of_needs_are_no_markup(told: Told) -> None:
-    """As a program that reads reStructuredText finds them again."""
+    """A parser of reStructuredText returns the original texts."""
     found = told(QUICK)
     text = "requirement move needs 2 *level_ < |a_b| and `Gauge.on`"
     odd = {**found, "requirements": [{**found["requirements"][0], "texts": [text]}]}

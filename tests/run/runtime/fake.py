@@ -1,4 +1,4 @@
-"""A port without middleware, and a clock that stands still until a test moves it."""
+"""A port without middleware, and a clock that only a test moves."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Record:
-    """Data of ROS that has every field that somebody asks for."""
+    """ROS data with every field that a reader requests."""
 
     def __init__(self, **fields: Any) -> None:
         vars(self).update(fields)
@@ -33,12 +33,12 @@ class Record:
         return vars(self).setdefault(name, Record())
 
     def plain(self) -> dict[str, Any]:
-        """The fields that were set, as nested dicts."""
+        """Return the set fields as nested dicts."""
         return {name: value.plain() if isinstance(value, Record) else value for name, value in vars(self).items()}
 
 
 class FieldTypes(dict[str, str]):
-    """The types of the fields that a message has; others get theirs when they are set."""
+    """The types of a message's fields; undeclared fields get a type when they are set."""
 
     def __init__(self, declared: dict[str, str]) -> None:
         super().__init__()
@@ -50,12 +50,12 @@ class FieldTypes(dict[str, str]):
 
 @dataclass
 class FakeGoal:
-    """A goal on its way; the test answers for the server."""
+    """An active goal; the test answers for the server."""
 
     handlers: GoalHandlers
     data: Record | None = None
     cancels: int = 0
-    #: Whether the server says that it is canceling the goal.
+    #: Whether the server reports that it is canceling the goal.
     canceling: bool = False
     served: Callable[[], bool] = lambda: True
 
@@ -71,7 +71,7 @@ class FakeGoal:
 
 @dataclass
 class FakePort:
-    """Remembers what is asked of it. `types`: of fields by their names, else double."""
+    """A port that records its calls. `types` maps fields to types; the default is double."""
 
     time: float = 100.0
     types: dict[str, str] = field(default_factory=dict)
@@ -86,7 +86,7 @@ class FakePort:
     #: Nodes and types, of each service and action.
     servers: list[tuple[str, str]] = field(default_factory=list)
     hearing: int = 1
-    #: What has arrived and was not handled yet.
+    #: Messages that have arrived and are not handled yet.
     arrived: list[Callable[[], None]] = field(default_factory=list)
 
     def now(self) -> float:
@@ -152,7 +152,7 @@ class FakePort:
 
 
 class World:
-    """A controller on a fake port. Time passes when `wait` says so."""
+    """A controller on a fake port. Only `wait` advances time."""
 
     def __init__(self, model: Path, log: Path, configuration: Configuration | None = None, **parameters: Any) -> None:
         self.graph = supervised(model)
@@ -174,7 +174,7 @@ class World:
         return self
 
     def wait(self, seconds: float) -> None:
-        """Lets time pass, in steps no longer than what is planned."""
+        """Advance time, stopping at each planned call."""
         until = self.port.time + seconds
         while True:
             left = self.event_loop.run_pending()
@@ -193,7 +193,7 @@ _GRAPHS: dict[Path, rosgraph.RosGraph] = {}
 
 
 def supervised(model: Path) -> rosgraph.RosGraph:
-    """The graph of a robot whose model has its supervisor."""
+    """Return the graph of a robot whose model has its supervisor."""
     if model not in _GRAPHS:
         robot = robosc.load(model)
         robosc.synthesize(robosc.to_sct(robot))

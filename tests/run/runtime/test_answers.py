@@ -1,4 +1,4 @@
-"""Answers of action servers: only a final status ends a goal, only an answer that names the goal cancels it."""
+"""Only a final status of an action server ends a goal, and only an answer with the goal's ID cancels it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ OWN, OTHER = bytes(range(16)), bytes(16)
 
 
 def response(code: int, *goals: bytes) -> SimpleNamespace:
-    """As `action_msgs/srv/CancelGoal` has it."""
+    """Return a response of `action_msgs/srv/CancelGoal`."""
     named = [SimpleNamespace(goal_id=SimpleNamespace(uuid=list(goal))) for goal in goals]
     constants = {"ERROR_NONE": 0, "ERROR_REJECTED": 1, "ERROR_UNKNOWN_GOAL_ID": 2, "ERROR_GOAL_TERMINATED": 3}
     return SimpleNamespace(return_code=code, goals_canceling=named, **constants)

@@ -1,4 +1,4 @@
-"""Expressions over arrays and doubles in a running controller, and what happens where they have no value."""
+"""Expressions over arrays and doubles in a running controller, and their undefined values."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def obstacle(distance: float, *tags: int) -> Record:
 
 
 def test_what_is_read_of_a_slice(world: World) -> None:
-    """Slices `a[i..j]` (both ends included); `min(a)` and `max(a)` pass over NaN."""
+    """Slices `a[i..j]` include both ends; `min(a)` and `max(a)` skip NaN."""
     scan(world, [0.1, 3.0, math.nan, 2.0, 0.2], 1, 3)
     assert variables(world)["variables"] == {"last": "clear", "nearest": 2.0, "quotient": 2.6, "whole": 0}
     scan(world, [0.1, 3.0, 2.0, 0.4], 1, 3)
@@ -53,7 +53,7 @@ def test_what_is_read_of_a_slice(world: World) -> None:
 
 
 def test_elements_that_are_objects(world: World) -> None:
-    """`any r in a: C`, `count r in a: C`, within each other."""
+    """`any r in a: C` and `count r in a: C`, also nested."""
     scan(world, [3.0], 0, 0, obstacle(0.5, 1, 7), obstacle(0.5), obstacle(3.0, 7))
     assert variables(world)["variables"]["last"] == "clear"
     scan(world, [3.0], 0, 0, obstacle(0.5, 1, 7), obstacle(0.5, 7))
@@ -72,13 +72,16 @@ def test_elements_that_are_objects(world: World) -> None:
 def test_a_message_that_cannot_be_read_counts_as_not_received(
     world: World, ranges: list[float], first: int, last: int, fault: str
 ) -> None:
-    """A slice past the end, `min` of nothing can't be read; a throttled warning names topic, index and length."""
+    """A slice past the end and `min` of an empty array cannot be read.
+
+    A throttled warning names topic, index and length.
+    """
     before = variables(world)["variables"]
     scan(world, ranges, first, last)
     assert variables(world)["variables"] == before
     assert world.port.said == [f"/scan: {fault}"]
     assert logged(world, "message_scan.u_response") == []
-    # The enum's rule does not match, and the other event of the message happens.
+    # The enum's rule does not match, and the message's other event happens.
     assert len(logged(world, "message_ahead.u_response")) == 1
 
 
@@ -97,7 +100,7 @@ def test_an_array_literal_is_sent(world: World) -> None:
 
 
 def test_provided_data_that_cannot_be_read_is_withheld(world: World) -> None:
-    """Provided data that can't be read: the command is withheld and reported, as NaN is."""
+    """The command is withheld and reported, as with NaN."""
     world.hear("divide", data=math.nan)
     world.port.sent.clear()
     world.wait(0.3)
@@ -114,7 +117,7 @@ def test_an_element_that_is_not_finite_withholds_a_command(world: World) -> None
 
 
 def test_an_internal_event_waits_until_it_can_be_read(world: World) -> None:
-    """Where that can't be read, the event happens for no component and nothing of it is stored."""
+    """Until then it happens for no component, and none of its data is stored."""
     world.hear("divide", data=math.nan)
     world.hear("step")
     assert variables(world)["state"] == "counting"
@@ -122,7 +125,7 @@ def test_an_internal_event_waits_until_it_can_be_read(world: World) -> None:
 
 
 def test_an_answer_that_cannot_be_read_is_an_error_and_an_error_happens_anyway(world: World) -> None:
-    """A service's or action's answer counts as its `error`; of an error nothing is stored that can't be read."""
+    """An unreadable answer of a service or action is an `error`. The unreadable data of an error is not stored."""
     world.wait(0.1)
     world.port.calls[-1].answered(Record(number=math.nan))
     world.wait(0.1)

@@ -1,4 +1,4 @@
-"""Services and actions: what is sent comes to exactly one end, whatever the server does and when."""
+"""Every call and goal ends exactly once, whatever the server does and when."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ UNANSWERED = "/light: the server does not answer the request to cancel the goal 
 
 
 class Bench:
-    """A client, what it told, and whether it was inside of a call then."""
+    """A client, its notifications, and whether each came during a call."""
 
     def __init__(self, kind: type[ServiceClient] | type[ActionClient]) -> None:
         self.port = FakePort(time=0.5)
@@ -475,7 +475,7 @@ _GOAL_STEPS = st.lists(
 
 
 def play(bench: Bench, goal: Any, step: str, number: int) -> None:
-    """The server does something with a goal."""
+    """Let the server perform a step with a goal."""
     match step:
         case "feedback":
             bench.do(lambda: goal.handlers.feedback(number))

@@ -1,4 +1,4 @@
-"""What a node tells on `/diagnostics`, without middleware; on live graphs `tests/ros` looks at it."""
+"""Diagnostics of a node on `/diagnostics`, without middleware; `tests/ros` checks live graphs."""
 
 from __future__ import annotations
 

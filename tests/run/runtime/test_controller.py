@@ -1,4 +1,4 @@
-"""The controller without middleware: what it sends, when, and what it tells of it."""
+"""The controller without middleware: its commands, their times, and its reports."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ LINE = TESTS.parent / "examples" / "line_follower" / "line_follower.rscd"
 MAZE = TESTS.parent / "examples" / "maze_solver" / "maze_solver.rscd"
 
 UNANSWERED = "the server does not answer the request to cancel the goal within 5000 ms"
-#: A goal that is reached while it is being canceled.
+#: A goal that succeeds while it is being canceled.
 ENDS = ("c_trigger", "c_cancel", "u_feedback", "u_response", "c_reset")
 
 
@@ -170,7 +170,7 @@ def test_a_silent_topic_trips_the_watchdog_and_speaking_again_ends_it(make: Call
 
 
 def test_a_withheld_command_has_something_safe_sent_in_its_place_once(make: Callable[..., World]) -> None:
-    """Again where it was not to be sent meanwhile, or was sent."""
+    """It is sent again if the withheld command was meanwhile disabled or sent."""
 
     def halted() -> int:
         return len([line for line in events(world) if line["direction"] == "outside"])
@@ -268,7 +268,7 @@ def test_the_end_waits_for_acceptance_then_for_the_answer_to_the_cancel_then_a_l
 
 
 def test_a_refused_goal_is_canceling_and_the_diagnostics_warn(make: Callable[..., World]) -> None:
-    """No other goal is sent before it has ended, whatever is ordered; its feedback and its success happen."""
+    """No other goal is sent before this one ends, whatever the orders. Its feedback and its success happen."""
 
     def message() -> str:
         return next(status.message for status in world.port.statuses[-1] if status.component == "Navigator")
@@ -295,7 +295,7 @@ def test_a_refused_goal_is_canceling_and_the_diagnostics_warn(make: Callable[...
 
 
 def test_a_goal_that_the_node_itself_cancels_is_canceled_by_the_plant(make: Callable[..., World]) -> None:
-    """In `executing` its end is an error, in `canceling` it is `canceled`."""
+    """In `executing` the end is an error, in `canceling` it is `canceled`."""
     world = make(watchdogMs={"scan": 500}, watchdogStops=True)
     travelling(world)
     world.wait(1)

@@ -1,6 +1,6 @@
-"""Where the event log goes that nobody named, and how it is written.
+"""The default path of the event log, and how it is written.
 
-The generated nodes do the same, see `tests/m2t/cpp/headers.cpp` and `threads.cpp`.
+The generated nodes behave alike, see `tests/m2t/cpp/headers.cpp` and `threads.cpp`.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def test_a_log_is_whole_and_in_order(tmp_path: Path) -> None:
 
 
 def test_a_disk_that_hangs_delays_nobody(tmp_path: Path) -> None:
-    # A pipe that nobody reads is a disk that takes nothing.
+    # A pipe without a reader behaves like a disk that hangs.
     path = tmp_path / "pipe"
     os.mkfifo(path)
     pipe = os.open(path, os.O_RDWR)
@@ -61,7 +61,7 @@ def test_a_disk_that_hangs_delays_nobody(tmp_path: Path) -> None:
     reader.start()
     log.close()
     while reader.is_alive():
-        # Alone in the pipe when all before it was read.
+        # It is alone in the pipe after all earlier lines were read.
         os.write(pipe, b"!")
         reader.join(0.1)
     os.close(pipe)
@@ -74,6 +74,6 @@ def test_a_full_disk_is_told() -> None:
     assert log.lost() == 1
     log.write(2, "in", "e")
     log.flush()
-    # Once a second.
+    # The log reports lost lines at most once a second.
     assert log.lost() == 0
     log.close()

@@ -1,4 +1,4 @@
-"""What a node does next."""
+"""The next action of a node's event loop."""
 
 from __future__ import annotations
 

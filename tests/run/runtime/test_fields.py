@@ -1,4 +1,4 @@
-"""Numbers on their way into a message."""
+"""Conversion of numbers for message fields."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The JSON of the nodes: what it says, and its very bytes."""
+"""The JSON of the nodes: its content and its exact bytes."""
 
 from __future__ import annotations
 

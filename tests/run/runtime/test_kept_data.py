@@ -1,4 +1,4 @@
-"""Variables that are arrays and objects hold what an event brought, and provided data passes it on."""
+"""Variables that are arrays and objects hold the data of an event, and provided data passes it on."""
 
 from __future__ import annotations
 
@@ -56,7 +56,10 @@ def variables(world: World) -> dict[str, Any]:
 
 
 def test_provided_data_passes_on_the_whole_or_parts(world: World) -> None:
-    """Provided data may pass them on, whole or in parts: `provide go with { pose: Mission.route[Mission.next] }`."""
+    """Provided data may pass variables on, whole or in parts.
+
+    Example: `provide go with { pose: Mission.route[Mission.next] }`.
+    """
     hear_route(world, 1.0, 2.0, 3.0, speeds=(0.5, 1.5))
     world.hear("next", data=2)
     (go, *_) = sent(world, "/go")
@@ -73,20 +76,20 @@ def test_provided_data_passes_on_the_whole_or_parts(world: World) -> None:
 
 
 def test_arrays_start_empty_and_objects_field_by_field(world: World) -> None:
-    """Arrays start empty, objects field by field as a variable of the field's type."""
+    """Arrays start empty, objects field by field as variables of the field's type."""
     world.wait(0.3)
     assert {text for text in world.port.said if "withheld" in text} == {
         "go is withheld: there is no element 0 in an array of 0"
     }
     assert sent(world, "/go") == []
-    # Nothing was stored: nothing is set.
+    # No data was stored, so no field is set.
     assert sent(world, "/again")[0] == {}
     world.hear("next", data=0)
     assert variables(world) == {"number": 0, "far": False, "long": 0}
 
 
 def test_an_index_past_the_end_withholds_the_command(world: World) -> None:
-    """Provided data that can't be read: the command is withheld and reported."""
+    """The command is withheld and reported, since its data cannot be read."""
     hear_route(world, 1.0, 2.0, 3.0)
     assert sent(world, "/go")
     for number, fault in [
@@ -100,7 +103,7 @@ def test_an_index_past_the_end_withholds_the_command(world: World) -> None:
 
 
 def test_what_is_not_finite_is_not_handed_on(world: World) -> None:
-    """A double that is not a finite number is never sent: also inside of what is handed on as it came."""
+    """A double that is not finite is never sent, not even inside stored data that is passed on."""
     for bad in (float("nan"), float("-inf")):
         hear_route(world, 1.0, 2.0, bad)
         world.hear("next", data=0)
@@ -128,12 +131,12 @@ def test_assignments_read_the_values_from_before(world: World) -> None:
         Record(route=Record(name="planned", poses=[pose(5.0), pose(6.0), pose(7.0)], speeds=[]))
     )
     assert sent(world, "/again")[0]["name"] == "planned"
-    # `poses` got what `whole` was before.
+    # `poses` gets the old value of `whole`.
     assert sent(world, "/go")[0]["pose"]["x"] == 1.0
 
 
 def test_nothing_of_an_event_that_cannot_be_read_is_stored(world: World) -> None:
-    """The event happens for no component and nothing of it is stored."""
+    """The event happens for no component, and none of its data is stored."""
     hear_route(world, 1.0, 2.0, 3.0)
     hear_route(world, name="empty")
     assert world.port.said[-1] == "/route: there is no element 0 in an array of 0"
@@ -150,7 +153,7 @@ def test_the_log_shows_what_is_kept_of_objects(world: World) -> None:
 
 
 def test_simulate_reads_the_log_back(world: World) -> None:
-    """An index into what the node keeps counts as readable there."""
+    """Simulation accepts an index into stored data as readable."""
     hear_route(world, 1.0, 2.0, 3.0)
     world.hear("next", data=2)
     world.wait(0.3)
@@ -165,7 +168,7 @@ def test_simulate_reads_the_log_back(world: World) -> None:
 
 
 def test_the_fields_of_ros_types_are_those_of_both_ros(tmp_path: Path) -> None:
-    """`Header` has `seq` in ROS 1 alone, and times have other names; a field that the model names is shown."""
+    """`Header` has `seq` in ROS 1 alone, and times have other names. A field that the model names is visible."""
     model = tmp_path / "keeper.rscd"
     declared = 'outgoing message path with identifier: "/path", type: nav_msgs/Path'
     kept = "variable path: nav_msgs/Path variable since: integer initial marked state on"
@@ -179,7 +182,7 @@ def test_the_fields_of_ros_types_are_those_of_both_ros(tmp_path: Path) -> None:
 
 
 def test_nothing_is_known_of_an_object_of_too_many_values(tmp_path: Path) -> None:
-    """Its fields are never counted to the end: there may be more than anybody could write."""
+    """Its fields are never all enumerated: there may be astronomically many."""
     model = tmp_path / "keeper.rscd"
     types = " ".join(f"datatype object T{n} {{ a: T{n + 1} b: T{n + 1} }}" for n in range(60))
     declared = 'outgoing message t with identifier: "/t", type: T0 links t'

@@ -1,4 +1,4 @@
-"""The supervisory layer without middleware: what passes, what is blocked, and what is told of it."""
+"""The supervisory layer without middleware: passed and blocked commands, and its reports."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ def test_a_goal_that_someone_else_has_canceled_is_an_error(bench: Bench) -> None
 
 
 class Proxy(ActionProxy[ProxiedGoal]):
-    """An action whose robot is always there."""
+    """An action whose robot is always available."""
 
     def _is_served(self, goal: ProxiedGoal) -> bool:  # noqa: ARG002
         return True
@@ -204,7 +204,7 @@ def test_what_can_not_be_read_counts_as_not_received(tmp_path: Path) -> None:
     bench.hear("/route", name="short", poses=[])
     assert bench.directions() == [("in", "message_length.u_response")]
     assert bench.port.said == ["/route: there is no element 2 in an array of 0"]
-    # An answer is an error to the supervisor.
+    # The supervisor receives the answer as an error.
     assert bench.passes("plan")
     bench.layer.respond(bench.service, Record(cost=5.0, stops=[]))
     assert bench.directions()[-2:] == [("in", "service_plan.u_error"), ("internal", "service_plan.c_reset")]

@@ -1,4 +1,4 @@
-"""Parameters of a model on the node: what is set counts from the next data on, never within a batch."""
+"""Parameters of a model on the node: a new value applies from the next data on, never within a batch."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def world(tmp_path: Path, **given: Any) -> World:
 
 
 def sent(world: World, topic: str) -> Any:
-    """What went out last."""
+    """Return the last value sent on a topic."""
     world.port.sent.clear()
     world.wait(0.3)
     found = [fields["data"] for name, fields in world.port.sent if name == topic]
@@ -30,7 +30,10 @@ def sent(world: World, topic: str) -> Any:
 
 
 def test_each_has_its_name_default_range_and_the_comment_above_it() -> None:
-    """Boolean, ranged integer, double (a range may be given), string; named `speed`, `Component.speed`."""
+    """A parameter is a boolean, ranged integer, double (optionally ranged) or string.
+
+    Its name is `speed` or `Component.speed`.
+    """
     known = {found.name: found for found in model_parameters(supervised(CRUISE)).values()}
     assert {name: (found.default, found.bounds) for name, found in known.items()} == {
         "speed": (0.2, (0.05, 1.0)),
@@ -59,12 +62,12 @@ def test_what_is_set_at_the_start_counts(tmp_path: Path) -> None:
 
 
 def test_a_change_counts_from_the_next_data_on(tmp_path: Path) -> None:
-    """Expressions over `value` that become inputs, rules of enums, provided data read them."""
+    """A change applies to inputs from expressions over `value`, to rules of enums, and to provided data."""
     made = world(tmp_path)
     made.hear("range", data=0.7)
     assert sent(made, "/move") == pytest.approx(-0.2)
     made.controller.set_parameters({"reach": 1.0, "doubled": True})
-    # It was clear by the data that came, and is until other data comes.
+    # It was clear with the last data, and remains so until new data arrives.
     assert sent(made, "/move") == 0.4
     made.hear("other", data=0.7)
     assert sent(made, "/move") is None
@@ -79,7 +82,7 @@ def test_a_change_counts_from_the_next_data_on(tmp_path: Path) -> None:
 
 
 def test_a_layer_has_them_too(tmp_path: Path) -> None:
-    """What it lets pass depends on data that parameters are compared with, from the next data on."""
+    """The data to which a layer compares its parameters decides which commands pass, from the next data on."""
     graph, port = supervised(CRUISE), FakePort()
     log = str(tmp_path / "events.jsonl")
     values = {parameter.name: parameter.default for parameter in layer_parameters(graph, Configuration(), log)}
@@ -90,21 +93,21 @@ def test_a_layer_has_them_too(tmp_path: Path) -> None:
     seen = []
     for reach, distance in ((0.6, 0.7), (1.0, 0.7), (1.0, 1.1)):
         layer.set_parameters({"reach": reach})
-        seen.append(layer.passes(move))  # by what has come until now
+        seen.append(layer.passes(move))  # by the data received so far
         layer.receive(topics["/range"], Record(data=distance))
         seen.append(layer.passes(move))
     assert seen == [True, True, True, False, False, True]
 
 
 def test_a_time_that_runs_keeps_its_value(tmp_path: Path) -> None:
-    """One that starts afterwards has the new one; so has each unit of a parameter."""
+    """A timer that starts after a change has the new duration, as have all units of a parameter."""
     made = world(tmp_path)
     made.controller.set_parameters({"Lamp.pause": 0.5})
     made.wait(59.0)
     assert sent(made, "/lamp") is None
     made.wait(1.0)
     assert sent(made, "/lamp") is True
-    made.wait(29.5)  # half a minute since it is lit
+    made.wait(29.5)  # half a minute after the lamp went on
     assert sent(made, "/lamp") is None
 
 

@@ -1,4 +1,4 @@
-"""`send: change`: sent when it becomes possible or its data differs from what was last handed over, not every tick."""
+"""`send: change`: a command is sent when it becomes possible or its data differs from the last sent data."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ def sent(world: World, topic: str, seconds: float = 0.55) -> list[float]:
 
 
 def test_it_is_sent_once(world: World) -> None:
-    """Sent when it becomes possible, not every tick."""
+    """The command is sent when it becomes possible, not in every tick."""
     assert sent(world, "/lamp") == [0.5]
     assert len(sent(world, "/plain")) >= 5
     assert sent(world, "/lamp") == []
 
 
 def test_it_is_sent_when_its_data_differs(world: World) -> None:
-    """Its data differs from what was last handed over."""
+    """The command is sent when its data differs from the last sent data."""
     sent(world, "/lamp")
     for level, expected in [(0.5, []), (0.75, [0.75]), (0.75, []), (0.25, [0.25])]:
         world.hear("level", data=level)
@@ -41,7 +41,7 @@ def test_it_is_sent_when_its_data_differs(world: World) -> None:
 
 
 def test_it_is_sent_again_when_it_becomes_possible_again(world: World) -> None:
-    """Sent when it becomes possible."""
+    """The command is sent when it becomes possible."""
     sent(world, "/lamp")
     world.hear("allow", data=False)
     assert sent(world, "/lamp") == []
@@ -52,7 +52,7 @@ def test_it_is_sent_again_when_it_becomes_possible_again(world: World) -> None:
 
 
 def test_what_is_withheld_was_not_handed_over(world: World) -> None:
-    """Withheld or failed data was not."""
+    """Withheld or failed data does not count as sent."""
     sent(world, "/lamp")
     world.hear("level", data=math.nan)
     assert sent(world, "/lamp") == []
@@ -64,7 +64,7 @@ def test_what_is_withheld_was_not_handed_over(world: World) -> None:
 
 
 def test_generated_nodes_compare_too() -> None:
-    """The node compares, the engine asks it. ROS 2: transient-local."""
+    """The node compares the data for the engine. In ROS 2, the publisher is transient-local."""
     robot = robosc.load(LAMPS)
     models = robosc.Models(robosc.to_sct(robot), robosc.to_rosgraph(robot), robot)
     robosc.synthesize(models.sct)
@@ -73,5 +73,5 @@ def test_generated_nodes_compare_too() -> None:
         assert "!(lamp_handed_->data == lamp_message_.data)" in texts[target]
         assert "plain_handed_" not in texts[target]
     assert texts["ros2"].count("rclcpp::QoS(10).transient_local());") == 1
-    # No part in the layer.
+    # The layer has no part in this.
     assert "_handed_" not in texts["ros2-layer"]

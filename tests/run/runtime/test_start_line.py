@@ -1,4 +1,4 @@
-"""What a node prints when it has started."""
+"""The line that a node prints when it has started."""
 
 from __future__ import annotations
 

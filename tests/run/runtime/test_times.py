@@ -1,4 +1,4 @@
-"""Times in a node without middleware: each test holds a sentence of the language's page on `after`."""
+"""Timers in a node without middleware: each test checks one statement about `after` on the language's page."""
 
 from __future__ import annotations
 
@@ -43,7 +43,10 @@ def scan_for(world: World, seconds: float) -> None:
 
 
 def test_one_timer_is_armed_for_the_earliest(guard: World) -> None:
-    """ROS: one timer armed for the earliest; each happens at its time, never early, and is logged as the node's own."""
+    """One ROS timer is armed for the earliest expiry.
+
+    Each timeout happens at its time, never early, and is logged as the node's own.
+    """
     scan_for(guard, 3.9)
     found = timeouts(guard)
     assert [name for _, name in found] == ["after2", "after3"]
@@ -51,11 +54,11 @@ def test_one_timer_is_armed_for_the_earliest(guard: World) -> None:
     assert all(at >= due for (at, _), due in zip(found, (1.0, 3.0), strict=True))
     assert {line["direction"] for line in events(guard) if "u_after" in line["event"]} == {"internal"}
     planned = [timer for _, _, timer in guard.event_loop._timers if timer._action is not None]
-    assert len(planned) == 3  # the tick, the look at the graph, and the times
+    assert len(planned) == 3  # the tick, the graph check, and the timeouts
 
 
 def test_a_silence_and_its_end(guard: World) -> None:
-    """`after 500 ms without scan goto blind`, once for each silence; variables of the node change with it."""
+    """`after 500 ms without scan goto blind` fires once per silence; variables of the node change with it."""
     scan_for(guard, 0.4)
     guard.wait(5.0)
     assert timeouts(guard) == [(pytest.approx(0.9, abs=0.0011), "after1")]
@@ -69,7 +72,7 @@ def test_a_silence_and_its_end(guard: World) -> None:
 
 
 def test_it_reacts_at_once(tmp_path: Path) -> None:
-    """It is handled as incoming data is: event, settle, react."""
+    """A timeout is handled like incoming data: event, settle, react."""
     guard = World(GUARD, tmp_path / "events.jsonl", Configuration(on_shutdown=[]), period_ms=900).start()
     scan_for(guard, 1.0)
     assert [topic for topic, _ in guard.port.sent] == ["/halt"]
@@ -78,7 +81,7 @@ def test_it_reacts_at_once(tmp_path: Path) -> None:
 
 
 def test_a_clock_that_goes_back(guard: World) -> None:
-    """A time that goes back starts all times anew."""
+    """A clock that goes backward restarts all timers."""
     scan_for(guard, 0.9)
     guard.port.time = 50.0
     guard.event_loop.run_pending()
@@ -90,7 +93,7 @@ def test_a_clock_that_goes_back(guard: World) -> None:
 
 
 def test_a_clock_that_leaps_ahead(guard: World) -> None:
-    """Times that are up together go in the order in which they were up."""
+    """Timers that expire together fire in the order of their expiry."""
     guard.hear("scan")
     guard.port.time += 3600
     guard.event_loop.run_pending()
@@ -99,7 +102,7 @@ def test_a_clock_that_leaps_ahead(guard: World) -> None:
 
 
 def test_a_clock_that_starts_late(tmp_path: Path) -> None:
-    """With `use_sim_time` the first message on `/clock` is the node's start."""
+    """With `use_sim_time`, the first message on `/clock` is the node's start."""
     world = World(GUARD, tmp_path / "events.jsonl", Configuration(on_shutdown=[]))
     world.port.time = 0.0
     world.event_loop = EventLoop(lambda: world.port.time, starts_late=True)
@@ -130,7 +133,7 @@ def test_times_begin_with_the_clock_before_anything_happens(tmp_path: Path) -> N
 
 
 def test_a_tick_comes_after_the_timers_that_have_expired(guard: World) -> None:
-    """A timer that has expired when a tick is due is handled before the tick, and what arrived before the timer."""
+    """An expired timer is handled before a due tick, and an earlier message before the timer."""
     guard.hear("scan")
     guard.port.time += 0.51
     guard.controller.tick()
@@ -143,7 +146,7 @@ def test_a_tick_comes_after_the_timers_that_have_expired(guard: World) -> None:
 
 
 def test_what_arrived_before_a_time_was_up_is_handled_before_it(guard: World) -> None:
-    """What arrived before a time was up is handled before it."""
+    """A message that arrives before a timer expires is handled first."""
     guard.port.arrived.append(lambda: guard.hear("scan"))
     guard.port.time += 0.6
     guard.event_loop.run_pending()
@@ -153,7 +156,7 @@ def test_what_arrived_before_a_time_was_up_is_handled_before_it(guard: World) ->
 
 
 def a_layer(log: Path) -> tuple[Layer, FakePort, EventLoop]:
-    """The layer of the guard; its clock, and what moves it."""
+    """Return the layer of the guard, its clock and its event loop."""
     graph, port = supervised(GUARD), FakePort()
     event_loop = EventLoop(lambda: port.time)
     values = {parameter.name: parameter.default for parameter in layer_parameters(graph, Configuration(), str(log))}

@@ -1,4 +1,4 @@
-"""Data that can't be read: its event happens for no component, and nothing of it is stored."""
+"""Unreadable data: its event happens for no component, and none of its data is stored."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_a_message_that_is_too_short_counts_as_not_received(world: World) -> Non
     world.hear("route", name="first", poses=[pose(10.0), pose(11.0), pose(12.0)])
     world.hear("route", name="second", poses=[pose(20.0)])
     planner = component(world, "Planner")["variables"]
-    # The other event of the same message went on.
+    # The other event of the same message still happens.
     assert planner == {"size": "short", "name": "first", "first": 10.0, "second": 11.0, "third": 12.0}
     assert names(world).count("message_length.u_response") == 2
     assert names(world).count("message_route.u_response") == 1
@@ -64,10 +64,10 @@ def test_a_message_that_is_too_short_counts_as_not_received(world: World) -> Non
 
 def test_the_event_happens_for_no_component(world: World) -> None:
     world.hear("record")
-    # The recorder could read its part of it, the planner can't.
+    # The recorder can read its part, the planner cannot.
     world.hear("route", name="short", poses=[pose(20.0, 7, 8)])
     assert component(world, "Recorder") == {"state": "empty", "variables": {"tag": 0, "routes": 0}}
-    # And the other way round.
+    # Now the planner can read its part, and the recorder cannot.
     long = [pose(10.0, 7), pose(11.0), pose(12.0)]
     world.hear("route", name="long", poses=long)
     assert component(world, "Recorder") == {"state": "empty", "variables": {"tag": 0, "routes": 0}}
@@ -139,7 +139,7 @@ def test_an_answer_that_is_too_short_is_an_error(world: World) -> None:
     world.wait(0.3)
     world.port.calls[1].answered(Record(cost=6.0, stops=[]))
     world.wait(0.6)
-    # The reason is said once, and again after an answer that could be read.
+    # The reason is reported once, and again after a readable answer.
     assert [text for text in world.port.said if "plan" in text] == ["/plan: there is no element 0 in an array of 0"]
     world.port.calls[2].answered(Record(cost=7.0, stops=[3]))
     assert component(world, "Visitor")["variables"] == {"cost": 7.0, "stop": 3, "next": 0, "failures": 2}
@@ -174,7 +174,7 @@ def test_feedback_and_results(world: World) -> None:
 
 
 def needs(following: bool, recorder: str, tags: Sequence[int]) -> bool:
-    """The definition, for this model: whether poses with so many tags each hold all that is read."""
+    """Return whether poses with these numbers of tags have all data that this model reads."""
     planner = not following or len(tags) > 2
     return planner and (recorder != "empty" or (len(tags) > 0 and tags[0] > 1))
 
@@ -189,7 +189,7 @@ def needs(following: bool, recorder: str, tags: Sequence[int]) -> bool:
     )
 )
 def test_no_variable_holds_what_an_earlier_message_said(tmp_path: Path, steps: list[str | list[int]]) -> None:
-    """Each message has a number, which is in all its data: after an event all that it assigns holds that number."""
+    """All data of a message have its number: after an event, every assigned variable has that number."""
     log = tmp_path / "events.jsonl"
     log.write_text("")
     world = World(MISSION, log).start()
@@ -210,7 +210,7 @@ def test_no_variable_holds_what_an_earlier_message_said(tmp_path: Path, steps: l
             expected |= {"tag": number} if recorder == "empty" else {}
             expected["routes"] += recorder != "off"
             recorder = "filled" if recorder == "empty" else recorder
-        world.port.hearing += 1  # whoever begins to listen is told
+        world.port.hearing += 1  # a new subscriber receives the state
         planner, kept = component(world, "Planner"), component(world, "Recorder")
         found = planner["variables"] | kept["variables"]
         assert {name: found[name] for name in expected} == expected

@@ -1,4 +1,4 @@
-"""Data that is left out has the defaults of ROS; what is handed on as it came is compared."""
+"""Omitted data has the defaults of ROS; passed-on data is compared."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def test_services_and_actions() -> None:
 
 
 def test_a_quaternion() -> None:
-    """ROS 2 has a default for `w`; an element without fields is one."""
+    """ROS 2 has a default for `w`; an element without fields gets it."""
     answer = played("route.rscd", '  route with message {"poses": [{}]}\n  expect Mission.upright\n')
     assert answer.exit_code == 0, answer.output
 

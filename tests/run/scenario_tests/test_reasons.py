@@ -1,4 +1,4 @@
-"""Scenarios in which services and actions fail for a reason, goals end canceled, and servers refuse to cancel."""
+"""Scenarios in which services and actions fail for a reason, goals end canceled, and servers reject cancels."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def test_the_log_has_what_the_error_reads_of_an_answer_that_cannot_be_read(folde
 
 
 def test_a_call_without_an_answer_takes_its_time() -> None:
-    """A call fails with `timeout` when its time is over, not before."""
+    """A call fails with `timeout` after its time has expired, not before."""
     for reason in ("timeout", "unavailable"):
         step = f"error from lift because {reason}"
         text = f'scenario "one"\n{CALLED}  wait 1 s\n  {step}\n  expect !Base.lifting\n'
@@ -107,7 +107,7 @@ def test_a_call_without_an_answer_takes_its_time() -> None:
         lines = list(map(json.loads, Path("traces/scenario_1.jsonl").read_text().splitlines()))
         times = {line["event"]: line["time"] for line in lines}
         waited = times["service_lift.u_error"] - times["service_lift.c_trigger"]
-        assert 4.8 < waited < 5.2  # of simulated time
+        assert 4.8 < waited < 5.2  # in simulated time
 
 
 def test_a_pause_follows_a_failure() -> None:
@@ -178,7 +178,7 @@ def test_a_late_answer_after_a_lost_goal_changes_nothing() -> None:
     ],
 )
 def test_steps_that_cannot_be(step: str, message: str, hint: str) -> None:
-    """They are found before anything is played."""
+    """They are reported before any scenario runs."""
     text = f'scenario "one"\n  {step}\n  expect Base.idle\nscenario "two"\n  expect Base.idle\n'
     ((line, found, help_),) = findings(text)
     assert (line, found) == (2, message)
@@ -191,7 +191,7 @@ def test_steps_that_cannot_be(step: str, message: str, hint: str) -> None:
         ("feedback from go\n  error from go because rejected", "the goal has been accepted: it can't fail with `rej"),
         ("feedback from go\n  wait 10 s\n  error from go because unavailable", "the goal has been accepted"),
         ("feedback from go\n  wait 10 s\n  error from go because timeout", "the goal has been accepted"),
-        # It was accepted after the time for that was over.
+        # The goal was accepted after its time had expired.
         ("wait 10 s\n  feedback from go\n  error from go because timeout", None),
         ("wait 10 s\n  feedback from go\n  error from go because rejected", "the goal has been accepted"),
         ("stop with true\n  refuse cancel of go\n  error from go because rejected", "the goal has been accepted"),
@@ -204,7 +204,7 @@ def test_steps_that_cannot_be(step: str, message: str, hint: str) -> None:
     ],
 )
 def test_an_accepted_goal(steps: str, message: str | None) -> None:
-    """A goal is accepted at once, unless the first that a scenario has of it is that it is not."""
+    """A goal is accepted at once, unless the scenario's first step about it is a failure to be accepted."""
     found = findings(f'scenario "one"\n  {steps}\n  expect !Base.going and !Base.stopping\n')
     assert [line for line, _, _ in found] == ([2 + steps.count("\n")] if message else [])
     assert not message or message in found[0][1]
@@ -251,7 +251,7 @@ def test_a_second_goal_is_accepted_anew() -> None:
     ],
 )
 def test_steps_that_cannot_be_now(steps: str, message: str, hint: str) -> None:
-    """Nothing that follows is tried."""
+    """Later steps are not tried."""
     ((line, found, help_),) = findings(f'scenario "one"\n  {steps}\n  expect Base.unread\n')
     assert line == 2 + steps.count("\n")
     assert found == message
@@ -276,7 +276,7 @@ def test_a_canceled_goal_goes_on_until_a_line_ends_it() -> None:
 
 
 def test_a_refused_cancel_is_asked_again() -> None:
-    """The model stays in `canceling` until the goal ends; the node asks again after `retryMs`."""
+    """The model stays in `canceling` until the goal ends; the node repeats the request after `retryMs`."""
     text = """scenario "one"
   stop with true
   refuse cancel of go

@@ -1,4 +1,4 @@
-"""Scenarios of users: what they say, what is wrong with them, and where the robot does not do as they expect."""
+"""Scenarios of users: their syntax, their faults, and robots that do not meet the expectations."""
 
 from __future__ import annotations
 
@@ -205,7 +205,7 @@ def test_null_is_no_number(folder: Path) -> None:
 
 
 def test_what_can_not_come() -> None:
-    """Nothing that follows it is tried; other scenarios are."""
+    """Later steps of the scenario are not tried; other scenarios are."""
     failing = "  error from dock\n  error from dock\n  expect Dock.docked\n"
     text = f'scenario "one"\n{failing}scenario "two"\n  expect Dock.docked\n'
     told = findings(text)
@@ -261,7 +261,7 @@ def test_traces_are_event_logs(folder: Path) -> None:
 
 @pytest.mark.build
 def test_a_generated_loop_that_differs_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It happens at the step where the scenario comes to it."""
+    """The difference is reported at the step that shows it."""
 
     def forgetful(target: str, models: robosc.Models, configuration: robosc.Configuration) -> dict[str, str]:
         files = generate(target, models, configuration)

@@ -1,4 +1,4 @@
-"""Scenarios that wait while timers run: any wait, any period, any number of timers that start again."""
+"""Scenarios that wait while timers run: any wait, any period, any number of restarting timers."""
 
 from __future__ import annotations
 
@@ -46,12 +46,12 @@ robot Clock {
   requirement cmd needs C.n < 600
 }
 """
-#: Periods, timers and waits in milliseconds. A timer of one period less than a millisecond meets every tick.
+#: Periods, timers and waits in milliseconds. A timer of a period minus 1 ms coincides with every tick.
 MEETING = [(100, 99, 40_000), (100, 199, 90_000), (10, 9, 3_000), (1, 1, 600), (100, 1000, 50_000), (20, 7, 1_000)]
 
 
 def some(count: int) -> list[tuple[int, int, int]]:
-    """Other periods, timers and waits."""
+    """Return other periods, timers and waits."""
     choice = random.Random(5)  # noqa: S311  # the same each time
     periods = [choice.randrange(1, 400) for _ in range(count)]
     lengths = [choice.randrange(1, 8 * period + 1) for period in periods]
@@ -59,7 +59,7 @@ def some(count: int) -> list[tuple[int, int, int]]:
 
 
 class _LatestFirst(EventLoop):
-    """Makes the calls that are due in the opposite order, as an executor may: the tick before the timers."""
+    """An event loop that makes due calls in reverse order, as an executor may: the tick before the timers."""
 
     def run_pending(self) -> float | None:
         while due := [planned for planned in self._timers if planned[0] <= self.clock()]:
@@ -72,7 +72,7 @@ class _LatestFirst(EventLoop):
 def test_every_wait_passes(
     period: int, length: int, wait: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The timer has expired as often as time allows, and a node does the same, in whatever order its timers ring."""
+    """The timer expires as often as time permits. A node does the same, whatever the order of its timer callbacks."""
     monkeypatch.chdir(tmp_path)
     whole = -(-wait // period) * period
     # It starts up to a millisecond late, and the clock stops a millisecond after its time.

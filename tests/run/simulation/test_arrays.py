@@ -1,4 +1,4 @@
-"""Expressions over arrays in scripts: what can't be read does not happen, what is not given is not asked for."""
+"""Expressions over arrays in scripts: unreadable data blocks the event, and omitted data is not required."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ def simulation() -> Simulation:
     ("data", "accepted"),
     [
         ({"ranges": [1.0, 2.0], "first": 0, "last": 1}, True),
-        # A slice past the end, an index below 0, `min` of nothing can't be read.
+        # A slice past the end, an index below 0 and `min` of an empty array cannot be read.
         ({"ranges": [1.0, 2.0], "first": 0, "last": 2}, False),
         ({"ranges": [1.0, 2.0], "first": -1, "last": 1}, False),
         ({"ranges": [1.0, 2.0], "first": 1, "last": 0}, False),
-        # Of an array that is not there, or of a slice whose ends are not, nothing is known.
+        # An omitted array, or a slice with omitted bounds, is unknown.
         ({"ranges": [1.0, 2.0]}, True),
         ({"first": 0, "last": 2}, True),
     ],

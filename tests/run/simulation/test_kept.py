@@ -1,4 +1,4 @@
-"""What a node keeps, followed by the data of events as scripts have it, is what the node makes of the same messages."""
+"""Stored data, computed from the events of scripts, equals the data that the node computes from the messages."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ STEPS = st.lists(
 
 
 def message(value: Any) -> Any:
-    """What ROS brings of data of the event log."""
+    """Return the ROS message for data of the event log."""
     return SimpleNamespace(**value) if isinstance(value, dict) else SimpleNamespace(data=value)
 
 
@@ -117,7 +117,7 @@ def test_it_is_what_the_node_makes_of_the_messages(steps: list[tuple[str, Any]])
             is_finite = not isinstance(now, float) or abs(now) < float("inf")
             assert after[name] == (now if is_finite else None)
         values = after
-        # What is not finite nobody knows any more: the node does.
+        # A value that is not finite becomes unknown in the simulation only.
         if None in values.values():
             break
 
@@ -126,7 +126,7 @@ def test_nobody_knows_what_was_not_given() -> None:
     simulation = Simulation(MODEL, GRAPH)
     kept = Kept(simulation.engine, GRAPH)
     before = simulation.engine.state
-    # Only which transition was taken is told, not by what.
+    # The data determines only which transition was taken, not the value.
     values = kept.after(kept.initial, READING, {"where": {"value.level > highest": True}}, before)
     assert {name for name, value in values.items() if value is None} >= {"Tank.level"}
     known = kept.after(values, READING, {"value": {"level": 1.0, "count": 1, "seen": True}}, before)
@@ -144,5 +144,5 @@ def test_what_a_report_tells_that_no_page_can_show(value: Any) -> None:
 
 def test_data_beside_what_inputs_tell() -> None:
     events = {event_name(event): event for plant in MODEL.plants for event in plant.events}
-    # Conditions on it are told by their texts, and data would decide them.
+    # Scripts give conditions on this data by their texts; the data itself would decide them.
     assert data_beside(GRAPH, events[READING]) == {}

@@ -69,7 +69,7 @@ CALLED = (PRESSED, "service_lift.c_trigger")
     ],
 )
 def test_the_reason_of_a_goal(line: str, state: str, why: str) -> None:
-    """Without `because` an error is `aborted` for actions."""
+    """Without `because`, an error is `aborted` for actions."""
     answer = play(STARTED, line)[-1]
     assert (answer["accepted"], answer["event"]) == (True, "action_go.u_error")
     assert (answer["state"]["component_Base"], answer["state"]["Base.why"]) == (state, why)
@@ -83,13 +83,13 @@ def test_the_reason_of_a_goal(line: str, state: str, why: str) -> None:
         ("error from lift", "low", "failed"),
         ("error from lift because timeout", "unknown", "lost"),
         ('service_lift.u_error {"reason": "unavailable"}', "low", "unavailable"),
-        # An old log has what could be read of an answer.
+        # An old log has the readable part of an answer.
         ('service_lift.u_error {"value": {"heights": []}}', "unread", "lost"),
         ('error from lift with {"heights": []}', "unread", "lost"),
     ],
 )
 def test_the_reason_of_a_call(line: str, state: str, why: str) -> None:
-    """Without `because` an error is `failed` for services."""
+    """Without `because`, an error is `failed` for services."""
     answer = play(*CALLED, line)[-1]
     assert (answer["state"]["component_Base"], answer["state"]["Base.why"]) == (state, why)
 
@@ -144,13 +144,13 @@ def test_steps_that_cannot_be_read(line: str, fault: str) -> None:
     ],
 )
 def test_data_of_an_error_that_brings_none(data: str, fault: str) -> None:
-    """`lost`, `rejected` and `unavailable` come with the data of a new result at most, as logs have it."""
+    """`lost`, `rejected` and `unavailable` have at most the data of a new result, as in logs."""
     (found,) = faults(STARTED, f"action_go.u_error {data}")
     assert fault in found
 
 
 def test_a_literal_of_an_error_that_brings_no_data(tmp_path: Path) -> None:
-    """A node makes it of a new result, as its log shows."""
+    """The node takes the literal from a new result, as its log shows."""
     model = tmp_path / "go.rscd"
     model.write_text(GO)
     line = '{"event": "action_go.u_error", "data": {"value": {"mode": "%s"}, "reason": "lost"}}'
@@ -296,7 +296,7 @@ def test_by_hand(crane: Any) -> None:
 
 
 def test_what_the_node_keeps(crane: Any) -> None:
-    """`Base.rest` is kept by the node."""
+    """The node stores `Base.rest`."""
     simulation = Simulation(crane.model, crane)
     kept = Kept(simulation.engine, crane)
     assert kept.initial == {"Base.rest": 0}
@@ -316,7 +316,7 @@ def test_what_the_node_keeps(crane: Any) -> None:
 
 
 def test_random_events_have_reasons_and_can_be_played(crane: Any) -> None:
-    """Every reason of each kind comes; as a script they lead to the same state."""
+    """Every reason of each kind occurs. As a script, the events lead to the same state."""
     reasons: dict[str, set[str]] = {"action_go.u_error": set(), "service_lift.u_error": set()}
     random = Random(3)
     simulation = Simulation(crane.model, crane)

@@ -1,4 +1,4 @@
-"""What is taken back and played again is the same, on all examples; what was taken is known by its transition."""
+"""Undone and replayed events give the same states, on all examples. The moments name the transitions taken."""
 
 from pathlib import Path
 
@@ -27,7 +27,7 @@ def test_there_and_back_again(path: Path) -> None:
     last = replay.engine.state, replay.timers.saved
     for moment in moments:
         assert moment.happened
-        # A component that changed its state did so by the one transition that is told.
+        # Only the named transition can have changed the state of a component.
         for plant in model.plants:
             before, after = (state.get(plant.name) for state in (moment.before, moment.after))
             taken = [edge for edge in moment.edges if edge in _edges(plant)]
@@ -43,7 +43,7 @@ def test_there_and_back_again(path: Path) -> None:
 
 
 def test_the_log_of_a_node_is_played_without_a_stop(tmp_path: Path) -> None:
-    """Whatever the node did, the model does, and the clock is the node's."""
+    """The model accepts all events of the node and takes over its clock."""
     path = next(path for path in EXAMPLES if path.stem == "line_follower")
     log = tmp_path / "events.jsonl"
     world = World(path, log).start()

@@ -1,4 +1,4 @@
-"""Scripts: what they say about each event, and what is wrong with them."""
+"""Scripts: the form of each event, and their faults."""
 
 import json
 from pathlib import Path
@@ -213,13 +213,13 @@ DATA = """robot Data {
             'value.position_covariance is {"9": 0.5}, expected at most 9 elements',
         ),
         ('fix with {"position_covariance": [0.5, "x"]}', 'value.position_covariance[1] is "x", expected a number'),
-        # Logs have it for what is no finite number.
+        # Logs write numbers that are not finite this way.
         ('speed with {"data": null}', None),
     ],
 )
 @pytest.mark.parametrize("command", ["simulate", "test"])
 def test_data_of_another_type(tmp_path: Path, command: str, line: str, fault: str | None) -> None:
-    """Scripts and scenarios take the same data."""
+    """Scripts and scenarios accept the same data."""
     model, text = tmp_path / "data.rscd", tmp_path / "text"
     model.write_text(DATA)
     steps = f"response from {line}\n"
@@ -327,7 +327,7 @@ def lamp(tmp_path: Path) -> Path:
 
 
 def test_a_time_is_an_event_as_any(lamp: Path) -> None:
-    """Scripts: `component_X.u_after1` as any event."""
+    """A timeout such as `component_X.u_after1` is an event like any other."""
     lines = "component_Button.u_after1\nmessage_pressed.u_response\ncomponent_Button.u_after1"
     for options in ((), ("--loop",)):
         done = simulate("--script", "-", *options, lines=lines, model=lamp)

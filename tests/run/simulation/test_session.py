@@ -1,4 +1,4 @@
-"""Simulation by hand, in the words of its user."""
+"""Simulation by hand, in the terms of its user."""
 
 from pathlib import Path
 

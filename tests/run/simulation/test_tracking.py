@@ -1,4 +1,4 @@
-"""A robot is followed by what its node tells: to where the engine is that decided."""
+"""Tracking a robot by its node's reports leads to the state of the node's engine."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def loaded(path: Path) -> tuple[sct.SupervisoryControlModel, Any]:
 
 
 def reported(engine: Engine, events: list[str], time: float = 0.0) -> dict[str, Any]:
-    """What a node tells on `~/state`."""
+    """Return the report of a node on `~/state`."""
     components = {
         plant.origin or plant.name: {
             "state": plant.locations[engine.location(plant)].name,
@@ -65,7 +65,7 @@ def test_it_is_where_the_engine_is(path: Path, seed: int, sizes: list[int]) -> N
         told = list(tracker.report(reported(simulation.engine, events)))
         assert [moment.event for moment in told] == events
         assert dict(tracker.engine.state) == dict(simulation.engine.state)
-        # Each transition leaves the state before it, and leads to the one after.
+        # Each transition leads from the state before it to the state after it.
         for moment in told:
             for edge in moment.edges:
                 plant = next(plant for plant, edges in by_event[moment.event or ""].items() if edge in edges)

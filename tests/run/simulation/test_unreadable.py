@@ -89,5 +89,5 @@ def test_operators_read_no_further_than_needed(operator: type[ex.BinaryExpressio
     element = ex.GreaterThan(left=_read("ranges", 2), right=ex.DoubleLiteral(value=0.5))
     fault = past_end([operator(left=many, right=element)], {"count": few, "ranges": [1.0]})
     assert (fault is not None) is lacks
-    # Where it is not known whether it is read, nothing is said.
+    # If it is unknown whether the data is readable, no fault is reported.
     assert past_end([operator(left=many, right=element)], {"ranges": [1.0]}) is None

@@ -1,4 +1,4 @@
-"""What robots that are driven by velocities may send."""
+"""Rules for robots that are driven by velocities."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from typing import Any
 from .judging import Fault, RuleBook, first_fault, velocity
 
 HALT = velocity(0.0, 0.0)
-#: Seconds after which a lidar, or what looks through a camera, counts as silent.
+#: Seconds after which a lidar or a camera-based sensor counts as silent.
 PATIENCE = 0.5
 
 
 class LineFollower(RuleBook):
-    """Moves along the line while the way is clear; else halts."""
+    """Moves along the line while the way is clear; otherwise halts."""
 
     silences = {"LineDetector": ("correction", PATIENCE), "Lidar": ("scan", PATIENCE)}  # noqa: RUF012  # never changed
 
@@ -45,7 +45,7 @@ class LineFollower(RuleBook):
 
 
 class ObjectFinder(RuleBook):
-    """Drives where the way is clear, turns to free sides where it is not, and does neither once the sign is found."""
+    """Drives on a clear way, turns to clear sides of a blocked one, and does neither after it has found the sign."""
 
     silences = {"Lidar": ("scan_front", PATIENCE)}  # noqa: RUF012
 
@@ -56,7 +56,7 @@ class ObjectFinder(RuleBook):
         self.count = 0
         self.sign_in_boxes = False
         self.driving = self.turning = self.looking = False
-        #: How many of a scan's three views have been heard.
+        #: Number of received views of the current scan, which has three.
         self.views = 0
 
     @property
@@ -120,7 +120,7 @@ class ObjectFinder(RuleBook):
 
 
 class MazeSolver(RuleBook):
-    """Keeps its right hand on the wall. It decides on whole scans, of which each brings three views."""
+    """Keeps its right hand on the wall. It decides on whole scans with three views each."""
 
     silences = {"Lidar": ("scan_front", PATIENCE)}  # noqa: RUF012
 
@@ -190,14 +190,14 @@ class MazeSolver(RuleBook):
 
 
 class PushBall(RuleBook):
-    """Looks for the ball, drives up to it, pushes it to the goal; halts before walls, unless it only turns."""
+    """Searches for the ball, drives up to it, pushes it to the goal; halts before walls, except while it only turns."""
 
     silences = {"Lidar": ("scan", PATIENCE), "BallDetector": ("image", PATIENCE)}  # noqa: RUF012
 
     def __init__(self) -> None:
         super().__init__()
         self.sees = self.free = False
-        #: What it knows of the ball: nothing, that it is away, in view, in front, or slipping aside.
+        #: Knowledge about the ball: none, away, in view, in front, or slipping aside.
         self.ball = "unknown"
         self.offset = self.goal_offset = 0.0
         self.goal = False
@@ -277,7 +277,7 @@ class PersonFollower(RuleBook):
 
 
 class Stepper(RuleBook):
-    """The layer before a line follower: a step passes only along the line, the way clear, no stop pressed."""
+    """The layer before a line follower: a step passes only along the line, on a clear way, with no stop pressed."""
 
     replaced = frozenset({"step"})
     silences = LineFollower.silences

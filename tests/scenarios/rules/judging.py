@@ -1,7 +1,7 @@
-"""What every second opinion shares: an event log is read in the node's own order, so what it finds is exact.
+"""Base of all rule books. An event log has the node's own order, so its judgment is exact.
 
-A rule book is written down by hand from a scenario's requirements, without the model. It keeps in plain variables what
-the controller has been told and says of each thing that goes out what is wrong with it.
+A rule book is written by hand from a scenario's requirements, without the model. It stores the inputs of the controller
+in plain variables and returns the fault of each command.
 """
 
 from __future__ import annotations
@@ -11,63 +11,63 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 Entry = Mapping[str, Any]
-#: What is wrong with something that was sent; None: nothing.
+#: Description of a fault in a command, or None.
 Fault = str | None
-#: Seconds after which a button that says nothing counts as pressed.
+#: Seconds after which a silent button counts as pressed.
 BUTTON_PATIENCE = 0.5
-#: Seconds by which times in a log may be rounded.
+#: Rounding error of times in a log, in seconds.
 ROUNDING = 0.001
-#: Seconds by which a node may notice silence later than it begins to count: it, and its clock, have other things to do.
+#: Maximum delay in seconds until a node notices silence, because the node and its clock have other work.
 SLACK = 0.3
 
 
 class RuleBook:
-    """Judges one log. `heard` takes what comes in, `sent` judges what goes out, `overdue` what should have by now.
+    """Judge of one log: `heard` processes inputs, `sent` judges commands, `overdue` reports missing commands.
 
-    `replaced` are the velocities that a layer replaces: when it blocks one after it forwarded one, it sends a stop at
-    once, and no other until it has forwarded the next.
+    `replaced` lists the velocities that a layer replaces. When the layer blocks such a command after it forwarded one,
+    it sends a stop at once, and no other stop until it has forwarded the next command.
     """
 
     replaced: frozenset[str] = frozenset()
-    #: Components that miss a communication: which, and after how many seconds of silence.
+    #: Components with a timeout: the communication, and the seconds of silence.
     silences: Mapping[str, tuple[str, float]] = {}
 
     def __init__(self) -> None:
-        #: A robot begins stopped, and goes on when somebody says so while the button is known to be released.
+        #: A robot starts stopped. It goes on at `continue` if the last message of the button was a release.
         self.stopped = True
         self._released = False
         self._silences = {"EmergencyStop": ("pressed", BUTTON_PATIENCE), **self.silences}
-        #: When each of them was heard last that is not yet missed.
+        #: Time of the last message of each communication whose timeout has not passed.
         self._heard_at: dict[str, float] = {}
         self._forwarded: set[str] = set()
         self._stop_due: str | None = None
-        #: When what is judged was heard or sent.
+        #: Time of the current entry.
         self.time = 0.0
 
     def heard(self, name: str, value: Any) -> None:
-        """A communication has brought a value."""
+        """Process the value of an input."""
 
     def sent(self, name: str, value: Any) -> Fault:
-        """A communication goes out with a value."""
+        """Judge the value of a command."""
         raise NotImplementedError
 
     def overdue(self) -> Fault:
-        """What should have gone out before anything else came in."""
+        """Return the fault of a command that is missing before this input."""
         return None
 
     def awaits(self, name: str) -> None:
-        """One of `silences` is heard."""
+        """Restart the timeout of a communication in `silences`."""
         self._heard_at[name] = self.time
 
     def awaits_no(self, name: str) -> None:
-        """One of `silences` is no longer expected."""
+        """End the timeout of a communication in `silences`."""
         self._heard_at.pop(name, None)
 
     def fell_silent(self, name: str) -> None:
-        """One of `silences` is missed."""
+        """Process the timeout of a communication in `silences`."""
 
     def violations(self, log: Iterable[Entry]) -> list[str]:
-        """All that the log shows that must not be."""
+        """Return all faults in a log."""
         found = []
         for entry in log:
             plant, _, event = entry["event"].partition(".")
@@ -100,7 +100,7 @@ class RuleBook:
             self.stopped = False
 
     def _miss(self, name: str, patience: float) -> Fault:
-        """Something counts as silent from now on; what is wrong with that."""
+        """Process a timeout; return a fault if it is too early."""
         early = self.time < self._heard_at.pop(name, -math.inf) + patience - ROUNDING
         if name == "pressed":
             self.stopped, self._released = True, False
@@ -108,7 +108,7 @@ class RuleBook:
         return f"{name} is not silent" if early else None
 
     def _unmissed(self) -> Fault:
-        """What nobody has missed that has long been silent."""
+        """Return the fault of a timeout that is missing."""
         return first_fault(
             *(
                 (self.time > self._heard_at.get(name, math.inf) + patience + SLACK, f"{name} is silent")
@@ -117,7 +117,7 @@ class RuleBook:
         )
 
     def _replacing(self, direction: str, name: str, value: Any) -> Iterator[str]:
-        """What is wrong with the stops that a layer sends in the place of what it blocks."""
+        """Yield the faults of the stops that a layer sends in place of blocked commands."""
         due, self._stop_due = self._stop_due, None
         if direction == "outside":
             if name != due:
@@ -133,15 +133,15 @@ class RuleBook:
             self._stop_due = name
 
     def known(self) -> str:
-        """What the controller knows, for whoever reads a fault."""
+        """Return the knowledge of the controller, for messages."""
         return ", ".join(f"{name}={value!r}" for name, value in vars(self).items() if not name.startswith("_"))
 
 
 def velocity(linear: float, angular: float) -> dict[str, Any]:
-    """A velocity as the log has it."""
+    """Return a velocity in the form of the log."""
     return {"linear": {"x": linear}, "angular": {"z": angular}}
 
 
 def first_fault(*checks: tuple[bool, str]) -> Fault:
-    """The words of the first check that holds."""
+    """Return the text of the first check that holds."""
     return next((words for wrong, words in checks if wrong), None)

@@ -1,4 +1,4 @@
-"""What robots that are driven by Nav2 may send."""
+"""Rules for robots that are driven by Nav2."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from .judging import Fault, RuleBook, first_fault
 
 
 class SimpleNavigation(RuleBook):
-    """Sets off to the last point clicked, once the robot knows where it is; ends a journey that may not go on."""
+    """Drives to the last clicked point after the robot knows its place; cancels a journey that must not go on."""
 
-    #: How often Nav2 may help itself on one journey.
+    #: Number of recoveries of Nav2 permitted on one journey.
     recoveries_allowed: int | None = None
 
     def __init__(self) -> None:
@@ -24,7 +24,7 @@ class SimpleNavigation(RuleBook):
             case "initial_pose":
                 self.located = True
             case "clicked_point":
-                # Before the robot knows where it is, a click is nothing to it.
+                # A click has no effect before the robot knows its place.
                 if self.located:
                     self.point = value
                     self.recalled = self.under_way
@@ -76,6 +76,6 @@ class SimpleNavigation(RuleBook):
 
 
 class ObstacleNavigation(SimpleNavigation):
-    """The same, and it gives up where Nav2 helps itself too often."""
+    """As `SimpleNavigation`, and gives up after too many recoveries of Nav2."""
 
     recoveries_allowed = 5

@@ -1,4 +1,4 @@
-"""What the two showcases may send. Time is that of the log: what fell silent is told from when it was last heard."""
+"""Rules for the two showcases. The times of the log determine silence, from the last message of each sensor."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ NEVER = float("-inf")
 
 
 class WarehouseRobot(RuleBook):
-    """Fetches nothing itself: drives below a shelf, lifts it away from people, comes home and docks."""
+    """Drives below a shelf, lifts it away from people, returns home and docks; takes nothing from the shelf."""
 
     clearance, foresight, silence = 0.5, 1.5, 0.5
     slow, fast = 0.3, 1.0
-    #: Seconds before another attempt to dock, after so many; and before another to drive.
+    #: Seconds before the next attempt to dock, by the number of failures, and before the next attempt to drive.
     pauses = {1: 5.0, 2: 30.0}  # noqa: RUF012  # a table, never changed
     pause = 5.0
 
@@ -27,9 +27,9 @@ class WarehouseRobot(RuleBook):
         self.docked, self.asks_dock = True, False
         self.refused, self.refused_at = 0, NEVER
         self.phase = "idle"
-        #: Under way to the end of the goal: also while the goal is being cancelled.
+        #: True until the end of the goal, also while the goal is being canceled.
         self.under_way, self.canceling, self.failed_at = False, False, NEVER
-        #: Whether it has asked to leave the dock, or the aisle, and has no answer.
+        #: True while a request to leave the dock, or the aisle, has no answer.
         self.undocking = self.leaving = False
         self.limit: float | None = None
 
@@ -40,7 +40,7 @@ class WarehouseRobot(RuleBook):
         self._go_on(name, done=done)
 
     def _sense(self, name: str, value: Any) -> None:
-        """Takes what a sensor says."""
+        """Process a message of a sensor."""
         device, _, what = name.partition("_")
         if what == "touched":
             (self.touched.add if value else self.touched.discard)(device)
@@ -50,7 +50,7 @@ class WarehouseRobot(RuleBook):
             self.charged = value["percentage"] >= 0.2 if self.charged else value["percentage"] > 0.3
 
     def _hear_answer(self, name: str, *, done: bool) -> None:
-        """Takes what became of something that the robot was told to do, or what a person says of it."""
+        """Process the answer to a command, or the confirmation of a person."""
         match name:
             case "undock":
                 self.docked, self.undocking = self.docked and not done, False
@@ -70,7 +70,7 @@ class WarehouseRobot(RuleBook):
                 self.failed_at = self.time if name == "navigate.u_error" else NEVER
 
     def _go_on(self, name: str, *, done: bool) -> None:
-        """What the robot is at, after something was heard."""
+        """Update the phase of the robot's task after an input."""
         match self.phase, name:
             case "idle", "order":
                 self.phase = "outbound"
@@ -94,18 +94,18 @@ class WarehouseRobot(RuleBook):
             self.phase = "homebound"
 
     def zone(self, ranges: list[float | None]) -> str:
-        """What a scan shows; a ray that meets nothing is None in the log."""
+        """Return the zone of a scan; a ray without an obstacle is None in the log."""
         nearest = min((3.5 if away is None else away for away in ranges), default=0.0)
         return "obstructed" if nearest < self.clearance else "near" if nearest < self.foresight else "free"
 
     @property
     def silent(self) -> bool:
-        """Whether it must have noticed that a lidar says nothing."""
+        """Whether the robot must have noticed a silent lidar."""
         return self.time - min(self.scanned.values()) > self.silence + SLACK
 
     @property
     def obstacles(self) -> list[tuple[bool, str]]:
-        """What ends a journey."""
+        """Return the conditions that end a journey."""
         return [
             (self.stopped, "stop is pressed"),
             (bool(self.touched), "a bumper is touched"),
@@ -219,15 +219,15 @@ class WarehouseRobot(RuleBook):
 
 
 def both(*claims: bool | None) -> bool | None:
-    """Whether all of these hold; None: nobody can tell."""
+    """Conjunction in three-valued logic; None means unknown."""
     return False if False in claims else None if None in claims else True
 
 
 class Sprayer(RuleBook):
-    """Drives along a route by itself, or as a stick says; sprays what is due."""
+    """Drives along a route by itself, or follows a stick; sprays the sections that are due."""
 
     half_length, half_width = 100.0, 40.0
-    #: Seconds after which what is silent counts for nothing; before another attempt to drive.
+    #: Seconds of silence after which a source has no effect, and seconds before the next attempt to drive.
     patiences = {"radio": 1.0, "odometry": 0.5, "stick": 0.3}  # noqa: RUF012
     pause = 5.0
 
@@ -235,41 +235,41 @@ class Sprayer(RuleBook):
         super().__init__()
         self.heard_at = dict.fromkeys(self.patiences, NEVER)
         self.within = self.filled = self.automatic = False
-        #: Driving to the end of the goal: also while the goal is being cancelled.
+        #: True until the end of the goal, also while the goal is being canceled.
         self.driving = self.canceling = False
-        #: Whether the stick, while it is held, was pushed when it counted; None: nobody can tell.
+        #: Whether the held stick was first pushed while it had an effect; None means unknown.
         self.pushed: bool | None = False
         self.left, self.failed_at = 0, NEVER
         self.due = dict.fromkeys(("Left", "Middle", "Right"), False)
 
     def speaks(self, what: str) -> bool | None:
-        """Whether something is heard; None: it may just have been found silent."""
+        """Whether a source sends messages; None if it may just have timed out."""
         silent = self.time - self.heard_at[what]
         return True if silent < self.patiences[what] else False if silent > self.patiences[what] + SLACK else None
 
     @property
     def may_steer(self) -> bool | None:
-        """Whether the stick counts."""
+        """Whether the stick has an effect."""
         return both(not self.stopped, self.speaks("radio"), not self.automatic, not self.driving)
 
     @property
     def safe(self) -> bool | None:
-        """Whether it may drive by itself, in automatic mode."""
+        """Whether the robot may drive by itself in automatic mode."""
         return both(not self.stopped, self.speaks("radio"), both(self.within, self.speaks("odometry")))
 
     @property
     def by_hand(self) -> bool | None:
-        """Whether the stick is obeyed."""
+        """Whether the robot follows the stick."""
         self._let_go()
         return both(self.may_steer, self.pushed, self.speaks("stick"))
 
     def sprays(self, section: str) -> bool | None:
-        """Whether a section's valve is open."""
+        """Whether the valve of a section is open."""
         driven = True if self.driving else self.by_hand
         return both(self.safe, self.filled, driven, self.due[section])
 
     def _let_go(self) -> None:
-        """A stick does not count any more once it must not."""
+        """Stop the effect of the stick as soon as it must not have one."""
         if self.may_steer is False:
             self.pushed = False
         elif self.may_steer is None and self.pushed:

@@ -1,4 +1,4 @@
-"""The simulator as a program, started from anywhere."""
+"""The simulator runs as a program from any folder."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_says_which_ros_is_missing(tmp_path: Path) -> None:
     assert done.stderr.startswith("error: ROS 2 can't be used: ")
 
 
-#: Starts the simulator in a Python that has no rclpy.
+#: Starts the simulator in a Python without rclpy.
 BLOCKED = """
 import sys
 sys.path.insert(0, sys.argv[1])

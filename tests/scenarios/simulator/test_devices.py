@@ -1,4 +1,4 @@
-"""What each device hears, does and says."""
+"""Inputs, actions and outputs of each device."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def velocity(linear: float, angular: float) -> dict[str, Any]:
 
 
 def passed(world: World, device: Device, seconds: float, *, button: bool = True) -> list[tuple[str, dict[str, Any]]]:
-    """Lets time pass; what the device said. The button repeats that it is released."""
+    """Let time pass while the button repeats its release; return the messages of the device."""
     said = []
     for _ in range(round(seconds / STEP)):
         if button and STOP in device.hears:
@@ -44,7 +44,7 @@ def test_wheels_hold_a_velocity_and_steps_end() -> None:
         device.hear(world, topic, velocity(0.2, 0.0))
         passed(world, device, 2.0)
     assert rolling.pose.x == pytest.approx(0.39, abs=0.01)
-    # A tenth of a second at full speed, less what starting takes and more what stopping takes.
+    # The distance is a tenth of a second at full speed, less the loss in starting, plus the distance of stopping.
     assert stepping.pose.x == pytest.approx(0.02, abs=0.003)
     assert stepping.drive.speed == (0.0, 0.0)
 
@@ -52,7 +52,7 @@ def test_wheels_hold_a_velocity_and_steps_end() -> None:
 def test_a_scan_has_360_rays_and_is_infinite_where_nothing_is() -> None:
     data = only(Lidar(EXACT), World(HERE, walls=[Segment(1.0, -0.5, 1.0, 0.5)], ball=Ball(0.5, 0.0, 0.1)))
     assert len(data["ranges"]) == 360
-    assert data["ranges"][0] == pytest.approx(1.0)  # the ball is below
+    assert data["ranges"][0] == pytest.approx(1.0)  # the ball lies below the lidar
     assert data["ranges"][180] == math.inf
     assert data["angle_increment"] * 359 == pytest.approx(data["angle_max"])
 
@@ -88,7 +88,7 @@ def test_the_rotator_gives_up_on_stop_and_says_nothing() -> None:
     assert passed(world, rotator, 4.0) == []
     assert 0.2 < world.pose.heading < 1.2
     assert world.drive.speed == (0.0, 0.0)
-    rotator.hear(world, STOP, {"data": True})  # nothing to give up
+    rotator.hear(world, STOP, {"data": True})  # there is no turn to cancel
     rotator.hear(world, "/rotate_right", {})
     assert passed(world, rotator, 4.0) == [("/rotate_done", {})]
 
@@ -115,7 +115,7 @@ def test_the_button_repeats_whether_it_is_pressed() -> None:
 def test_the_line_is_seen_where_it_is() -> None:
     line = [(x / 100, 0.0) for x in range(-100, 100)]
     assert only(LineDetector(EXACT), World(HERE, line=line)) == {"data": pytest.approx(0.0)}
-    # A tenth of a metre to the left of the line it is 64 of 640 pixels, or 0.1 of 1 m, to the right.
+    # At 0.1 m to the left of the line, the line is 64 of 640 pixels, or 0.1 of 1 m, to the right.
     assert only(LineDetector(EXACT), World(Pose(0.0, 0.1), line=line)) == {"data": pytest.approx(64.0)}
     assert LineDetector(EXACT).say(World(Pose(0.0, 0.9), line=line)) == [("/no_line", {})]
     assert LineDetector(EXACT).say(World(Pose(1.0, 0.0), line=line)) == [("/no_line", {})]
@@ -123,7 +123,7 @@ def test_the_line_is_seen_where_it_is() -> None:
 
 
 def test_the_pixels_of_a_pinhole() -> None:
-    # At the edge of what the camera sees, and half way in tangents.
+    # An object at the edge of the view, and one at half its tangent.
     eye = World(Pose(-camera.MOUNT, 0.0))
     edge = math.tan(camera.OPENING / 2)
     assert camera.place(eye, Sight("", 1.0, -edge / 2, 0.0), []) == pytest.approx((480.0, 480.0))

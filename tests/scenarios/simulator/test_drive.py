@@ -1,4 +1,4 @@
-"""Two wheels: straight on, on the spot, in a circle, and what the encoders make of it."""
+"""A robot with two wheels drives straight on, on the spot and in a circle, and its encoders measure that."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def driven(linear: float, angular: float, seconds: float) -> Drive:
 
 
 def test_straight_on() -> None:
-    # The way is that at full speed less what getting to it takes: v² / 2a.
+    # The distance is that at full speed, less the loss in acceleration: v² / 2a.
     drive = driven(0.2, 0.0, 5.0)
     assert drive.pose.x == pytest.approx(1.0 - 0.2**2 / (2 * ACCELERATION), abs=0.003)
     assert (drive.pose.y, drive.pose.heading) == (0.0, 0.0)
@@ -34,7 +34,7 @@ def test_on_the_spot() -> None:
 
 
 def test_a_circle_comes_back() -> None:
-    """With 0.2 m/s and 0.4 rad/s the radius is half a metre."""
+    """A speed of 0.2 m/s and a rate of 0.4 rad/s give a radius of half a meter."""
     pose = Pose(0.0, 0.0, 0.0)
     for _ in range(100):
         turn = 2 * math.pi / 100
@@ -71,5 +71,5 @@ def test_odometry_follows_within_steps_of_the_encoder() -> None:
     drive = driven(0.2, 0.3, 20.0)
     assert math.dist((drive.odometry.x, drive.odometry.y), (drive.pose.x, drive.pose.y)) < 0.005
     assert drive.odometry.heading == pytest.approx(drive.pose.heading, abs=0.002)
-    # It counts whole steps: it is not simply the pose.
+    # Odometry counts whole steps of the encoders, so it differs from the pose.
     assert drive.odometry != drive.pose

@@ -1,4 +1,4 @@
-"""What each device of the field hears, does and says."""
+"""Inputs, actions and outputs of each device of the field."""
 
 from __future__ import annotations
 

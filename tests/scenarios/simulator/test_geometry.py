@@ -1,4 +1,4 @@
-"""Rays, edges, directions: against cases worked out by hand."""
+"""Rays, edges and directions agree with cases solved by hand."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ def test_in_the_middle_of_a_square_room(heading: float) -> None:
 def test_a_disc() -> None:
     seen = cast(Pose(1.0, 0.0, math.pi / 2), [Disc(1.0, 3.0, 0.5)], 360, 10.0)
     assert seen[0] == pytest.approx(2.5)
-    # From 3 m a radius of 0.5 m is seen under asin(1/6), which is 9.59 degrees, to each side.
+    # From 3 m, a radius of 0.5 m extends asin(1/6), which is 9.59 degrees, to each side.
     assert [ray for ray, away in enumerate(seen) if away < math.inf] == [*range(10), *range(351, 360)]
-    # At 5 degrees: 3 cos a - sqrt(0.5² - (3 sin a)²).
+    # At 5 degrees the distance is 3 cos a - sqrt(0.5² - (3 sin a)²).
     angle = math.radians(5)
     expected = 3 * math.cos(angle) - math.sqrt(0.25 - (3 * math.sin(angle)) ** 2)
     assert seen[5] == pytest.approx(expected)
@@ -60,7 +60,7 @@ def test_many_random_walls_are_seen_as_by_trying_every_ray() -> None:
 
 
 def by_solving(pose: Pose, wall: Segment, angle: float) -> float:
-    """Where a ray meets a wall: both as a point and a direction, solved by Cramer's rule."""
+    """Return the distance from a ray's origin to a wall, by Cramer's rule on both as a point and a direction."""
     ux, uy = math.cos(pose.heading + angle), math.sin(pose.heading + angle)
     dx, dy = wall.x2 - wall.x1, wall.y2 - wall.y1
     determinant = dx * uy - dy * ux

@@ -1,4 +1,4 @@
-"""The small Nav2: what it accepts, how it gets there, how it ends."""
+"""The small Nav2 accepts goals, reaches them, and ends them correctly."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def located(world: World) -> Navigation:
 
 
 def passed(world: World, navigation: Navigation, seconds: float) -> list[str]:
-    """Lets time pass; what was told of goals, feedback left out."""
+    """Let time pass; return the messages about goals, without feedback."""
     for step in range(round(seconds / STEP)):
         navigation.act(world)
         world.step()

@@ -1,4 +1,4 @@
-"""What each device of the warehouse hears, does, says and answers."""
+"""Inputs, actions, outputs and answers of each device of the warehouse."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is solid, what rolls, and who walks."""
+"""Solid bodies, a rolling ball, and walking persons."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def test_walls_and_pillars_are_solid(thing: Segment | Disc) -> None:
     assert world.pose.x == pytest.approx(0.5 - ROBOT_RADIUS, abs=0.005)
     assert world.travelled == pytest.approx(world.pose.x)
     assert world.touched > 100
-    # It comes away again, though it touches.
+    # The robot can drive away from the wall that it touches.
     assert driven(world, -0.2, 0.0, 2.0).pose.x < 0.1
 
 
@@ -40,7 +40,7 @@ def test_a_pushed_ball_stays_before_the_robot_and_rolls_on() -> None:
     assert pushed - world.pose.x == pytest.approx(FRONT + 0.1, abs=1e-6)
     assert world.ball.y == pytest.approx(0.05)
     driven(world, 0.0, 0.0, 2.0)
-    # v² / 2a: 5 cm, of which the robot comes 1 cm after it.
+    # The ball rolls v² / 2a, which is 5 cm; the robot follows it for 1 cm.
     assert world.ball.x - pushed == pytest.approx(0.2**2 / 0.8, abs=0.006)
 
 

@@ -1,4 +1,4 @@
-"""A folder with a small robot, and a way to call the command line in it."""
+"""A folder with a small robot, and a runner of the command line in it."""
 
 import signal
 from collections.abc import Callable, Iterator
@@ -36,7 +36,7 @@ Run = Callable[..., Result]
 
 @pytest.fixture
 def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
-    """Calls robosc in an empty folder; a fault of the tool itself fails the test."""
+    """Run robosc in an empty folder; an internal fault of the tool fails the test."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("ROBOSC_PATH", raising=False)
     monkeypatch.delenv("ROBOSC_TRACEBACK", raising=False)
@@ -47,7 +47,7 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
 
 @contextmanager
 def not_longer_than(seconds: int) -> Iterator[None]:
-    """Fails where what is called waits, for a pipe that nobody writes, say."""
+    """Fail if the block takes longer, for example because it waits for a pipe without a writer."""
 
     def give_up(*_: object) -> None:
         raise TimeoutError(f"not done within {seconds} s")
@@ -63,7 +63,7 @@ def not_longer_than(seconds: int) -> Iterator[None]:
 
 @pytest.fixture
 def door(tmp_path: Path) -> Path:
-    """A file with a robot in which nothing is wrong."""
+    """Return a file with a robot without faults."""
     file = tmp_path / "door.rscd"
     file.write_text(DOOR)
     return file
@@ -71,7 +71,7 @@ def door(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def broken(tmp_path: Path) -> Path:
-    """A file with a robot with two errors: a second initial state, and a name that is nothing."""
+    """Return a file with a robot with two errors: a second initial state, and an unknown name."""
     file = tmp_path / "broken.rscd"
     file.write_text(DOOR.replace("marked state opened", "initial marked state opened").replace("Leaf.closed", "Leaf.x"))
     return file
@@ -79,7 +79,7 @@ def broken(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def stuck(tmp_path: Path) -> Path:
-    """A file with a robot whose requirement keeps it from ever reaching a marked state."""
+    """Return a file with a robot whose requirement prevents it from ever reaching a marked state."""
     file = tmp_path / "stuck.rscd"
     file.write_text(DOOR.replace("initial marked", "initial").replace("needs Leaf.closed", "needs Leaf.opened"))
     return file
@@ -87,13 +87,13 @@ def stuck(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def library(tmp_path: Path) -> Path:
-    """A file with a library."""
+    """Return a file with a library."""
     file = tmp_path / "library.rscd"
     file.write_text("library Parts {}\n")
     return file
 
 
-#: A robot, imported lamps and all, that draws a warning in the library, and an error where `{needs}` is `resting`.
+#: A robot with imported lamps that draws a warning in the library, and an error if `{needs}` is `resting`.
 COURIER = """\
 robot Courier {{
   interface drive_action use Drive from courier_msgs
@@ -133,7 +133,7 @@ library Lamps {
 
 @pytest.fixture
 def courier(tmp_path: Path) -> Path:
-    """A file with a robot that synthesis warns about, in a library in the folder `parts`."""
+    """Return a file with a robot that draws a warning of synthesis in a library in the folder `parts`."""
     (tmp_path / "parts").mkdir()
     (tmp_path / "parts" / "lamps.rscd").write_text(LAMPS)
     file = tmp_path / "courier.rscd"
@@ -143,6 +143,6 @@ def courier(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def self_cancelling(courier: Path) -> Path:
-    """The same with an action that would be cancelled as soon as it has started."""
+    """Return the same robot with an action that would be canceled directly after its start."""
     courier.write_text(COURIER.format(needs="resting"))
     return courier

@@ -1,4 +1,4 @@
-"""`robosc check`: all findings of all models, in each form, with the right exit status."""
+"""`robosc check`: all findings of all models, in each format, with the right exit status."""
 
 import json
 from pathlib import Path
@@ -100,7 +100,7 @@ def test_fix(run: Run, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("breaks", ["\n", "\r\n", "\r"])
 def test_a_fix_keeps_the_rest_of_the_file(run: Run, tmp_path: Path, breaks: str) -> None:
-    """Also its byte order mark and its line breaks, of which the first is another one."""
+    """This includes the byte order mark and the line breaks, of which the first has another form."""
     model = tmp_path / "door.rscd"
 
     def written(text: str) -> bytes:
@@ -120,7 +120,7 @@ def test_bytes_that_are_no_text_are_not_fixed_away(run: Run, tmp_path: Path) -> 
 
 
 def test_a_fix_that_makes_a_model_worse_is_left_out(run: Run, tmp_path: Path) -> None:
-    """`opened` is like what was written, and a state; the condition would be of the wrong type."""
+    """`opened` resembles the misspelled name and is a state, but the condition would have the wrong type."""
     model = tmp_path / "door.rscd"
     text = DOOR.replace("robot Door {", "robot Door {\n  constant limit: double = 1.0\n").replace(
         "needs Leaf.closed", "needs Leaf.closed and lmit"

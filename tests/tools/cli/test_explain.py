@@ -1,4 +1,4 @@
-"""`robosc explain`: what it says word by word, how events and states are named, and what it can't answer."""
+"""`robosc explain`: its exact output, the names of events and states, and questions without an answer."""
 
 import json
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""The stories of docs/explain.md are true: each model, repaired as the page says, draws the output that it shows."""
+"""The stories of docs/explain.md are true: each model, repaired as the page shows, has the shown output."""
 
 import re
 from collections.abc import Callable
@@ -13,7 +13,7 @@ STORIES = ["Nothing is allowed", "Less is allowed than was meant", "One thing is
 
 
 def repaired(model: str, diff: str) -> str:
-    """The model with one hunk of a diff applied."""
+    """Return the model with one hunk of a diff applied."""
     old, new = (
         "".join(line[1:] for line in diff.splitlines(keepends=True) if line[0] in signs) for signs in ("- ", "+ ")
     )

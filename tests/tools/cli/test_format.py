@@ -1,4 +1,4 @@
-"""`robosc format`: what is written, what is only shown, and what is left alone."""
+"""`robosc format`: written files, shown files, and unchanged files."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[3]
 
 @pytest.fixture
 def messy(tmp_path: Path) -> Path:
-    """A file whose layout is not the canonical one."""
+    """Return a file whose layout is not the canonical one."""
     file = tmp_path / "messy.rscd"
     file.write_text(MESSY)
     return file

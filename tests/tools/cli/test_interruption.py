@@ -1,4 +1,4 @@
-"""An interrupt is told as one, wherever it comes, and nothing is written after it."""
+"""An interrupt is reported as one at any time, and nothing is written after it."""
 
 import os
 import shutil
@@ -15,7 +15,7 @@ from tests.interruptions import interrupted, interruptions
 
 from .conftest import DOOR
 
-#: Runs the command line after `robosc.tools.cli.transform` got a reading that is interrupted, and hides it: `{hiding}`.
+#: Run the command line with a reading in `robosc.tools.cli.transform` that is interrupted and hides this: `{hiding}`.
 PROGRAM = """
 import os, signal, sys
 import robosc.tools.cli.transform as transform
@@ -63,7 +63,7 @@ def test_an_ignored_interrupt_stays_ignored(door: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_a_command_is_interrupted_at_any_change(tmp_path: Path, sent: signal.Signals) -> None:
-    """`format`, as the quickest of those that write: the model is the old one or the new one."""
+    """`format` is the fastest command that writes: the model is the old one or the new one."""
     model = tmp_path / "door.rscd"
     untidy = DOOR.replace("  component", "component")
 
@@ -72,7 +72,7 @@ def test_a_command_is_interrupted_at_any_change(tmp_path: Path, sent: signal.Sig
 
     def run(number: int) -> int:
         for stage in tmp_path.glob(".robosc-*"):
-            shutil.rmtree(stage)  # each run has the same changes
+            shutil.rmtree(stage)  # each run then makes the same changes
         model.write_text(untidy)
         return interrupted(format_model, number, sent)
 
@@ -87,7 +87,7 @@ def test_a_command_is_interrupted_at_any_change(tmp_path: Path, sent: signal.Sig
     assert list(tmp_path.iterdir()) == [model]
 
 
-#: A compiler that starts a process of its own, and ends neither that nor itself before robosc got a signal.
+#: A compiler that starts a child process, and ends neither it nor itself before robosc receives a signal.
 COMPILER = """#!/bin/sh
 sleep 1000 &
 echo $! > {number}
@@ -112,12 +112,12 @@ def test_verify_leaves_neither_files_nor_processes(door: Path, tmp_path: Path, s
         capture_output=True,
         text=True,
         check=False,
-        # `nohup` would let it ignore one of them.
+        # `nohup` would make the process ignore one of the signals.
         preexec_fn=lambda: signal.signal(sent, signal.SIG_DFL),
     )
     assert (done.returncode, done.stderr) == (130 if sent == signal.SIGINT else -sent, "")
     assert list(temporary.iterdir()) == []
-    # It is killed, be it that nobody has asked yet for how it ended; a busy machine takes a moment to end it.
+    # The process was killed: it is gone or a zombie. A busy machine needs a moment for this.
     state = Path("/proc", number.read_text().strip(), "status")
     deadline = time.monotonic() + 120
     while state.exists() and "State:\tZ" not in state.read_text():

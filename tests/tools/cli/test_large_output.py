@@ -1,4 +1,4 @@
-"""A model with a thousand faults on one line: the output stays readable, and small."""
+"""A model with a thousand faults on one line: the output stays readable and small."""
 
 from __future__ import annotations
 

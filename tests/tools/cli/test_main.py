@@ -1,4 +1,4 @@
-"""What holds for all commands: help that loads nothing, versions, wrong calls, faults of the tool itself."""
+"""Behavior of all commands: help that loads no packages, versions, wrong calls, faults of the tool itself."""
 
 import subprocess
 import sys
@@ -36,7 +36,7 @@ COMMANDS = [
 
 
 def loaded_by(*arguments: str) -> set[str]:
-    """The modules that a call of the command line loads."""
+    """Return the modules that a call of the command line loads."""
     program = f"""
 import sys
 from robosc.base.files import reading as files
@@ -111,7 +111,7 @@ def test_a_file_that_goes_while_it_is_read(run: Run, door: Path, monkeypatch: py
 
 
 def raising(error: BaseException, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Makes `check` raise an error."""
+    """Make `check` raise an error."""
 
     def command(models: object, **_: object) -> None:  # noqa: ARG001
         raise error
@@ -202,7 +202,7 @@ def test_a_wrong_call_has_a_hint(run: Run, door: Path, call: tuple[str, ...], hi
 
 
 def test_export_needs_no_server(door: Path) -> None:
-    """Whoever writes the page as files needs no packages of a server."""
+    """Writing the page as files requires no server packages."""
     program = f"""
 import sys
 sys.modules["starlette"] = sys.modules["uvicorn"] = None

@@ -1,4 +1,4 @@
-"""What a call, a configuration or a saved model names: nothing hangs, tells secrets, or writes where it should not."""
+"""Files named in a call, a configuration or a saved model: no hang, no leak, no write outside the output."""
 
 import json
 import os
@@ -72,7 +72,7 @@ def test_a_folder_is_formatted_without_what_leads_out(run: Run, tmp_path: Path) 
 
 
 def saved_courier(run: Run, courier: Path) -> Path:
-    """A saved model in a folder of its own, in which every element draws a finding."""
+    """Return a saved model in its own folder, in which every element draws a finding."""
     assert run("transform", courier, "-I", "parts", "--to", "xmi", "-o", "out").exit_code == 0
     saved = Path("out/Courier.robosc.xmi")
     saved.write_text(saved.read_text().replace('marked="true"', 'marked="false"'))
@@ -80,7 +80,7 @@ def saved_courier(run: Run, courier: Path) -> Path:
 
 
 def forged(saved: Path, file: str) -> None:
-    """Lets the model say that it comes from a file, and each element that it stands in its first line."""
+    """Change the file that the model names as its source, and move each element to the first line."""
     text = re.sub(r'source="[^"]*"', 'source="1:1-1:20"', saved.read_text())
     saved.write_text(re.sub(r'file="[^"]*"', f'file="{file}"', text))
 
@@ -141,7 +141,7 @@ def test_findings_of_a_saved_model_and_a_configuration_show_their_lines(run: Run
 
 
 def test_two_files_of_one_name(run: Run, courier: Path) -> None:
-    """A finding of synthesis about a library stands in the library, though the robot's file is called like it."""
+    """A finding of synthesis about a library is in the library, even if the robot's file has the same name."""
     Path("parts/lamps.rscd").rename("parts/courier.rscd")
     answer = run("synthesize", courier.name, "-I", "parts")
     assert "parts/courier.rscd:4:5: warning:" in answer.stderr
@@ -155,7 +155,7 @@ def test_two_files_of_one_name(run: Run, courier: Path) -> None:
 
 
 def test_names_of_files_are_the_same_everywhere(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Below the model's folder a file is called by its path from there, elsewhere by its bare name."""
+    """Below the model's folder a file is named by its relative path, elsewhere by its bare name."""
     texts = []
     for home in ("here", "there/deeper"):
         folder = tmp_path / home
@@ -216,7 +216,7 @@ def test_a_saved_model_is_not_written_over_by_what_comes_from_it(run: Run, door:
     assert run("transform", door, "--to", "xmi", "-o", "out").exit_code == 0
     saved = Path("out/Door.sct.xmi")
     before = saved.read_bytes()
-    assert run("transform", saved, "--to", "xmi", "-o", "out").exit_code == 0  # nothing changes
+    assert run("transform", saved, "--to", "xmi", "-o", "out").exit_code == 0  # no file changes
     saved.write_bytes(before.replace(b"  <", b" <"))
     answer = run("transform", saved, "--to", "xmi", "-o", "out")
     assert (answer.exit_code, "what is read is not written over" in answer.stderr) == (2, True)
@@ -263,7 +263,7 @@ def test_a_folder_outside_of_the_models_is_confirmed(
     assert not Path("out").exists()
     assert not outside.exists()
     assert run(*call, "--confirm", "output.ros1ControllerNodeLocation").exit_code == 1
-    assert run("transform", model, "--to", "ros1", "-o", "out").exit_code == 0  # nothing would be written there
+    assert run("transform", model, "--to", "ros1", "-o", "out").exit_code == 0  # this call writes no file there
     answer = run(*call, "--confirm", KEY)
     assert answer.exit_code == 0, answer.output
     count = sum(path.is_file() for path in outside.rglob("*"))

@@ -1,4 +1,4 @@
-"""`robosc new`: what it writes is a sound model that does what its page says; nothing is written over."""
+"""`robosc new`: its model is sound and behaves as its page states; no file is overwritten."""
 
 import json
 import runpy

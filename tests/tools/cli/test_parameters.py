@@ -1,4 +1,4 @@
-"""`--param NAME=VALUE`: what is set on the robot, in a simulation."""
+"""`--param NAME=VALUE`: parameters of the robot, in a simulation."""
 
 import json
 from pathlib import Path
@@ -25,7 +25,7 @@ def test_data_is_read_with_what_is_set(given: list[str], state: str) -> None:
 
 @pytest.mark.parametrize(("given", "state"), [([], "dark"), (["--param", "Lamp.pause=0.5"], "lit")])
 def test_a_time_is_what_is_set(given: list[str], state: str) -> None:
-    """Durations: `--param` of `simulate` sets them, too."""
+    """`--param` of `simulate` also sets durations."""
     call = ["simulate", str(CRUISE), "--loop", *given, "--script", "-"]
     answer = CliRunner().invoke(main, call, input="wait 1.0\n")
     assert answer.exit_code == 0, answer.output

@@ -1,4 +1,4 @@
-"""What takes long is said, on a terminal only."""
+"""Long work reports its progress, on a terminal only."""
 
 import io
 import subprocess
@@ -88,7 +88,7 @@ def test_how_far_a_synthesis_is(monkeypatch: pytest.MonkeyPatch) -> None:
     ("variable", "hint"), [("0..9", "integers smaller ranges"), ("bool", "describe the robot with fewer states")]
 )
 def test_too_little_memory(variable: str, hint: str) -> None:
-    """The hint speaks of integers only if the model has some."""
+    """The hint mentions integers only if the model has some."""
     given = model([plant("p", {"a": []}, variables={"v": variable})])
     with pytest.raises(MemoryError, match=hint), synthesizing(given):
         raise MemoryError

@@ -1,4 +1,4 @@
-"""`robosc rule`: what rules mean."""
+"""`robosc rule`: the meaning of rules."""
 
 from robosc.base.diagnostics.rules import rules
 from robosc.base.files.resources import locate

@@ -1,4 +1,4 @@
-"""`robosc run`: what it says when it can't start."""
+"""`robosc run`: its messages if it cannot start."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ MODEL = EXAMPLES / "line_follower" / "line_follower.rscd"
 
 
 def run(*arguments: str | Path, blocked: str = "") -> subprocess.CompletedProcess[str]:
-    """The command in a Python that lacks a module."""
+    """Run the command in a Python that lacks a module."""
     code = "import sys; sys.modules[sys.argv.pop(1)] = None; from robosc.tools.cli import run; run()"
     return subprocess.run(
         [sys.executable, "-c", code, blocked, "run", *arguments], capture_output=True, text=True, check=False

@@ -66,7 +66,7 @@ def test_all_but_the_time_is_the_same_on_every_run(run: Run, door: Path) -> None
     assert said[0] == said[1]
 
 
-#: Two counts and their sum: neither single steps nor leaps come to an end within minutes.
+#: Two counts and their sum: neither single steps nor accelerated ones finish within minutes.
 SUM = """
 robot Sum {
   component Counter {
@@ -92,7 +92,7 @@ robot Sum {
 
 @pytest.fixture
 def long(tmp_path: Path) -> Path:
-    """A file with a robot whose synthesis takes minutes, and much memory."""
+    """Return a file with a robot whose synthesis takes minutes and much memory."""
     file = tmp_path / "sum.rscd"
     file.write_text(SUM)
     return file
@@ -117,7 +117,7 @@ def test_no_memory_at_all_is_a_wrong_call(run: Run, door: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no pseudo-terminals")
 def test_an_interrupt_ends_a_long_synthesis(long: Path) -> None:
-    """On a terminal, where it says how far it is: it leaves the cursor visible, and no output."""
+    """On a terminal with progress output: the cursor stays visible, and there is no output."""
     ours, theirs = os.openpty()
     command = [sys.executable, "-m", "robosc", "synthesize", "--json", long]
     with subprocess.Popen(
@@ -132,7 +132,7 @@ def test_an_interrupt_ends_a_long_synthesis(long: Path) -> None:
             while more := os.read(ours, 1000):
                 shown += more
         except OSError:
-            pass  # that is how a pseudo-terminal ends
+            pass  # the end of a pseudo-terminal raises this
         assert process.stdout is not None
         assert process.stdout.read() == b""
     os.close(ours)
@@ -141,7 +141,7 @@ def test_an_interrupt_ends_a_long_synthesis(long: Path) -> None:
     assert shown.rindex(b"\x1b[?25h") > shown.rindex(b"\x1b[?25l")
 
 
-#: A leaf that can only be closed while nobody has locked it, and that may not stay open.
+#: A leaf that can only be closed while it is not locked, and that must not stay open.
 LOCK = """
   component Lock {
     incoming message lock with identifier: "/lock", type: none
@@ -181,7 +181,7 @@ def test_as_text(run: Run, tmp_path: Path) -> None:
 
 
 def test_the_text_tells_what_the_robot_does(run: Run, tmp_path: Path) -> None:
-    """Silent events in words, no choice among data, and nothing of a guard that would not matter."""
+    """The text has silent events in words, no choices of data, and no guards without effect."""
     file = tmp_path / "lamp.rscd"
     file.write_text(
         """robot Lamp {

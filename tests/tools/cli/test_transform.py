@@ -1,4 +1,4 @@
-"""`robosc transform`: what is written where, and that nothing is where something is wrong."""
+"""`robosc transform`: its output files, and that a fault leaves no output."""
 
 import json
 import os
@@ -244,7 +244,10 @@ def test_saved_models_give_the_same_tests(run: Run, door: Path, start: str) -> N
 
 
 def test_what_a_package_is_made_of_is_listed(run: Run, tmp_path: Path) -> None:
-    """The model, its libraries, the definitions of ROS types, the configuration; not what was only looked for."""
+    """The list has the model, its libraries, ROS type definitions and the configuration.
+
+    Files that were only searched are not in it.
+    """
     library, types = tmp_path / "libraries", tmp_path / "types" / "door_msgs" / "msg"
     library.mkdir()
     types.mkdir(parents=True)
@@ -280,7 +283,7 @@ def test_inputs_of_a_model_with_errors_are_not_listed(run: Run, door: Path) -> N
 
 
 def test_what_a_package_includes(run: Run, door: Path, tmp_path: Path) -> None:
-    """The code, without a folder of its own; where it comes from; no copy elsewhere."""
+    """The package contains the code without a folder of its own and names its source. There is no second copy."""
     (tmp_path / "controller-config.json").write_text(
         '{"onShutdown": [], "output": {"ros2ControllerNodeLocation": "copy"}}'
     )

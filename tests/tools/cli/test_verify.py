@@ -1,4 +1,4 @@
-"""`robosc verify`: the table, the traces, JSON, JUnit, and the status."""
+"""`robosc verify`: the table, the traces, JSON, JUnit, and the exit status."""
 
 import json
 from pathlib import Path
@@ -61,7 +61,7 @@ robot Gate {
 
 @pytest.fixture
 def lock(tmp_path: Path) -> Path:
-    """A robot with a choice between two silent transitions."""
+    """Return a robot with a choice between two silent transitions."""
     file = tmp_path / "lock.rscd"
     file.write_text(LOCK)
     return file
@@ -69,7 +69,7 @@ def lock(tmp_path: Path) -> Path:
 
 @pytest.fixture(autouse=True)
 def translated(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is generated is compared with the model elsewhere: here it takes too long."""
+    """Skip the comparison of generated code with the model, which other tests check and which takes too long."""
     found = [Verdict("c-translation", Outcome.SKIPPED, "", "no C compiler is here")]
     monkeypatch.setattr("robosc.analysis.verify.validate", lambda *_: found)
 
@@ -159,7 +159,7 @@ def test_as_junit(run: Run, lock: Path, tmp_path: Path) -> None:
 
 
 def test_a_test_case_tells_which_requirement_it_verifies(run: Run, tmp_path: Path) -> None:
-    """By the properties that Eclipse S-CORE reads: fully where it is the one test case of the requirement."""
+    """Test cases have the properties of Eclipse S-CORE: `FullyVerifies` if it is the requirement's only test case."""
     robot = tmp_path / "gate.rscd"
     robot.write_text(GATE)
     file = tmp_path / "results.xml"

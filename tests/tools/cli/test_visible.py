@@ -1,4 +1,4 @@
-"""Whatever a model, a path or an argument holds: nothing that is printed steers a terminal, hides, or forges lines."""
+"""Texts of models, paths and arguments: no output controls a terminal, hides characters, or forges lines."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from robosc.tools import cli
 from tests.tools.cli.conftest import DOOR, Run
 
 CODES = [number for first, last in HIDDEN for number in {first, (first + last) // 2, last}]
-#: Every kind of what is hidden, but line breaks and tabs.
+#: Every kind of hidden character, except line breaks and tabs.
 HOSTILE = "".join(chr(number) for number in CODES if number not in (0, 9, 10, 13)) + "\x1b[31m\u202e\x85"
 
 
 def hidden(text: str) -> set[str]:
-    """What must not be printed of what a text holds."""
+    """Return the characters of a text that must not be printed."""
     return {character for character in text if visible(character) != character} - {"\n", "\t"}
 
 
@@ -38,7 +38,7 @@ def test_what_can_be_seen_stays() -> None:
 
 @pytest.fixture
 def hostile(tmp_path: Path) -> Path:
-    """A robot with hidden characters in comments, strings and its file's name."""
+    """Return a robot with hidden characters in comments, strings and its file's name."""
     file = tmp_path / f"do{HOSTILE.replace('/', '')[:40]}or.rscd"
     text = DOOR.replace(
         "    behaviour {\n", f'    behaviour {{ variable s: string = "{HOSTILE}" // {HOSTILE}\n      state lost {{}}\n'
@@ -49,7 +49,7 @@ def hostile(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def broken_hostile(hostile: Path) -> Path:
-    """The same with errors on such lines, one of which is about such a text."""
+    """Return the same robot with errors on such lines, one of which concerns such a text."""
     text = hostile.read_text(encoding="utf-8").replace("needs Leaf.closed", "needs Leaf.clsed")
     hostile.write_text(text.replace("variable s: string", "variable s: integer"), encoding="utf-8")
     return hostile
@@ -132,6 +132,6 @@ def test_junit_is_xml(run: Run, hostile: Path, tmp_path: Path) -> None:
 
 def test_commands_print_through_one_module() -> None:
     texts = {path.name: path.read_text(encoding="utf-8") for path in Path(cli.__file__).parent.glob("*.py")}
-    # Two print tables and pages with rich.
+    # Two of them print tables and pages with rich.
     printing = {name for name, text in texts.items() if re.search(r"click\.s?echo|\bprint\(", text)}
     assert printing == {"__init__.py", "rule.py", "verify.py"}

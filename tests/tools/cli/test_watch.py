@@ -1,4 +1,4 @@
-"""`check --watch`: each change of what it has read is checked, once, until an interrupt; no test waits."""
+"""`check --watch` checks each change of its input files once, until an interrupt; no test waits."""
 
 import os
 import signal
@@ -18,7 +18,7 @@ Step = Callable[[], object]
 
 @pytest.fixture
 def meanwhile(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
-    """`meanwhile(step, ...)`: each time that watching would sleep the next step is done; after the last, Ctrl-C."""
+    """`meanwhile(step, ...)` performs the next step whenever the watch would sleep; after the last, Ctrl-C."""
 
     def prepare(*steps: Step) -> None:
         left: Iterator[Step] = iter(steps)
@@ -39,7 +39,7 @@ def changing(path: Path, old: str, new: str) -> Step:
 
 
 def rounds(said: str) -> list[list[str]]:
-    """What is said in each round, without the lines that begin and end it."""
+    """Return the output of each round, without its first and last line."""
     parts = said.split("waiting for changes, Ctrl-C ends\n")
     assert parts[-1] == ""
     return [part.splitlines() for part in parts[:-1]]
@@ -70,7 +70,7 @@ def test_without_a_change_nothing_is_checked_again(run: Run, door: Path, meanwhi
 
 
 def test_a_file_that_goes_and_comes_again(run: Run, door: Path, meanwhile: Callable[..., None]) -> None:
-    """As an editor may save: the name is gone for a moment, then it is another file."""
+    """An editor may save like this: the name disappears for a moment, then it is another file."""
     other = door.with_name("door.rscd~")
     meanwhile(lambda: door.rename(other), lambda: other.rename(door))
     assert rounds(run("check", door.name, "--watch").stderr) == [

@@ -1,4 +1,4 @@
-"""A client of the Debug Adapter Protocol, over the standard input and output of `robosc dap` or over a port."""
+"""A client of the Debug Adapter Protocol, over standard input and output of `robosc dap` or over a port."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ Body = dict[str, Any]
 
 
 class Client:
-    """Asks, and reads answers and events in the order in which they come; nothing waits longer than the test may."""
+    """Send requests, and read responses and events in order; the test's timeout bounds all waiting."""
 
     def __init__(self, source: IO[bytes], sink: IO[bytes], folder: Path) -> None:
-        """What is launched lies in the folder."""
+        """Relative paths of programs start at the folder."""
         self._source, self._sink, self._folder = source, sink, folder
         self._sequence = 0
         self.events: list[Body] = []
@@ -34,7 +34,7 @@ class Client:
         self.write(b"Content-Length: %d\r\n\r\n%s" % (len(body), body))
 
     def read(self) -> Body | None:
-        """The next message; None at the end of the stream."""
+        """Return the next message; None at the end of the stream."""
         length = None
         while line := self._source.readline():
             if line == b"\r\n":
@@ -50,7 +50,7 @@ class Client:
         return message
 
     def ask(self, command: str, arguments: Any = None, **given: Any) -> Body:
-        """The response to a request, whatever it says."""
+        """Return the response to a request, whether it succeeds or fails."""
         self._sequence += 1
         sent = {"seq": self._sequence, "type": "request", "command": command}
         self.send({**sent, "arguments": arguments if arguments is not None else given})
@@ -62,14 +62,14 @@ class Client:
                 return message
 
     def do(self, command: str, **given: Any) -> Body:
-        """The body of the response to a request that succeeds."""
+        """Return the body of the response to a request that succeeds."""
         answer = self.ask(command, given)
         assert answer["success"], answer["message"]
         body: Body = answer.get("body", {})
         return body
 
     def refused(self, command: str, **given: Any) -> str:
-        """What the response says to a request that fails."""
+        """Return the message of the response to a request that fails."""
         answer = self.ask(command, given)
         assert not answer["success"]
         assert answer["body"]["error"]["showUser"]
@@ -77,7 +77,7 @@ class Client:
         return message
 
     def event(self, name: str) -> Body:
-        """The body of the next event of a name."""
+        """Return the body of the next event of a name."""
         while True:
             message = self.read()
             assert message is not None, f"the adapter has ended without {name}"
@@ -85,15 +85,15 @@ class Client:
                 body: Body = message.get("body", {})
                 return body
 
-    # What debuggers do
+    # Requests of debuggers
 
     def launch(self, program: str | Path, **given: Any) -> Body:
-        """Starts a session without breakpoints; the event with which it stops."""
+        """Start a session without breakpoints; return the event with which it stops."""
         self.prepare(program, **given)
         return self.begin()
 
     def prepare(self, program: str | Path, **given: Any) -> None:
-        """Launches, so that breakpoints can be set."""
+        """Launch a program before setting breakpoints."""
         self.do("initialize", adapterID="robosc")
         if "script" in given:
             given["script"] = str(self._folder / given["script"])
@@ -105,7 +105,7 @@ class Client:
         return self.event("stopped")
 
     def go(self, command: str = "continue", **given: Any) -> Body:
-        """Lets the robot go on; the event with which it stops."""
+        """Let the robot continue; return the event with which it stops."""
         self.do(command, threadId=1, **given)
         return self.event("stopped")
 
@@ -114,7 +114,7 @@ class Client:
         return frames
 
     def scope(self, name: str, frame: int = 1) -> dict[str, Body]:
-        """The variables of a scope by their names."""
+        """Return the variables of a scope by their names."""
         scopes = {scope["name"]: scope for scope in self.do("scopes", frameId=frame)["scopes"]}
         return self.children(scopes[name])
 
@@ -129,12 +129,12 @@ class Client:
         return result
 
     def said(self) -> str:
-        """All that was told so far."""
+        """Return all output so far."""
         return "".join(event["body"]["output"] for event in self.events if event["event"] == "output")
 
 
 class Program(Client):
-    """`robosc dap` in a process of its own."""
+    """`robosc dap` in its own process."""
 
     def __init__(self, folder: Path, *options: str, packages: Path = ROOT) -> None:
         """`packages` is a folder with further packages."""
@@ -152,7 +152,7 @@ class Program(Client):
         super().__init__(self.process.stdout, self.process.stdin, folder)
 
     def end(self) -> tuple[int, str]:
-        """Closes its input; the exit status and what stands on the standard error output."""
+        """Close the input; return the exit status and the standard error output."""
         _, told = self.process.communicate()
         return self.process.returncode, told.decode()
 

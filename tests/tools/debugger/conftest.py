@@ -1,4 +1,4 @@
-"""Sessions with `robosc dap`; what hangs is ended."""
+"""Sessions with `robosc dap`; a hanging session is ended."""
 
 import os
 import subprocess
@@ -14,7 +14,7 @@ from .client import ROOT, OverPort, Program
 
 @pytest.fixture
 def program(tmp_path: Path) -> Iterator[Program]:
-    """A session over the standard input and output."""
+    """Return a session over standard input and output."""
     with not_longer_than(120):
         started = Program(tmp_path)
         yield started
@@ -24,7 +24,7 @@ def program(tmp_path: Path) -> Iterator[Program]:
 
 @pytest.fixture(scope="session")
 def port() -> Iterator[int]:
-    """Of a process that serves all sessions over it."""
+    """Yield the port of a process that serves all sessions."""
     command = [sys.executable, "-m", "robosc", "dap", "--port", "0"]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     with subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True) as process:
@@ -35,7 +35,7 @@ def port() -> Iterator[int]:
 
 @pytest.fixture
 def session(port: int, tmp_path: Path) -> Iterator[OverPort]:
-    """A session over the port."""
+    """Return a session over the port."""
     with not_longer_than(120):
         client = OverPort(port, tmp_path)
         yield client

@@ -1,4 +1,4 @@
-"""What is malformed, out of order or wrong is answered with what is wrong, and the session goes on where it can."""
+"""Malformed, misordered or wrong requests are answered with an error, and the session continues if possible."""
 
 import asyncio
 import json
@@ -40,7 +40,7 @@ BODIES = [
     b'{"seq": "1", "type": "request", "command": "threads"}',
     b'{"seq": 1, "type": "event", "event": "x"}',
 ]
-#: Requests that are malformed, each with the number and the command by which the answer names it.
+#: Malformed requests, each with the number and the command that the response names.
 MALFORMED = [
     (b'{"seq": 7, "type": "request", "command": "evaluate", "arguments": {"expression": ' + b"[" * 200, 7, "evaluate"),
     (b'{"seq":8,"command":"threads"', 8, "threads"),
@@ -77,7 +77,7 @@ def test_messages_that_are_none_are_left_out(program: Program, door: Path) -> No
         assert session.event("output")["category"] == "stderr"
         assert session.do("threads"), number
     session.send({"seq": 1, "type": "response", "request_seq": 1, "command": "runInTerminal", "success": True})
-    # Blanks and other headers, in whatever case, are none of its business.
+    # Blanks and other headers, in any case, are ignored.
     session.write(
         b'content-length:  52 \r\nContent-Type: x\r\n\r\n{"seq": 1, "type": "request", "command": "threads"}  '
     )
@@ -180,10 +180,10 @@ def test_what_can_not_be_launched(program: Program, tmp_path: Path) -> None:
     for arguments, message in wrong:
         assert message in session.refused("launch", **arguments)
         session.event("terminated")
-    # All findings are shown as everywhere, with their lines.
+    # All findings are shown in the usual format, with their lines.
     assert "did you mean `message_open.c_trigger`?" in session.said()
     assert "      requirement open needs Leaf.x\n" in session.said()
-    # A program that is mended can be launched then.
+    # A mended program can then be launched.
     (tmp_path / "broken.rscd").write_text(DOOR)
     session.do("launch", program="broken.rscd")
     session.event("initialized")
@@ -215,7 +215,7 @@ def test_sessions_over_a_port(tmp_path: Path, door: Path) -> None:
         try:
             assert process.stderr is not None
             port = int(process.stderr.readline().rpartition(" ")[2])
-            # Two at a time, each with a run of its own; one that talks nonsense harms nobody.
+            # Two sessions at a time, each with its own run; an invalid third one harms neither.
             first, second, third = (OverPort(port, tmp_path) for _ in range(3))
             third.write(b"GET / HTTP/1.1\r\n\r\n")
             assert third.read() is None
@@ -253,7 +253,7 @@ def test_one_session_over_a_port(tmp_path: Path, door: Path) -> None:
 
 
 class Heard:
-    """A connection that keeps what is sent."""
+    """A connection that stores the sent messages."""
 
     def __init__(self) -> None:
         self.sent: list[dict[str, Any]] = []
@@ -321,7 +321,7 @@ FITTING = {
     )
 )
 def test_no_request_is_a_fault_of_the_adapter(asked: list[tuple[str, Any]]) -> None:
-    """Whatever is asked, each request has one response, and none tells of a fault of robosc itself."""
+    """Each request has exactly one response, and none reports an internal fault of robosc."""
     heard = Heard()
 
     async def session() -> None:

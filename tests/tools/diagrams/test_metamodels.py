@@ -1,4 +1,4 @@
-"""Class diagrams of the metamodels: they show everything, and the ones in the documentation are up to date."""
+"""Class diagrams of the metamodels: they are complete, and those in the documentation are up to date."""
 
 from pathlib import Path
 from xml.etree import ElementTree
@@ -27,7 +27,7 @@ def test_all_classes_and_features_are_shown(name: str, notation: str) -> None:
         text = " ".join(ElementTree.fromstring(text).itertext())  # noqa: S314 - our own
     for classifier in metamodel(name).eClassifiers:
         if not hasattr(classifier, "eSuperTypes") and not hasattr(classifier, "eLiterals"):
-            continue  # a data type, whose name stands with the features
+            continue  # a data type, whose name is with the features
         members = getattr(classifier, "eLiterals", None) or classifier.eStructuralFeatures
         for element in [classifier, *members]:
             assert element.name in text

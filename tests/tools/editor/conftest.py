@@ -1,4 +1,4 @@
-"""The editor's answers, in the process of the tests."""
+"""The editor's answers, in the tests' process."""
 
 from collections.abc import Iterator
 
@@ -9,7 +9,7 @@ from robosc.tools.editor import project
 
 @pytest.fixture(scope="session", autouse=True)
 def garbage_is_left_to_python() -> Iterator[None]:
-    """The server looks for garbage now and then; here it would look through all that the tests have loaded."""
+    """Turn off the server's garbage collection, which would traverse all objects that the tests have loaded."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(project, "_COLLECTED", 10_000)
         yield

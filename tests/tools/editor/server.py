@@ -1,4 +1,4 @@
-"""A server with an editor, as a process of its own, and texts for it."""
+"""A server with an editor, as a separate process, and texts for it."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from robosc.language.text import Text
 ROOT = Path(__file__).parents[3]
 COMMAND = [sys.executable, "-m", "robosc", "lsp"]
 
-#: After so many seconds without an answer the server hangs, however busy the machine is.
+#: The number of seconds after which an unresponsive server counts as hanging, on any machine.
 LONGEST = 120
 
 
 def edited(content: str, edits: list[types.TextEdit]) -> str:
-    """A text after edits that do not overlap, as an editor makes it."""
+    """Return a text after non-overlapping edits, as an editor applies them."""
     text = Text("", content)
     for edit in sorted(edits, key=lambda edit: edit.range.start, reverse=True):
         start, end = edit.range.start, edit.range.end
@@ -32,7 +32,7 @@ def edited(content: str, edits: list[types.TextEdit]) -> str:
 
 
 class Editor(LanguageClient):
-    """An editor that keeps all findings that it is told, in order, until a test has looked at them."""
+    """An editor that stores all published findings, in order, until a test has read them."""
 
     def __init__(self) -> None:
         super().__init__(converter_factory=default_converter)
@@ -95,7 +95,7 @@ ROBOT = """robot Cart {
 
 
 async def initialize(client: Editor, folder: Path, editor: str = "visual-studio-code") -> None:
-    """Begins as an editor does, with one folder, and without the pause before findings."""
+    """Initialize the session as an editor does, with one folder, and without the pause before findings."""
     await client.initialize_session(
         types.InitializeParams(
             capabilities=client_capabilities(editor),
@@ -106,14 +106,14 @@ async def initialize(client: Editor, folder: Path, editor: str = "visual-studio-
 
 
 def open_text(client: Editor, path: Path, text: str, version: int = 1) -> str:
-    """Opens a text in place of a file, and returns its URI."""
+    """Open a text in place of a file, and return its URI."""
     uri = path.as_uri()
     client.text_document_did_open(types.DidOpenTextDocumentParams(types.TextDocumentItem(uri, "robosc", version, text)))
     return uri
 
 
 def replace(client: Editor, uri: str, version: int, *changes: tuple[types.Range, str] | str) -> None:
-    """Changes an open text: ranges of it, or the whole."""
+    """Change an open text: ranges of it, or the whole."""
     client.text_document_did_change(
         types.DidChangeTextDocumentParams(
             types.VersionedTextDocumentIdentifier(version, uri),
@@ -132,7 +132,10 @@ def close(client: Editor, uri: str) -> None:
 
 
 async def findings(client: Editor, uri: str, version: int | None) -> list[types.Diagnostic]:
-    """What is said of a version of a text, as soon as it is said; the next time, what is said of it then."""
+    """Return the findings of a version of a text when they are published.
+
+    The next call returns the next findings of this version.
+    """
     async with asyncio.timeout(LONGEST):
         while True:
             for published in client.told:
@@ -144,7 +147,7 @@ async def findings(client: Editor, uri: str, version: int | None) -> list[types.
 
 
 def position(text: str, marker: str, into: int = 0, *, nth: int = 0) -> types.Position:
-    """The position of an occurrence of a text, so many characters into it, in units of UTF-16."""
+    """Return the position at an offset into an occurrence of a text, in UTF-16 units."""
     offset = -1
     for _ in range(nth + 1):
         offset = text.index(marker, offset + 1)
@@ -154,7 +157,7 @@ def position(text: str, marker: str, into: int = 0, *, nth: int = 0) -> types.Po
 
 
 def of(text: str, place: types.Range) -> str:
-    """What stands in a range."""
+    """Return the text in a range."""
     lines = text.split("\n")
     start, end = (
         sum(len(line) + 1 for line in lines[: at.line])
@@ -165,5 +168,5 @@ def of(text: str, place: types.Range) -> str:
 
 
 def at(uri: str, where: types.Position) -> dict[str, Any]:
-    """The parameters of a request about a position."""
+    """Return the parameters of a request about a position."""
     return {"text_document": types.TextDocumentIdentifier(uri), "position": where}

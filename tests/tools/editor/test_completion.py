@@ -1,4 +1,4 @@
-"""What is proposed where, of an unfinished text, too."""
+"""Completion proposals at each place, also in an unfinished text."""
 
 import re
 
@@ -49,7 +49,7 @@ def project() -> Project:
 
 
 def complete(project: Project, text: str) -> dict[str, types.CompletionItem]:
-    """What is proposed at the `|` of a text."""
+    """Return the proposals at the `|` of a text."""
     offset, content = text.index("|"), text.replace("|", "")
     path = project.put("file:///nowhere/cart.rscd", 1, content)
     snapshot = project.snapshot()
@@ -60,7 +60,7 @@ def complete(project: Project, text: str) -> dict[str, types.CompletionItem]:
 
 
 def behind(marker: str, typed: str = "|", *, nth: int = 0) -> str:
-    """The text with something typed behind an occurrence of a marker."""
+    """Return the text with input inserted after an occurrence of a marker."""
     offset = -1
     for _ in range(nth + 1):
         offset = TEXT.index(marker, offset + 1)
@@ -68,7 +68,7 @@ def behind(marker: str, typed: str = "|", *, nth: int = 0) -> str:
 
 
 CASES = [
-    # Where the text is whole but for the cursor: (text, what is proposed, what is not).
+    # The text is complete except at the cursor: (text, expected proposals, unexpected proposals).
     ("|", {"robot", "library"}, {"component"}),
     (behind("robot Cart {\n", "  |\n"), {"component", "requirement", "provide", "constant"}, {"state", "Base"}),
     (behind("state free { ", "|"), {"on", "transition", "after"}, {"component"}),
@@ -144,7 +144,7 @@ def test_the_word_is_replaced(project: Project) -> None:
 
 @pytest.mark.parametrize("word", SNIPPETS)
 def test_snippets_are_models(word: str) -> None:
-    """With their places as they are they parse where their word can stand."""
+    """With their default placeholders they parse in each place for their word."""
     around = {
         "robot": "{}",
         "library": "{}",
@@ -197,7 +197,7 @@ def failing(type: str = "Failure", guard: str = "true", condition: str = "true")
 
 
 def test_reasons_are_proposed_where_the_text_expects_one(project: Project) -> None:
-    """Completion offers the reasons of the service, and none elsewhere."""
+    """Completion offers the service's reasons, and none in other places."""
     assert "Failure" in complete(project, failing(type="|"))
     for guard in ("error = |", "why != |", "lost = error and error = |"):
         found = complete(project, failing(guard=guard))

@@ -14,7 +14,7 @@ from tests.tools.editor.test_robustness import EXAMPLES, parameters
 pytestmark = pytest.mark.asyncio(loop_scope="module")
 #: Copies of an example are one text.
 TEXTS = {path.read_text(): path for path in EXAMPLES}
-#: For the others there is more to answer.
+#: The other examples need more answers.
 SMALL = "line_stepper"
 OTHERS = (types.TEXT_DOCUMENT_DEFINITION, types.TEXT_DOCUMENT_HOVER, types.TEXT_DOCUMENT_CODE_LENS)
 

@@ -1,4 +1,4 @@
-"""Several folders of one editor are one project: names are found, and renamed, in the texts of all of them."""
+"""Several folders of one editor are one project: names are found and renamed in the texts of all folders."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ VAN = ROBOT.replace("Cart", "Van")
 
 @pytest_lsp.fixture(config=CONFIG)
 async def client(lsp_client: Editor, tmp_path: Path):
-    """With the folder of two robots and that of their library; `others` comes later."""
+    """Start with the folder of two robots and that of their library; `others` is added later."""
     for name, text in (("robots/cart", ROBOT), ("robots/van", VAN), ("parts/wheels", LIBRARY), ("others/cart", ROBOT)):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / f"{name}.rscd").write_text(text)

@@ -1,4 +1,4 @@
-"""The server abandons work that nobody needs or that takes too long, and answers every request."""
+"""The server abandons work that is obsolete or takes too long, and answers every request."""
 
 import asyncio
 import threading
@@ -31,7 +31,7 @@ class StopError(Exception):
 
 
 def test_an_analysis_may_be_interrupted_at_every_checkpoint() -> None:
-    """What comes after is what it would have been without: nothing is left half done, and nothing is kept."""
+    """An interrupt does not change later results: nothing is left incomplete, and nothing is cached."""
     made, calls, last = Project(), 0, 0
     path = made.put(URI, 1, ROBOT.replace("Door.open", "Door.opem"))
     made.put("file:///nowhere/wheels.rscd", 1, LIBRARY)
@@ -155,7 +155,7 @@ async def client(lsp_client: Editor, folder: Path):
 
 
 async def ask(client: Editor, method: str, parameters: Any) -> Any:
-    """Sends parameters that the client's own classes do not allow."""
+    """Send parameters that the client's own classes do not permit."""
     answer: Future[Any] = Future()
     client.protocol._request_futures[method] = answer
     client.protocol._send_data(JsonRPCRequestMessage(method, method, "2.0", parameters))

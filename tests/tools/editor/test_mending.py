@@ -1,4 +1,4 @@
-"""A hint that says what to write is an edit, and after it the finding is gone."""
+"""A hint that states an edit offers it, and the edit removes the finding."""
 
 from pathlib import Path
 from typing import Any
@@ -82,7 +82,7 @@ def test_a_hint_mends(right: str, wrong: str, rule: str) -> None:
 
 
 def test_each_way_is_a_fix() -> None:
-    """Of several ways each is offered, and none of them is done where all hints are followed at once."""
+    """Each of several alternatives is offered, but applying all hints at once applies none of them."""
     text = ROBOT.replace("initial marked state", "marked state", 1)
     _, actions = ask(text, WHOLE)
     assert [(action.title, action.is_preferred) for action in actions] == [
@@ -95,7 +95,7 @@ def test_each_way_is_a_fix() -> None:
 
 
 def test_an_edit_that_would_break_the_text_is_not_offered() -> None:
-    """There `requirement never` would be no less an error than `never` is."""
+    """In this place, `requirement never` would be an error just as `never` is."""
     text = ROBOT.replace("state busy { ", "state busy { never C.idle ")
     _, actions = ask(text, WHOLE)
     assert "syntax" in errors(text)
@@ -131,7 +131,7 @@ TWICE = ROBOT.replace("state busy", "state /* state idle of old */ idle").replac
 
 
 def test_a_duplicate_is_renamed() -> None:
-    """The name, not the word in the comment before it; what names the first of the two stays."""
+    """The edit changes the name, not the word in the comment before it. References to the first state stay."""
     _, actions = ask(TWICE, WHOLE)
     (action,) = [action for action in actions if action.title == "rename one of the two, such as `idle_2`"]
     after = edited(TWICE, action.edit.changes[URI])
@@ -139,7 +139,7 @@ def test_a_duplicate_is_renamed() -> None:
 
 
 def test_a_rename_that_would_change_the_meaning_is_not_offered() -> None:
-    """In the part that can't be read the name may stand for the state that is to be renamed."""
+    """In the unreadable part the name may refer to the state that would be renamed."""
     _, actions = ask(TWICE.replace("goto idle }", "got idle }", 1), WHOLE)
     assert [action for action in actions if action.title.startswith("rename")] == []
 

@@ -1,4 +1,4 @@
-"""The server tells what is in a text, and what is wrong with it: over the protocol, in a process of its own."""
+"""The server reports the content and the faults of a text: over the protocol, in a separate process."""
 
 import asyncio
 from itertools import pairwise
@@ -107,7 +107,7 @@ async def test_positions_count_units_of_utf16(client: Editor, folder: Path) -> N
     at_robot = types.Range(position(text, "🤖"), position(text, "🤖", 2))
     replace(client, uri, 2, (at_robot, "🛒🛒🛒"), (finding.range, "none"))
     changed = text.replace("🤖🚪", "🛒🛒🛒").replace("bolean", "none")
-    # The second range counts after the first change, which made the line two units longer.
+    # The second range is relative to the text after the first change, which made the line two units longer.
     (finding, *_) = await findings(client, uri, 2)
     assert finding.code == "syntax"
     replace(client, uri, 3, changed)
@@ -366,7 +366,7 @@ async def test_completion_over_the_protocol(client: Editor, folder: Path) -> Non
 
 
 async def test_a_request_that_is_overtaken_is_not_worked_on(client: Editor, folder: Path) -> None:
-    """The change comes before the turn of the question: the answer would be about another text."""
+    """The change arrives before the request's turn: the answer would be about another text."""
     uri, _ = await opened(client, folder / "overtaken.rscd", ROBOT)
     asked = [
         asyncio.ensure_future(client.text_document_hover_async(types.HoverParams(**at(uri, position(ROBOT, "Door {")))))
@@ -453,7 +453,7 @@ async def test_a_library_elsewhere_in_the_project_is_offered(client: Editor, fol
         _about(uri, types.CodeActionParams, range=finding.range, context=types.CodeActionContext([finding]))
     )
     assert action.title == f"look for libraries in {folder / 'shared'}, too"
-    # The client takes a code action with a command for a command.
+    # The client mistakes a code action with a command for a command.
     command = types.ExecuteCommandParams(ADD_LIBRARY_FOLDER, [(folder / "shared").as_uri()])
     await client.workspace_execute_command_async(command)
     assert await findings(client, uri, 1) == []

@@ -1,4 +1,4 @@
-"""What docs/editor.md tells users of Neovim, Emacs and Helix to write works in these, as far as they are here."""
+"""The setup in docs/editor.md for Neovim, Emacs and Helix works in these editors, if they are installed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import pytest
 from tests.tools.editor.server import LIBRARY, ROBOT, ROOT
 
 PAGE = (ROOT / "docs" / "editor.md").read_text()
-#: What the editors wait for, in seconds, however busy the machine is.
+#: The timeout of the editors in seconds, sufficient for a busy machine.
 LONGEST = 120
 SAID = "component `Door` has no variable or state `opem`"
 
@@ -26,7 +26,7 @@ def recipe(language: str, nth: int = 0) -> str:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A robot with an error, in a folder that an editor takes for a project; `robosc` as editors find it."""
+    """Return a robot with an error in a folder that editors recognize as a project, with `robosc` on their path."""
     (tmp_path / "controller-config.json").write_text("{}")
     (tmp_path / "wheels.rscd").write_text(LIBRARY)
     (tmp_path / "cart.rscd").write_text(ROBOT.replace("Door.open", "Door.opem"))
@@ -52,7 +52,10 @@ def run(folder: Path, *words: str | Path) -> str:
 
 
 def neovim(version: tuple[int, int]) -> str:
-    """A Neovim that is at least of a version, and below 0.11 if that is: from the tests' packages or the system."""
+    """Return a Neovim of at least a version, from the tests' packages or the system.
+
+    If the version is below 0.11, so is the Neovim.
+    """
     own = shutil.which("nvim", path=str(Path(sys.executable).parent))
     program = own if version >= (0, 11) and own else shutil.which("nvim", path=os.defpath)
     if program is None:
@@ -96,7 +99,7 @@ def test_emacs(folder: Path) -> None:
 
 
 def test_helix() -> None:
-    """There is no Helix among the packages of the tests: what it reads is what the server is called with."""
+    """The tests' packages have no Helix: its configuration must have the server's command line."""
     told = tomllib.loads(recipe("toml"))
     server = told["language-server"]["robosc"]
     assert [server["command"], *server["args"]] == ["robosc", "lsp"]

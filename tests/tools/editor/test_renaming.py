@@ -24,7 +24,7 @@ def project(tmp_path: Path) -> Project:
 
 
 def renamed(project: Project, text: str, marker: str, new: str, into: int = 0) -> dict[str, str]:
-    """The texts after a rename, by the stems of their names."""
+    """Return the texts after a rename, by the stems of their names."""
     (path,) = [path for path, document in project.snapshot().documents.items() if document.content == text]
     snapshot = project.snapshot()
     analysis = snapshot.analysis(path)
@@ -72,7 +72,7 @@ def test_what_would_break_the_model_is_refused(project: Project, marker: str, ne
 
 
 def test_a_name_that_another_one_would_take_is_refused(project: Project, tmp_path: Path) -> None:
-    """No finding tells of it: the value of the enum is hidden by the variable."""
+    """No finding would show this: the variable would hide the value of the enum."""
     text = """robot R {
   datatype enum View from boolean to { value -> near default -> far }
   component C {

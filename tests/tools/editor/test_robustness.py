@@ -1,4 +1,4 @@
-"""No text, however broken, makes an answer fail; and the texts after edits are those that a fresh server would have."""
+"""No broken text makes an answer fail, and edited texts equal those of a fresh server."""
 
 from contextlib import suppress
 from itertools import pairwise
@@ -44,7 +44,7 @@ def project(text: str) -> Project:
 
 
 def parameters(method: str, text: Text, offset: int, uri: str = URI) -> object:
-    """What an editor sends with a request at an offset."""
+    """Return the parameters of an editor's request at an offset."""
     position = types.Position(*text.to_utf16(offset))
     place = types.Range(position, types.Position(*text.to_utf16(offset + 40)))
     made = types.METHOD_TO_TYPES[method][2]
@@ -77,10 +77,10 @@ def ask_everything(made: Project, text: str, offset: int) -> None:
     communication_at(analysis, offset)
     for method, job in ANSWERS.items():
         if method == types.TEXT_DOCUMENT_RENAME:
-            continue  # It refuses by an error; tests/tools/editor/test_renaming.py asks.
-        # Right behind the last letter, and now and then before it.
+            continue  # An invalid rename is an error: tests/tools/editor/test_renaming.py checks this.
+        # Directly after the last letter, and sometimes before it.
         for where in {offset, max(0, offset - (offset % 7 == 0))}:
-            # That a name of a library is not the editor's to change is an answer.
+            # An error is a valid answer: a name of a library cannot be changed here.
             with suppress(*[JsonRpcException] if method == types.TEXT_DOCUMENT_PREPARE_RENAME else []):
                 job(snapshot, analysis, parameters(method, analysis.text, where))
 
@@ -124,11 +124,11 @@ def edits(draw: st.DrawFn) -> tuple[int, int, str]:
 @settings(max_examples=15)
 @given(st.lists(edits(), min_size=1, max_size=6))
 def test_edits_one_by_one_are_the_text_as_a_whole(changes: list[tuple[int, int, str]]) -> None:
-    """As the editor counts: line breaks are those of the protocol, columns units of UTF-16."""
+    """Positions follow the protocol: its line breaks, and columns in UTF-16 units."""
     text, edited = SMALL, project(SMALL)
     for version, (first, length, piece) in enumerate(changes, start=2):
         start, end = min(first, len(text)), min(first + length, len(text))
-        # No position lies between the two characters of a line break.
+        # No position is between the two characters of a line break.
         start -= text[start - 1 : start + 1] == "\r\n"
         end += text[end - 1 : end + 1] == "\r\n"
         edited.change(URI, version, [((*place(text, start), *place(text, end)), piece)])
@@ -186,7 +186,7 @@ def test_an_analysis_is_kept_until_what_it_read_changes() -> None:
 
 @pytest.mark.parametrize("method", [types.CALL_HIERARCHY_INCOMING_CALLS, types.CALL_HIERARCHY_OUTGOING_CALLS])
 def test_who_calls_a_state_is_asked_where_it_is_declared(method: str) -> None:
-    """In a text that only names it, of its library, no item can have stood there: the text has changed."""
+    """A text that only names the state of its library has no item: an item would be of an older text."""
     robot = "robot R { component C from Wheels import Motors requirement drive needs C.idle }"
     made = project(robot)
     for uri, text, calls in [(URI, robot, 0), (LIBRARY_URI, WHEELS, 1)]:

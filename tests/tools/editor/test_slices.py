@@ -1,4 +1,4 @@
-"""In a large text what is typed into a definition is looked at first, and the whole as soon as typing rests."""
+"""In a large text, the definition being edited is checked first, and the whole text when typing pauses."""
 
 from pathlib import Path
 
@@ -17,7 +17,7 @@ from tests.tools.editor.server import COMMAND, Editor, findings, initialize, of,
 from tests.tools.editor.test_robustness import EXAMPLES, URI
 
 TEXTS = [path.read_text() for path in EXAMPLES]
-#: What reading the text finds, as against the rules, some of which conclude from what is absent in a slice.
+#: Rules of reading. Other rules may infer a fault from elements that a slice lacks.
 READ = {"syntax", "unresolved-reference"}
 
 
@@ -29,7 +29,7 @@ def _all_texts_are_large() -> object:
 
 
 def both(before: str, after: str) -> tuple[list[Diagnostic] | None, list[Diagnostic]]:
-    """What is found quickly after a change, if it can be, and what is found in the whole."""
+    """Return the quick findings after a change, if available, and the findings in the whole text."""
     made = Project()
     path = made.put(URI, 1, before)
     made.snapshot().analysis(path)
@@ -93,7 +93,7 @@ def test_names_that_others_use_are_missed_at_once() -> None:
 @pytest.mark.parametrize(
     ("old", "new"),
     [
-        ("component Door3 {", "component Door3"),  # what follows belongs to another one
+        ("component Door3 {", "component Door3"),  # the rest then belongs to another component
         ("robot Doors", "robot Dors"),
         ("  component Door3 {", "  /* component Door3 {"),
     ],

@@ -1,4 +1,4 @@
-"""How the server starts: over a port, and not without its packages."""
+"""Start of the server: over a port, and not without its packages."""
 
 import asyncio
 import io
@@ -76,7 +76,7 @@ def test_without_its_packages_it_says_what_to_install(monkeypatch: pytest.Monkey
 
 @pytest.mark.asyncio
 async def test_nothing_is_kept_of_what_was_handled() -> None:
-    """Else the server grows with each key."""
+    """Otherwise the server would grow with each key."""
     server, written = Server("0"), io.BytesIO()
     server.protocol.set_writer(written)
     options = {"pause": 0}
@@ -91,5 +91,5 @@ async def test_nothing_is_kept_of_what_was_handled() -> None:
         )
         server.protocol.handle_message(types.DidChangeTextDocumentNotification(change))
     assert b'"id": 1' in written.getvalue()
-    assert server.protocol._request_futures == {}  # pygls tells it nowhere else
+    assert server.protocol._request_futures == {}  # pygls has no public API for this
     server.shutdown()

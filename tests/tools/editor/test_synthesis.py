@@ -1,4 +1,4 @@
-"""Verdicts of synthesis come beside the typing, and of the text as it is."""
+"""Verdicts of synthesis arrive while the user types, and refer to the current text."""
 
 import asyncio
 import sys
@@ -123,7 +123,7 @@ async def test_over_the_protocol(tmp_path: Path) -> None:
     hover = await client.text_document_hover_async(types.HoverParams(**at(uri, position(ROBOT, "drive needs", 1))))
     assert "The supervisor allows its\n- request: Door.open" in hover.contents.value
     replace(client, uri, 2, ROBOT.replace("needs Door.open", "needs Door.open or Door.closed"))
-    # What was found of another text is not told.
+    # The results of another text are not shown.
     assert [lens.command.title for lens in await client.text_document_code_lens_async(about)] == [RUNNING]
     hover = await client.text_document_hover_async(types.HoverParams(**at(uri, position(ROBOT, "drive needs", 1))))
     assert "The supervisor allows" not in hover.contents.value

@@ -1,4 +1,4 @@
-"""The extension for VS Code says what the tool says: commands, options, targets, words. It is built by hand."""
+"""The extension for VS Code agrees with the tool: commands, options, targets, words. Building it is manual."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SOURCES = {path.name: path.read_text() for path in sorted((EXTENSION / "src").gl
 
 
 def expanded(snippet: Mapping[str, Any]) -> str:
-    """What stands there when nothing is changed: each placeholder's first text, its mirrors alike."""
+    """Return the expansion of an unedited snippet: each placeholder's first text, also in its mirrors."""
     text = "\n".join(snippet["body"])
     first: dict[str, str] = {}
     for number, default in re.findall(r"\$\{(\d+):([^}]*)\}", text):
@@ -42,7 +42,7 @@ def expanded(snippet: Mapping[str, Any]) -> str:
 
 
 def rules(text: str) -> list[str]:
-    """The rules that a text breaks."""
+    """Return the rules that a text violates."""
     try:
         found = robosc.check(robosc.load(text=text))
     except ModelError as error:

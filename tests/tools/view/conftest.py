@@ -1,4 +1,4 @@
-"""The page as it is built, and a browser that opens it."""
+"""The built page, and a browser that opens it."""
 
 from tests.chromium import chromium
 

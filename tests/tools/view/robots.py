@@ -1,4 +1,4 @@
-"""A small robot with time, data, a number and names that pages must not take for markup."""
+"""A small robot with timers, data, a number and names that pages must not interpret as markup."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from robosc.run.simulation import Step
     from robosc.tools.view import Moments
 
-#: What would be seen if any of it became markup.
+#: A text with visible effects if any of it became markup.
 EVIL = '<img src=x onerror="globalThis.hacked = 1"></script><script>globalThis.hacked = 1</script>'
 
 GATE = f"""\
@@ -49,7 +49,7 @@ robot Gate {{
 
 
 def record(text: str = GATE, steps: Sequence[Step] | None = None) -> tuple[Mapping[str, object], Record, Simulation]:
-    """The description and record of a robot, and another simulation of it, to know what is true."""
+    """Return the description and record of a robot, and a second simulation for reference."""
     robot = robosc.load(text=text)
     model, graph = robosc.to_sct(robot), robosc.to_rosgraph(robot)
     robosc.synthesize(model)
@@ -58,7 +58,7 @@ def record(text: str = GATE, steps: Sequence[Step] | None = None) -> tuple[Mappi
 
 
 def wholes(moments: list[dict[str, Any]]) -> list[dict[str, dict[str, Any]]]:
-    """Everything at each moment, from what each says has changed."""
+    """Return the complete values at each moment, accumulated from the changes."""
     now: dict[str, dict[str, Any]] = {part: {} for part in ("state", "commands", "timers", "enabled")}
     found = []
     for moment in moments:
@@ -73,7 +73,7 @@ def wholes(moments: list[dict[str, Any]]) -> list[dict[str, dict[str, Any]]]:
 
 
 class Viewer:
-    """What a page knows that reads a stream of moments."""
+    """A page that reads a stream of moments."""
 
     def __init__(self, shown: Moments) -> None:
         self._shown = shown

@@ -1,4 +1,4 @@
-"""Texts that would be markup, everywhere the language lets them be, on a page that is served: they stay texts."""
+"""Texts with markup in every place of a model stay texts on a served page."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.build
 
-#: As it can stand in a string of a model, in a comment of it, and in the name of its file.
+#: Texts that are valid in a model's strings and comments and in its file's name.
 IMAGE = "<img src=x onerror='globalThis.hacked = 1'>"
 SCRIPT = "</script><script>globalThis.hacked = 1</script>"
 NAMED, FILLED, OPEN, TEST = (
@@ -72,7 +72,7 @@ def model(tmp_path: Path) -> Path:
 
 
 def assert_harmless(page: Any) -> None:
-    """The page has the elements that it makes itself, and no other; no script but its own has run."""
+    """Check that the page has only its own elements, and that only its own script has run."""
     assert page.evaluate("globalThis.hacked") is None
     assert page.locator("img, iframe, object, embed, form, style, base, meta[http-equiv]").count() == 0
     scripts = page.evaluate("[...document.scripts].map((script) => [script.getAttribute('src'), script.textContent])")
@@ -125,7 +125,7 @@ def test_what_a_log_says_is_text(chromium: Any, model: Path, tmp_path: Path) -> 
 
 
 def test_markup_could_do_nothing(chromium: Any, model: Path) -> None:
-    """If some did become markup: no script in it runs, and nothing is asked for elsewhere."""
+    """Even if a text became markup, no script in it would run, and no other address would be requested."""
     with served(model) as address:
         with urlopen(address, timeout=60) as answer:  # noqa: S310
             assert answer.headers["Content-Security-Policy"] == POLICY

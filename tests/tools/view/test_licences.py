@@ -1,4 +1,4 @@
-"""The licences of what is in the page stand beside it."""
+"""The licenses of the page's packages are beside it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 from robosc.tools.view.page import PageError, page_files
 
 ROOT = Path(__file__).parents[3]
-#: What the build itself needs, and the tests; nothing of it is in the page.
+#: Packages of the build and the tests, which are not part of the page.
 NOT_IN_THE_PAGE = {"@mermaid-js/tiny", "axe-core", "esbuild", "typescript"}
 
 
@@ -27,7 +27,7 @@ def test_each_package_in_the_page_is_listed_with_its_licence(built: dict[str, st
     lock = json.loads((ROOT / "web" / "package-lock.json").read_text(encoding="utf-8"))["packages"]
     wanted = json.loads((ROOT / "web" / "package.json").read_text(encoding="utf-8"))["devDependencies"]
     listed = dict(re.findall(r"^(\S+) (\d\S*)\nLicence: ", built["LICENSES.txt"], re.MULTILINE))
-    # Each package is listed, or known not to be in the page: a new one asks for this to be decided.
+    # Each package is listed or known to be absent from the page: a new one requires a decision.
     assert listed == {name: version for name, version in wanted.items() if name not in NOT_IN_THE_PAGE}
     for name, version in listed.items():
         locked = lock[f"node_modules/{name}"]
@@ -36,7 +36,7 @@ def test_each_package_in_the_page_is_listed_with_its_licence(built: dict[str, st
 
 
 def test_imports_of_the_page_are_listed(built: dict[str, str]) -> None:
-    """What the sources import by name is a package; all else is their own."""
+    """A bare import name in the sources is a package; all other imports are local."""
     imported = set()
     for source in (ROOT / "web" / "src").glob("*.ts"):
         imported |= set(re.findall(r"""from "((?:@[\w-]+/)?[\w-]+)""", source.read_text(encoding="utf-8")))

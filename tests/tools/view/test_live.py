@@ -1,4 +1,4 @@
-"""A robot that runs, as its page shows it: by what its node tells."""
+"""A running robot on its page, by the reports of its node."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ OPEN, CLOSE, CAR = "message_open.c_trigger", "message_close.c_trigger", "message
 
 
 class Node:
-    """A gate, and what it tells."""
+    """A gate, and the reports of its node."""
 
     def __init__(self) -> None:
         self.simulation = Simulation(MODEL, GRAPH)
@@ -63,7 +63,7 @@ STEPS = st.lists(
 @settings(max_examples=examples(40))
 @given(STEPS, st.integers(2, 12))
 def test_the_last_moment_is_what_the_engine_says(steps: list[tuple[str, Any]], kept: int) -> None:
-    """Whoever comes early or late, and however few moments are kept."""
+    """This holds for early and late viewers, and for any number of stored moments."""
 
     async def look() -> None:
         node, shown = Node(), live(kept)

@@ -1,4 +1,4 @@
-"""The page in a real browser: what it shows is what the engine says, step by step."""
+"""The page in a real browser shows the state of the engine, step by step."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ AXE = ROOT / "web" / "node_modules" / "axe-core" / "axe.min.js"
 
 @contextmanager
 def served(*arguments: str | Path) -> Iterator[str]:
-    """The address at which `robosc view` serves its page."""
+    """Yield the address at which `robosc view` serves its page."""
     command = [sys.executable, "-m", "robosc", "view", *map(str, arguments)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
         try:
@@ -54,12 +54,12 @@ def served(*arguments: str | Path) -> Iterator[str]:
 
 
 def at(page: Any, moment: int) -> None:
-    """Waits until the page shows a moment."""
+    """Wait until the page shows a moment."""
     page.wait_for_selector(f'body[data-moment="{moment}"]')
 
 
 def truth(simulation: Simulation, offset: float | None = None) -> dict[str, Any]:
-    """What the page has to say of the present state of a run, and of the number that a line follower keeps."""
+    """Return the expected content of the page for the present state of a run and the line follower's number."""
     engine, model = simulation.engine, simulation.engine.model
     state = whole_state(engine)
     automata = automata_of(model)
@@ -91,7 +91,7 @@ def simulation_of(path: Path) -> Simulation:
 
 
 def click(page: Any, event: str, data: Any = None) -> None:
-    """Lets an event happen, as a user does, with data."""
+    """Perform an event with data, as a user does."""
     if isinstance(data, float):
         page.locator(f'.performer:has(button[data-event="{event}"]) input').fill(str(data))
     elif data is not None:
@@ -104,7 +104,7 @@ CORRECTION = "message_correction.u_response"
 
 
 def with_offset(random: Random, event: str, data: dict[str, Any], offset: float) -> tuple[dict[str, Any], float]:
-    """The data of an event of the line follower, what comes with a correction made up; the offset after it."""
+    """Return the data of the line follower's event, random for a correction, and the offset after it."""
     if event != CORRECTION:
         return data, offset
     offset = random.randrange(-80, 80) / 8
@@ -112,7 +112,7 @@ def with_offset(random: Random, event: str, data: dict[str, Any], offset: float)
 
 
 def driven(random: Random, length: int) -> list[tuple[Happened, float]]:
-    """What happens to a line follower, at random; after each event its offset."""
+    """Return random events of a line follower, each with the offset after it."""
     simulation, offset, happened = simulation_of(MODEL), 0.0, []
     for _ in range(length):
         event, data = simulation.random_event(random) or ("", {})
@@ -223,12 +223,12 @@ def test_an_exported_page_opens_without_a_server(chromium: Any, tmp_path: Path) 
         assert shown(page) == truth(simulation_of(MODEL), 0)
 
 
-#: What the page looks other things up by.
+#: Keys with which the page looks other things up.
 KEYS = ("kind", "direction", "event", "key", "owner")
 
 
 def hostile(value: Any) -> Any:
-    """A description whose every text would be markup."""
+    """Replace every text of a description by markup."""
     match value:
         case dict():
             return {name: hostile(part) if name not in KEYS else part for name, part in value.items()}
@@ -285,13 +285,13 @@ def test_it_is_accessible(chromium: Any, scheme: str) -> None:
         assert [
             (violation["id"], [node["html"] for node in violation["nodes"]]) for violation in told["violations"]
         ] == []
-        # What a screen reader reads names the states, and which is the present one.
+        # The accessible names contain the states and mark the present one.
         assert page.locator("#cards").get_by_role("button", name="searching").count() == 1
         assert page.get_by_role("button", name="the present state").count() == 3
 
 
 def tab_to(page: Any, selector: str) -> None:
-    """Goes to an element by the Tab key, from where the focus is."""
+    """Move the focus to an element with the Tab key."""
     for _ in range(200):
         page.keyboard.press("Tab")
         if page.evaluate("(selector) => document.activeElement.matches(selector)", selector):
@@ -300,7 +300,7 @@ def tab_to(page: Any, selector: str) -> None:
 
 
 def test_by_keyboard_alone(chromium: Any) -> None:
-    """Each part of the page in turn, without a mouse and without a focus that a program sets."""
+    """Visit each part of the page in turn, without a mouse and without programmatic focus."""
     with served(MODEL) as address, opened(chromium, address) as page:
         tab_to(page, "#search")
         page.keyboard.type("blocked")
@@ -394,7 +394,7 @@ def test_finding_folding_and_zooming(chromium: Any) -> None:
 
 
 def test_hidden_pages_leave_connections_to_others(chromium: Any) -> None:
-    """A browser opens six connections to one server, and a page that is seen holds one."""
+    """A browser opens six connections to one server, and a visible page holds one."""
     hide = """(hidden) => {
       Object.defineProperty(document, "hidden", { value: hidden, configurable: true });
       document.dispatchEvent(new Event("visibilitychange"));
@@ -405,7 +405,7 @@ def test_hidden_pages_leave_connections_to_others(chromium: Any) -> None:
             page.evaluate(hide, True)
             page = first.context.new_page()
             page.goto(address)
-            # It has drawn, and it holds its connection: only then is there one to leave.
+            # The page is drawn and holds its connection: only then can it release it.
             page.wait_for_selector("body[data-drawn][data-moment]")
         assert shown(page) == truth(simulation_of(MODEL), 0)
         page.evaluate(hide, True)

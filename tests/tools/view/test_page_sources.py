@@ -1,4 +1,4 @@
-"""The page in a real browser: counterexamples, scripts and recordings; the text, the time line and the plots."""
+"""The page in a real browser: counterexamples, scripts and recordings; the text, the timeline and the plots."""
 
 from __future__ import annotations
 
@@ -56,14 +56,14 @@ OPEN, CAR, UP = "message_open.c_trigger", "message_car.u_response", "component_B
 
 @pytest.fixture
 def gate(tmp_path: Path) -> Path:
-    """A robot with a time, a number, and a property that does not hold."""
+    """Return a robot with a timer, a number, and a property that does not hold."""
     path = tmp_path / "gate.rscd"
     path.write_text(GATE.replace("  requirement Full", f"{PROPERTY}  requirement Full"), encoding="utf-8")
     return path
 
 
 def played(address: str, number: int, simulation: Simulation) -> list[dict[str, Any]]:
-    """The first moments that the page is told, played by an engine: so many of them; what it has to show at each."""
+    """Play the first moments of a page with an engine; return the page's expected content at each."""
     moments: list[dict[str, Any]] = []
     with urlopen(f"{address}moments", timeout=60) as stream:  # noqa: S310
         while len(moments) < number:
@@ -169,7 +169,7 @@ def test_numbers_and_times_are_told_and_the_time_line_is_dragged(chromium: Any, 
 
 
 def test_what_the_node_keeps_is_typed_shown_and_drawn(chromium: Any, tmp_path: Path) -> None:
-    """A number as steps, a text as a lane; what nobody knows as a gap."""
+    """A number is drawn as steps, a text as a lane, and an unknown value as a gap."""
     path = tmp_path / "tank.rscd"
     path.write_text(TANK, encoding="utf-8")
     with served(path) as address, opened(chromium, address) as page:
@@ -201,7 +201,7 @@ def test_what_the_node_keeps_is_typed_shown_and_drawn(chromium: Any, tmp_path: P
         }"""
         first, highest, lowest = page.evaluate(heights)
         assert highest < first < lowest
-        # An event at random comes with data of any kind.
+        # A random event has data of any kind.
         page.get_by_role("button", name="Random", exact=True).click()
         at(page, 3)
         assert label.text_content() in "abc"
@@ -220,7 +220,7 @@ def test_the_text_leads_to_what_stands_there(chromium: Any, gate: Path) -> None:
         page.locator("#lines .line").nth(number("state opened")).click()
         assert page.locator(".state.found .title").text_content() == "opened"
         assert page.locator(".card[open] .name").all_text_contents() == ["Barrier"]
-        # From there on by keyboard: the transition below, then the requirement.
+        # Continue with the keyboard: the transition below, then the requirement.
         page.locator("#lines").focus()
         page.keyboard.press("ArrowDown")
         page.keyboard.press("Enter")

@@ -1,4 +1,4 @@
-"""What a page is told is what the engine says, whatever is done to a run."""
+"""The data sent to a page agree with the engine, whatever is done to a run."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ ACTIONS = st.one_of(
 
 
 def assert_true(shown: Record, simulation: Simulation) -> None:
-    """Each moment says what an engine says that lets the same events happen."""
+    """Check each moment against an engine that performs the same events."""
     engine = simulation.engine
     for moment, whole in zip(shown.moments, wholes(shown.moments), strict=True):
         if "event" in moment and moment["event"] != "wait" and "by" not in moment:
@@ -107,7 +107,7 @@ def test_a_script_is_played_with_what_it_asks_in_vain() -> None:
     assert shown.moments[2]["timers"] == {EVENTS[3]: 2000}
     assert shown.moments[3]["timers"] == {EVENTS[3]: False}
     assert_true(shown, simulation)
-    # From any moment one goes on by hand.
+    # The user can continue by hand from any moment.
     shown.do({"action": "continue", "moment": 2})
     shown.do({"action": "perform", "event": EVENTS[1], "inputs": {}})
     assert [moment.get("event") for moment in shown.moments] == [None, EVENTS[1], EVENTS[0], EVENTS[1]]
@@ -133,7 +133,7 @@ def test_reasons_of_errors_and_refused_cancels() -> None:
         "Base.why": "aborted",
         "Base.rest": 2.5,
     }
-    # By hand there are the reasons that the service can have, and what is shown of one is its reason.
+    # By hand, the user can choose the service's reasons, and the page shows the reason of an error.
     inputs = {event: about["inputs"] for event, about in description["events"].items()}  # type: ignore[attr-defined]
     assert inputs["service_lift.u_error"] == [
         {"name": "i_error_reason", "label": "error", "values": ["unavailable", "timeout", "unreadable", "failed"]}
@@ -152,7 +152,7 @@ def test_transitions_that_are_taken_are_those_of_the_text() -> None:
     for event, inputs in ((EVENTS[0], {}), (EVENTS[2], {"i_response": True}), (EVENTS[2], {"i_response": False})):
         shown.do({"action": "perform", "event": event, "inputs": inputs})
     taken = [moment.get("transitions") for moment in shown.moments]
-    # A car that is none leaves everything as it is: the text says nothing of it.
+    # `false` for a car takes no transition and changes no state.
     assert [edges and barrier["transitions"][edges[0][1]]["label"] for edges in taken] == [
         None,
         "on request to open",
@@ -162,7 +162,7 @@ def test_transitions_that_are_taken_are_those_of_the_text() -> None:
 
 
 def test_a_label_is_the_text_without_comments() -> None:
-    """A string may hold what looks like a comment or a target, and its blanks stay."""
+    """A string may contain text that looks like a comment or a target, and keeps its blanks."""
     text = """robot Urls {
   component Base {
     outgoing message moved with type: none
@@ -201,7 +201,7 @@ def test_explained() -> None:
 @settings(max_examples=examples(15))
 @given(st.lists(st.tuples(ACTIONS, st.booleans()), max_size=15))
 def test_every_viewer_sees_the_same(actions: list[tuple[dict[str, Any], bool]]) -> None:
-    """One reads now and then, one comes late: both know in the end what has happened."""
+    """One viewer reads occasionally and one connects late: both know the same moments at the end."""
 
     async def view() -> None:
         _, shown, _ = record() if not actions else (None, SHARED, None)

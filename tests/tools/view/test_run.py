@@ -1,4 +1,4 @@
-"""What the page keeps of a run is what it was told, however much came and however little it keeps."""
+"""The page's copy of a run equals the sent data, for any number of moments and any limit on storage."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.searching import slow_but
 from .robots import record, wholes
 
 ROOT = Path(__file__).parents[3]
-#: Tells a run messages, and prints what it has at a moment after each.
+#: Send messages to a run, and print its content at a moment after each.
 SCRIPT = """
 import { readFileSync } from "node:fs";
 import { Run } from "RUN";
@@ -52,7 +52,7 @@ def test_it_is_at_each_moment_what_was_told(most: int | None) -> None:
     for _ in range(120):
         before = len(shown.cuts)
         shown.do(random.choice(actions))
-        # Only what is kept whole can be taken back.
+        # Only a completely stored run can be undone.
         if most is None and random.random() < 0.1:
             shown.do({"action": "continue", "moment": random.randrange(len(shown.moments))})
         told = min([told, *shown.cuts[before:]])

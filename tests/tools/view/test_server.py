@@ -1,4 +1,4 @@
-"""Who is answered, and what nothing that is sent can do."""
+"""Clients that the server accepts, and actions that no request can perform."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ OPEN = {"action": "perform", "event": "message_open.c_trigger", "inputs": {}}
 
 @pytest.fixture(autouse=True)
 def built(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Files of a page in the place of the real one, which is built by npm."""
+    """Replace the real page, which npm builds, by test files."""
     for name in FILES:
         (tmp_path / name).write_text(name)
     monkeypatch.setattr(page, "_FOLDER", tmp_path)
@@ -130,14 +130,14 @@ def test_who_has_the_token_and_who_has_not() -> None:
     answer = asking.get("/?token=schlüssel")
     assert (answer.status_code, answer.headers["location"]) == (303, "/")
     assert "HttpOnly" in answer.headers["set-cookie"]
-    # A strict one does not come with the redirect after a click on another site.
+    # A strict cookie would be missing in the redirect after a click on another site.
     assert "SameSite=lax" in answer.headers["set-cookie"]
 
 
 def test_two_views_on_one_computer_keep_each_other_s_cookies() -> None:
     first, second = client(key="first"), client(key="second")
     first.get("/?token=first")
-    second.cookies = first.cookies  # a browser has one jar for all ports of a computer
+    second.cookies = first.cookies  # a browser has one cookie jar for all ports of a computer
     second.get("/?token=second")
     first.cookies = second.cookies
     for asking in (first, second):

@@ -1,7 +1,8 @@
-"""A synthesizer of RoboSC: libFAUDES (https://fgdes.tf.fau.de/faudes) finds the supervisor, state by state.
+"""A synthesizer of RoboSC: libFAUDES (https://fgdes.tf.fau.de/faudes) computes the supervisor, state by state.
 
-Plants and requirements become automata, `SupCon` their supervisor. Its guards are read off its states: in which of them
-an event is allowed that the plants can do. `robosc verify` says whether they are right.
+Plants and requirements become automata, and `SupCon` computes their supervisor. The guard of an event follows from the
+supervisor's states in which the event is allowed, out of those in which the plants can execute it. `robosc verify`
+checks the guards.
 """
 
 from __future__ import annotations
@@ -18,12 +19,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     Element = sct.Plant | sct.DiscreteVariable
-    #: A value of each element, in their order.
+    #: The values of all elements, in their order.
     Values = tuple[Any, ...]
 
 
 def synthesize(model: sct.SupervisoryControlModel) -> sct.Supervisor | None:
-    """The supervisor; None where it is empty. A model that has no form as automata is a ValueError."""
+    """Return the supervisor, or None if it is empty. Raise ValueError for a model that automata cannot represent."""
     flat = list(plants(model).values())
     _, supervisor = faudes_supervisor(model)
     if supervisor.InitStatesEmpty():
@@ -43,7 +44,7 @@ def synthesize(model: sct.SupervisoryControlModel) -> sct.Supervisor | None:
 def _states(
     supervisor: Any, flat: Sequence[Automaton], elements: Sequence[Element], controllable: Iterable[str]
 ) -> tuple[Mapping[str, set[Values]], Mapping[str, set[Values]]]:
-    """Of the states it comes to those where it allows each controllable event, and those where the plants can do it."""
+    """Return the reachable states in which each controllable event is allowed, and those in which it is possible."""
     allowed: dict[str, set[Values]] = {name: set() for name in controllable}
     possible: dict[str, set[Values]] = {name: set() for name in allowed}
     numbers = {
@@ -76,12 +77,12 @@ def _states(
 
 
 def _plain(value: Any) -> Any:
-    """A value that can be put in order: of a location or literal its name."""
+    """Return a value that can be sorted: the name of a location or literal."""
     return value.name if isinstance(value, (sct.Location, ex.EnumerationLiteral)) else value
 
 
 def _condition(elements: Sequence[Element], allowed: set[Values], forbidden: set[Values]) -> ex.Expression | None:
-    """What holds in all of the first states and none of the second, over as few elements as a greedy search finds."""
+    """Return a condition that holds in all `allowed` and no `forbidden` states, over few elements (greedy search)."""
     if not forbidden:
         return None
     if not allowed:

@@ -1,8 +1,8 @@
 """Plain automata of an SCT model, and their supervisor by libFAUDES: a second opinion, explicit state by state.
 
-A variable becomes part of its plant's state, an event with data one event for each value of it, a requirement an
-automaton that follows the plants that it speaks of. A guard or an update that reads another plant has no such form:
-that is a ValueError.
+A variable becomes a part of its plant's state. An event with data becomes one event for each value. A requirement
+becomes an automaton that follows the plants in its condition. Automata cannot represent a guard or an update that reads
+another plant: it raises a ValueError.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from contextlib import AbstractContextManager
 
-#: The values of locations (which is the plant's own) and variables.
+#: The values of locations, with the plant as key, and of variables.
 Valuation = dict[sct.Plant | sct.DiscreteVariable, Any]
 
 
 @dataclass
 class Automaton:
-    """A deterministic automaton: state 0 is initial; each transition leads from a state by an event to a state.
+    """A deterministic automaton. State 0 is initial. A transition leads from a state by an event to a state.
 
-    `values` are what plants and variables are in each state.
+    `values` contains the values of plants and variables in each state.
     """
 
     alphabet: frozenset[str]
@@ -41,12 +41,12 @@ class Automaton:
 
 
 def plants(model: sct.SupervisoryControlModel) -> dict[sct.Plant, Automaton]:
-    """The automaton of each plant; all of its variables are in its states."""
+    """Return the automaton of each plant. Its states contain all variables of the plant."""
     return {plant: _plant(plant) for plant in model.plants}
 
 
 def requirements(model: sct.SupervisoryControlModel, of: Mapping[sct.Plant, Automaton]) -> list[Automaton]:
-    """Automata that allow what the requirements allow; one for all that speak of the same plants."""
+    """Return automata that permit what the requirements permit, one for all requirements on the same plants."""
     asked: dict[tuple[sct.Plant, ...], list[tuple[str, ex.Expression, bool]]] = {}
     for requirement in model.requirements:
         needed = requirement.kind == sct.RequirementKind.needs
@@ -58,7 +58,7 @@ def requirements(model: sct.SupervisoryControlModel, of: Mapping[sct.Plant, Auto
 
 
 def uncontrollable(model: sct.SupervisoryControlModel) -> set[str]:
-    """The names of the events that no supervisor can forbid, with each value that they carry."""
+    """Return the names of the uncontrollable events, with each of their values."""
     return {
         label
         for plant in model.plants
@@ -92,7 +92,7 @@ def _plant(plant: sct.Plant) -> Automaton:
 
 
 def _requirement(followed: Sequence[Automaton], parts: Iterable[tuple[str, ex.Expression, bool]]) -> Automaton:
-    """The plants followed, side by side, and where these let each event happen of which parts say what it needs."""
+    """Return the product of the followed plants, restricted to events whose conditions hold."""
     alphabet = frozenset[str]().union(*(plant.alphabet for plant in followed))
     conditions: dict[str, list[tuple[ex.Expression, bool]]] = {}
     for label, condition, needed in parts:
@@ -120,7 +120,7 @@ def _requirement(followed: Sequence[Automaton], parts: Iterable[tuple[str, ex.Ex
 def _explored(
     initial: Any, successors: Callable[[Any], Iterable[tuple[str, Any]]]
 ) -> tuple[list[Any], dict[tuple[int, str], int]]:
-    """All states from an initial one on, and the transitions between their numbers."""
+    """Return all reachable states and the transitions between their numbers."""
 
     def key(state: Any) -> Any:
         return tuple(state.values()) if isinstance(state, dict) else state
@@ -137,7 +137,7 @@ def _explored(
 
 
 def _occurrences(event: sct.Event) -> list[tuple[str, dict[sct.Input, Any]]]:
-    """The names and the data of what an event may be."""
+    """Return the names and the data of an event, for all values of its inputs."""
     occurrences = []
     for values in product(*(_values(input_.type) for input_ in event.inputs)):
         data = ", ".join(value.name if isinstance(value, ex.EnumerationLiteral) else str(value) for value in values)
@@ -199,9 +199,9 @@ def _plants_read(condition: ex.Expression) -> set[sct.Plant]:
 def faudes_states(
     model: sct.SupervisoryControlModel, during: Callable[[str], AbstractContextManager[None]]
 ) -> tuple[int, int]:
-    """How many states libFAUDES finds without requirements and under the supervisor; `during` is told its phases.
+    """Return the numbers of states that libFAUDES computes without requirements and under the supervisor.
 
-    Raises ImportError where `faudes` is not installed.
+    `during` receives the name of each phase. Raises ImportError if `faudes` is not installed.
     """
     plant, supervisor = faudes_supervisor(model, during)
     return plant.Size(), supervisor.Size()
@@ -210,8 +210,8 @@ def faudes_states(
 def faudes_supervisor(
     model: sct.SupervisoryControlModel, during: Callable[[str], AbstractContextManager[None]] = nullcontext
 ) -> tuple[Any, Any]:
-    """The composed plants and the supervisor, as generators of libFAUDES; arguments as of `faudes_states`."""
-    import faudes  # noqa: PLC0415  # it may be missing
+    """Return the composed plants and the supervisor as generators of libFAUDES. Arguments as of `faudes_states`."""
+    import faudes  # noqa: PLC0415  # an optional dependency
 
     faudes.StateNamesOff()
     never_forbidden = uncontrollable(model)

@@ -1,8 +1,8 @@
 """A target of RoboSC: the supervisor as a function block in Structured Text (IEC 61131-3:2013).
 
-The block is called with the number of an event. Where that is possible and allowed it happens, and the outputs say so,
-and what can happen next. Which event comes next, the program of the controller decides: in each of its cycles first
-what has come from the robot, then silent events until none is enabled, then what it wants to send.
+Call the block with the number of an event. If the event is possible and allowed, it happens. The outputs report that,
+and the events that can happen next. The program of the controller selects the next event. In each of its cycles it
+first calls the events from the robot, then silent events until none is enabled, then its commands.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
     from robosc.language.configuration import Configuration
     from robosc.m2t.models import Models
 
-#: All integers are of this width: no standard function converts what saturates.
+#: The width of all integers: no standard function saturates in a conversion.
 _BITS = 32
 
 
 def preconditions(models: Models, configuration: Configuration) -> list[Diagnostic]:  # noqa: ARG001
-    """What the function block has no form for: times, and what needs more than 32 bits."""
+    """Return diagnostics for timers and for integers of more than 32 bits, which the function block cannot express."""
     if models.sct.supervisor is None:
-        return []  # `generate` is called with one.
+        return []  # a call of `generate` needs a supervisor
     model = robosc.to_engine(models.sct)
     found = []
     if model.timers:
@@ -61,13 +61,13 @@ def _is_wide(node: object) -> bool:
 
 
 def generate(models: Models, configuration: Configuration) -> dict[str, str]:  # noqa: ARG001
-    """One file with a function block of the robot's name."""
+    """Return one file with a function block that has the robot's name."""
     model = robosc.to_engine(models.sct)
     return {f"{model.name}.st": "\n".join([*_block(model, _Names(model)), ""])}
 
 
 class _Names:
-    """Names in Structured Text: case does not tell them apart, and two underscores in a row are not allowed."""
+    """Names in Structured Text: not case-sensitive, without two consecutive underscores."""
 
     def __init__(self, model: engine.EngineModel) -> None:
         self._of: dict[object, str] = {}
@@ -89,9 +89,9 @@ class _Names:
 
 
 class _Printer(Printer):
-    """Expressions of an engine model; a condition that several guards share is a variable."""
+    """Printer of an engine model's expressions. A condition that several guards share is a variable."""
 
-    symbols = {  # noqa: RUF012  # ClassVar in the parent
+    symbols = {  # noqa: RUF012  # a ClassVar in the base class
         **SYMBOLS,
         ex.Equation: "=",
         ex.Inequation: "<>",
@@ -144,12 +144,12 @@ def _number(value: int) -> str:
 
 
 def _comment(text: str) -> str:
-    """A text that can't end the comment that it stands in, nor begin another."""
+    """Return a text that can neither end its comment nor begin another."""
     return text.replace("(*", "( *").replace("*)", "* )")
 
 
 def _values(declared: engine.Declaration) -> str:
-    """What the numbers of a variable stand for."""
+    """Return the meanings of a variable's numbers."""
     match declared.type:
         case engine.LocationType(plant=plant):
             return ", ".join(f"{number}: {location.name}" for number, location in enumerate(plant.locations))

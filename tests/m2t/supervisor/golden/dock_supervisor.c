@@ -9,9 +9,9 @@
 /* Cancels, triggers and silent events, in this order, are the first events. */
 #define CANCELS 1U
 #define QUEUED 5U /* cancels and triggers */
-#define SOURCES 5U /* topics, services and actions that events come from, and none of them */
+#define SOURCES 5U /* topics, services and actions that events come from, and one for none of them */
 #define SILENT 4U
-#define BOUND 24U /* So many silent events may happen in a row. */
+#define BOUND 24U /* Maximum number of silent events in a row. */
 #define EVENTS ((unsigned)DOCK_EVENT_COUNT)
 
 const dock_settings dock_default_settings = {
@@ -28,7 +28,7 @@ static bool condition_1(const dock_state *state)
         || state->action_approach == dock_action_approach_canceling;
 }
 
-/* Whether the plants can do the event in this state, and the supervisor allows it. */
+/* Whether the plants can execute the event in this state and the supervisor allows it. */
 static bool guard(const dock_state *state, dock_event event)
 {
     switch (event) {
@@ -84,18 +84,18 @@ static bool guard(const dock_state *state, dock_event event)
     case dock_service_call_help_u_response:
     case dock_service_call_help_u_error:
         return state->service_call_help == dock_service_call_help_wait_for_response;
-    default: /* Nothing forbids the others. */
+    default: /* Other events have no restriction. */
         return true;
     }
 }
 
-/* The value, or the bound nearest to it. */
+/* The nearest value within the bounds. */
 static int32_t clamp(int32_t value, int32_t low, int32_t high)
 {
     return value < low ? low : value > high ? high : value;
 }
 
-/* What the event changes. */
+/* The effect of an event on the state. */
 static void execute(
     dock_state *state, const dock_inputs *inputs, dock_event event)
 {
@@ -162,18 +162,18 @@ static void execute(
     case dock_service_call_help_u_error:
         state->service_call_help = dock_service_call_help_error;
         break;
-    default: /* The others change nothing. */
+    default: /* Other events change nothing. */
         break;
     }
 }
 
 /* ---- The control loop ---- */
 
-/* Triggers exclude each other where they have one number: up to 0 (messages on one topic) in a round, above
- * (services, actions) between two ticks. Those with 0 are free. */
+/* Triggers with the same number exclude each other: numbers up to 0 (messages on one topic) in a round,
+ * higher numbers (services, actions) between two ticks. Triggers with number 0 are free. */
 static const uint8_t group[QUEUED] = { 0, 1, 2, 0, 0 };
 
-/* The topic, service or action that an event comes from, by number; 0: it is the controller's own. */
+/* The number of the topic, service or action that an event comes from. 0 for the controller's own events. */
 static unsigned source_of(unsigned event)
 {
     static const uint8_t source[] = { 1, 2, 3, 3, 3, 3, 4, 4 };
@@ -203,7 +203,7 @@ static bool allowed(const dock_hooks *hooks, dock_event event)
     return given || ((unsigned)event >= QUEUED + SILENT);
 }
 
-/* Whether the plant that chooses data is where the event would lead it. */
+/* Whether the plant that chooses data is already in the target location of the event. */
 static bool arrived(const dock_state *state, dock_event event)
 {
     switch (event) {
@@ -218,9 +218,9 @@ static bool arrived(const dock_state *state, dock_event event)
     }
 }
 
-/* This robot is small: the control loop asks all its events. */
+/* In this small robot, the control loop evaluates all guards. */
 
-/* Lets an enabled event happen, unless the caller withholds it. */
+/* Executes an enabled event unless the caller withholds it. */
 static bool run(dock_supervisor *self, dock_event event)
 {
     if (!allowed(&self->hooks, event)) {
@@ -250,7 +250,7 @@ static bool run(dock_supervisor *self, dock_event event)
     return true;
 }
 
-/* Chooses the data to send: for each trigger that of the first statement whose condition holds. */
+/* Chooses the data to send. For each trigger, the first statement applies whose condition holds. */
 static void provide(dock_supervisor *self)
 {
     static const uint8_t first[] = {
@@ -269,7 +269,7 @@ static void provide(dock_supervisor *self)
     }
 }
 
-/* Lets silent events happen until none is enabled, each followed by the choice of data. */
+/* Executes silent events until none is enabled, and chooses data after each. */
 static void settle(dock_supervisor *self)
 {
     uint32_t left = BOUND;
@@ -300,15 +300,15 @@ static void settle(dock_supervisor *self)
         } else {
             self->livelocked = false;
             if (withheld) {
-                return; /* They are asked again the next time. */
+                return; /* The next call tries them again. */
             }
             self->quiescent = true;
         }
     }
 }
 
-/* One round in a settled state: each cancel, then each trigger in the queue before `end`, or each of them that is due,
- * runs if it is enabled at its turn; at most so many, and what is left of these is returned. */
+/* One round in a settled state. Each cancel, then each trigger in the queue before `end` (or only those that are
+ * due) runs if it is enabled, at most `most` of them. Returns the remaining number. */
 static unsigned serve(dock_supervisor *self, bool all, unsigned end, unsigned most)
 {
     unsigned left = most;
@@ -323,7 +323,7 @@ static unsigned serve(dock_supervisor *self, bool all, unsigned end, unsigned mo
             ran = run(self, event);
         }
         if (ran) {
-            --left; /* It has left its place to the next. */
+            --left; /* Its place now holds the next event. */
             settle(self);
         } else {
             ++place;
@@ -332,7 +332,7 @@ static unsigned serve(dock_supervisor *self, bool all, unsigned end, unsigned mo
     return left;
 }
 
-/* Whether the batch made a cancel or trigger possible, or changed what it sends. */
+/* Whether the batch enabled a cancel or trigger, or changed its data. */
 static bool fresh(const dock_supervisor *self, dock_event event)
 {
     bool moved;
@@ -347,7 +347,7 @@ static bool fresh(const dock_supervisor *self, dock_event event)
     return guard(&self->state, event) && (moved || !guard(&self->before, event));
 }
 
-/* What a batch made possible, or has other data, runs, and what is owed if the batch changed anything. */
+/* Runs the events that the batch enabled or gave other data, and the owed events if the batch changed the state. */
 static void react(dock_supervisor *self, unsigned source)
 {
     if (same(&self->before, &self->state)) {
@@ -362,7 +362,7 @@ static void react(dock_supervisor *self, unsigned source)
     self->owing = left == 0U;
 }
 
-/* Each enabled cancel, then each enabled trigger runs once; at most so many. */
+/* Runs each enabled cancel, then each enabled trigger once, at most `most` of them. */
 static void go_round(dock_supervisor *self, unsigned most)
 {
     for (unsigned number = 1U; number <= 2U; ++number) {
@@ -371,13 +371,13 @@ static void go_round(dock_supervisor *self, unsigned most)
     (void)serve(self, true, QUEUED, most);
 }
 
-/* Each enabled cancel runs once. */
+/* Runs each enabled cancel once. */
 static void serve_cancels(dock_supervisor *self)
 {
     (void)serve(self, true, CANCELS, QUEUED);
 }
 
-/* How the control loop is before anything has happened. */
+/* Resets the control loop before the first event. */
 static void start(dock_supervisor *self)
 {
     self->before = self->state;

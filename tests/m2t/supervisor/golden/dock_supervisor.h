@@ -15,11 +15,11 @@
  *     every period of the control loop:
  *         dock_tick(&robot);
  *
- * The hook `after` hears of every event that happened: there the cancels and triggers are sent. It runs inside the
- * functions below, so it must not call them.
+ * The engine calls the hook `after` for each event that happened: send the cancels and triggers there. The hook
+ * runs inside the functions below, so it must not call them.
  *
- * Nothing is allocated, printed or kept outside of the dock_supervisor that is handed in; no function
- * blocks or calls itself.
+ * The engine allocates and prints nothing, and keeps all data in the dock_supervisor that you pass. No
+ * function blocks or calls itself.
  */
 #ifndef DOCK_SUPERVISOR_H
 #define DOCK_SUPERVISOR_H
@@ -31,7 +31,7 @@
 extern "C" {
 #endif
 
-/* Everything that can happen, grouped by what the control loop does with it. */
+/* All events, grouped by their role in the control loop. */
 typedef enum dock_event {
     /* ---- Cancels: the control loop runs them first. ---- */
 
@@ -143,7 +143,8 @@ enum {
     dock_data_light_d2
 };
 
-/* Where the robot is: a location of each plant that has several, and the variables that the supervisor needs. */
+/* The state of the robot: a location of each plant with several locations, and the variables that the supervisor
+ * needs. */
 typedef struct dock_state {
     uint8_t component_Power; /* a location of component_Power */
     uint8_t component_Power_charge; /* 0 to 100 */
@@ -156,78 +157,78 @@ typedef struct dock_state {
     uint8_t data_light; /* a location of data_light */
 } dock_state;
 
-/* Data that comes with events. Set it, within its range, before the event that carries it is performed. */
+/* Data of events. Set it, within its range, before you perform its event. */
 typedef struct dock_inputs {
     uint8_t message_battery_i_response_percentage; /* 0 to 100 */
     uint8_t message_order_i_response; /* a value of Order */
 } dock_inputs;
 
 typedef struct dock_settings {
-    uint16_t events_per_tick; /* Most cancels and triggers in one tick; 0: no limit. */
-    uint16_t reactions_per_tick; /* Most cancels and triggers between two ticks, at the ends of one topic's batches. */
-    bool react_immediately; /* Whether what a batch makes possible runs at its end; else it waits for the tick. */
+    uint16_t events_per_tick; /* Maximum number of cancels and triggers in one tick; 0: no limit. */
+    uint16_t reactions_per_tick; /* Maximum number of cancels and triggers between two ticks at the ends of one topic's batches. */
+    bool react_immediately; /* Whether events that a batch enables run at its end. Otherwise they wait for the tick. */
 } dock_settings;
 
 extern const dock_settings dock_default_settings;
 
-/* What the engine calls; any of them may be NULL. */
+/* Functions that the engine calls. Each may be NULL. */
 typedef struct dock_hooks {
-    void *context; /* Handed to each hook. */
-    /* An enabled event is about to happen. False withholds it where it is a cancel, a trigger or silent (a reset, an
-     * internal transition): it is asked again later. Else it is ignored. */
+    void *context; /* Passed to each hook. */
+    /* Called before an enabled event. If it returns false for a cancel, a trigger or a silent event (a reset, an
+     * internal transition), the event is withheld and tried again later. For other events the result is ignored. */
     bool (*before)(void *context, dock_event event);
-    /* The event has happened. */
+    /* Called after an event. */
     void (*after)(void *context, dock_event event);
-    /* Silent events do not come to rest. Called once, until they have rested again. */
+    /* Called when silent events do not come to rest, and not again before they have rested. */
     void (*livelock)(void *context);
 } dock_hooks;
 
 typedef struct dock_supervisor {
-    dock_state state; /* To be read only. */
+    dock_state state; /* Read only. */
     dock_inputs inputs;
     dock_settings settings;
     dock_hooks hooks;
 
-    /* What follows is the engine's own. */
+    /* The rest is internal. */
     dock_state before; /* The state at the start of the batch. */
-    uint8_t queue[5]; /* Cancels, then triggers, each with the least recently run first. */
-    bool due[5]; /* What a batch made possible. */
-    bool taken[3]; /* Topics that were sent to; services and actions that were started. */
-    uint16_t reactions[5]; /* How many there were since the last tick, to each topic. */
-    uint8_t last; /* What happened last. */
-    bool owing; /* Whether what is due found that count used up. */
+    uint8_t queue[5]; /* Cancels, then triggers, the least recently run first in each group. */
+    bool due[5]; /* The events that a batch enabled. */
+    bool taken[3]; /* Topics that were sent to, and services and actions that were started. */
+    uint16_t reactions[5]; /* The number of reactions to each topic since the last tick. */
+    uint8_t last; /* The last event. */
+    bool owing; /* Whether due events have used up `reactions_per_tick`. */
     bool started; /* Whether there was a tick. */
-    uint8_t silent; /* The silent event to ask next. */
+    uint8_t silent; /* The next silent event to try. */
     bool livelocked; /* Whether a livelock was reported. */
-    bool quiescent; /* Whether nothing happened since silent events and data came to rest. */
+    bool quiescent; /* Whether no event happened since silent events and data came to rest. */
 } dock_supervisor;
 
-/* Puts the robot into its initial state. NULL for settings means the default, NULL for hooks none. */
+/* Puts the robot into its initial state. NULL stands for default settings, or for no hooks. */
 void dock_init(
     dock_supervisor *self, const dock_settings *settings, const dock_hooks *hooks);
 
-/* Whether the event can happen now: the robot can do it and the supervisor allows it. */
+/* Whether the event can happen now: the robot can execute it and the supervisor allows it. */
 bool dock_enabled(const dock_supervisor *self, dock_event event);
 
-/* Performs one event if it is enabled and not withheld, and nothing else; says whether it happened. */
+/* Performs only this event, if it is enabled and not withheld. Returns whether it happened. */
 bool dock_perform(dock_supervisor *self, dock_event event);
 
-/* Around the events of one batch: what one message from the robot means. At its end the robot settles, and cancels and
- * triggers run that the batch made possible, or whose data it changed: so many between two ticks for each topic, service
- * and action that its last event may come from. What is left then waits for a batch of another one that changes the
- * state, at most for the tick. */
+/* Enclose the events of one batch, those of one message from the robot. At the end of the batch, the robot settles.
+ * Then the cancels and triggers run that the batch enabled or gave other data. For each topic, service and action
+ * that the last event may come from, the settings limit their number between two ticks. The remaining ones wait for
+ * a batch of another source that changes the state, or for the next tick. */
 void dock_begin(dock_supervisor *self);
 void dock_end(dock_supervisor *self);
 
-/* One tick of the control loop: the robot settles, then each enabled cancel and trigger runs once. */
+/* Executes one tick of the control loop: the robot settles, then each enabled cancel and trigger runs once. */
 void dock_tick(dock_supervisor *self);
 
-/* Instead of batches and ticks, for one who only follows what others do: after each event, and once at the start. The
- * robot settles, then each enabled cancel runs once. */
+/* Replaces batches and ticks if you only follow another controller. Call it after each event, and once at the start.
+ * The robot settles, then each enabled cancel runs once. */
 void dock_settle(dock_supervisor *self);
 
 #ifndef DOCK_NO_NAMES
-/* Names as in the model, for reports; "" for a number out of range. */
+/* Names as in the model, for reports. "" for a number out of range. */
 const char *dock_event_name(dock_event event); /* "message_move.c_trigger" */
 const char *dock_location_name_component_Power(unsigned number);
 const char *dock_location_name_action_approach(unsigned number);

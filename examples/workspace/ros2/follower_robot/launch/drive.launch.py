@@ -9,7 +9,7 @@ from launch_ros.substitutions import FindPackageShare
 
 
 def generate_launch_description():
-    """What runs, and what may be said of it."""
+    """Return the nodes and their launch arguments."""
     controller = PathJoinSubstitution(
         [FindPackageShare("follower_robot"), "launch", "person_follower_controller.launch.py"]
     )

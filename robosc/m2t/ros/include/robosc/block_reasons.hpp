@@ -1,4 +1,4 @@
-// Why something is blocked.
+// The causes of a blocked command.
 #ifndef ROBOSC_BLOCK_REASONS_HPP_
 #define ROBOSC_BLOCK_REASONS_HPP_
 
@@ -11,8 +11,9 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// The reasons for which something is blocked; the first of these kinds is told: another one is under way (busy),
-/// requirements that fail, states without a transition for it, and else what synthesis prevents.
+/// The causes of a blocked command. Only the first kind that has any is reported: another execution that has not ended
+/// (busy), failed requirements, states without a transition for the command, or else consequences that synthesis
+/// prevents.
 class BlockReasons {
  public:
   static BlockReasons busy() {
@@ -31,14 +32,14 @@ class BlockReasons {
     return busy_ ? "busy" : !requirements_.empty() ? "requirement" : !states_.empty() ? "state" : "synthesis";
   }
 
-  /// The texts of that kind.
+  /// The texts of the reported kind.
   Json texts() const {
     Json list = Json::array();
     for (const std::string& text : told()) list.add(text);
     return list;
   }
 
-  /// What is told where an event is blocked.
+  /// The report on a blocked event.
   std::string report(const char* robot, double time, const char* name, const char* event,
                      const Json& components) const {
     return to_json(Json::object()
@@ -51,7 +52,7 @@ class BlockReasons {
                        .add("components", components));
   }
 
-  /// All of it in a sentence.
+  /// All reported texts in one sentence.
   std::string sentence() const {
     const bool possible = states_.empty() || !requirements_.empty();
     std::string said = !possible ? "not possible" : requirements_.empty() ? "forbidden by synthesis" : "forbidden";

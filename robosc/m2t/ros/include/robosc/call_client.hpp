@@ -1,4 +1,4 @@
-// A call of a service from its start to its one end, without middleware.
+// One service call, independent of the middleware.
 #ifndef ROBOSC_CALL_CLIENT_HPP_
 #define ROBOSC_CALL_CLIENT_HPP_
 
@@ -14,18 +14,18 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// The client of one service, with one call at a time. A derived class makes the call and says what comes of it.
+/// The client of one service, with one call at a time. A derived class makes the call and reports its result.
 ///
-/// Everything runs where the countdowns run, one call after the other. `Countdown` calls a function once, some time
+/// All functions run sequentially, in the thread of the countdowns. `Countdown` calls a function once, a given time
 /// after each start.
 template <typename Countdown, typename ResponseType>
 class CallClient {
  public:
-  /// Exactly one of them follows a call, never from inside it.
+  /// Exactly one handler follows each call. It never runs inside the call.
   struct Handlers {
     std::function<void(const ResponseType&)> response;
     std::function<void(Failure reason, const std::string& why)>
-        error;  ///< No server, no answer in time, a failed call.
+        error;  ///< No server, no response in time, or a failed call.
   };
 
   CallClient(const CallClient&) = delete;
@@ -33,14 +33,14 @@ class CallClient {
   virtual ~CallClient() = default;
 
  protected:
-  /// What a call waits for, as "no server", and why it has failed where that does not come.
+  /// The missing part of a call, such as "no server", and the failure reason if it stays missing.
   struct Missing {
     Failure reason;
     std::string what;
   };
 
-  /// `timeout`: from a call to its answer; the server, too, may appear in this time. `place`: what a countdown begins
-  /// with.
+  /// `timeout`: from a call to its response, including the search for a server. `place`: first arguments of a
+  /// countdown.
   template <typename... Place>
   CallClient(std::chrono::milliseconds timeout, Handlers handlers, Place&... place)
       : handlers_(std::move(handlers)),
@@ -50,16 +50,16 @@ class CallClient {
           fail(number_, missed.reason, missed.what + within_);
         }) {}
 
-  // What the middleware does.
+  // Functions that the middleware implements.
 
-  /// Forgets the call that is under way, if there is one.
+  /// Forgets the current call, if there is one.
   virtual void forget() = 0;
-  /// What the call still waits for.
+  /// The part of the call that is still missing.
   virtual Missing missing() = 0;
 
-  // What comes of it.
+  // Functions that the derived class calls.
 
-  /// Begins a call; its number. One that is still under way is given up.
+  /// Begins a call and returns its number. Gives up an earlier call that has not ended.
   std::uint64_t begin() {
     stop();
     waiting_ = true;
@@ -67,19 +67,19 @@ class CallClient {
     return ++number_;
   }
 
-  /// Gives up the call that is under way: nothing follows it.
+  /// Gives up the current call. No handler follows.
   void stop() {
     waiting_ = false;
     deadline_.stop();
     forget();
   }
 
-  /// The call of this number was answered. What comes late belongs to no call any more.
+  /// Reports the response of the call with this number. A late response is ignored.
   void succeed(std::uint64_t number, const ResponseType& response) {
     if (ends(number)) handlers_.response(response);
   }
 
-  /// It was not.
+  /// Reports the failure of the call with this number.
   void fail(std::uint64_t number, Failure reason, const std::string& why) {
     if (ends(number)) handlers_.error(reason, why);
   }

@@ -1,4 +1,4 @@
-// A call of a service that is handed on, from its start to its one end, without middleware.
+// One forwarded service call, independent of the middleware.
 #ifndef ROBOSC_CALL_PROXY_HPP_
 #define ROBOSC_CALL_PROXY_HPP_
 
@@ -13,17 +13,17 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// What stands between a controller and the robot's service. One call waits at a time; another one is turned away until
-/// that is answered. `Caller` is who waits for an answer.
+/// The part of a layer between a controller and the robot's service. One call is forwarded at a time. Further calls are
+/// turned away until it is answered. `Caller` identifies the client to answer.
 template <typename Caller, typename RequestType, typename ResponseType>
 class CallProxy {
  public:
-  /// What the supervisor has to say and to hear. Nothing is called from inside of anything else here.
+  /// Decisions and notifications of the supervisor. A handler never runs inside another function of this class.
   struct Handlers {
-    std::function<bool(const RequestType&)> call;       ///< Whether a call goes on.
-    std::function<void()> busy;                         ///< A call is turned away because another one waits.
+    std::function<bool(const RequestType&)> call;       ///< Returns whether to forward a call.
+    std::function<void()> busy;                         ///< A call was turned away because another one waits.
     std::function<void(const ResponseType&)> response;  ///< The robot has answered.
-    std::function<void(Failure reason, const std::string& why)> error;  ///< It has not.
+    std::function<void(Failure reason, const std::string& why)> error;  ///< The call has failed.
   };
 
   CallProxy(const CallProxy&) = delete;
@@ -35,10 +35,10 @@ class CallProxy {
 
   /// Calls the robot's service.
   virtual void forward(const RequestType& request) = 0;
-  /// Answers who waits; nothing: the call is blocked, or has no answer.
+  /// Answers the waiting client. No response: the call is blocked or has failed.
   virtual void answer(const Caller& caller, const std::optional<ResponseType>& response) = 0;
 
-  /// The controller has called.
+  /// Handles a call of the controller.
   void called(const Caller& caller, const RequestType& request) {
     if (waiting_) {
       handlers_.busy();
@@ -51,7 +51,7 @@ class CallProxy {
     }
   }
 
-  /// What the client of the robot's service is made with.
+  /// The handlers for the client of the robot's service.
   template <typename ClientHandlers>
   ClientHandlers answers() {
     return {

@@ -1,4 +1,4 @@
-// Callbacks that end with what they belong to.
+// Protection of destroyed objects from late callbacks.
 #ifndef ROBOSC_CALLBACK_GUARD_HPP_
 #define ROBOSC_CALLBACK_GUARD_HPP_
 
@@ -16,9 +16,9 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Keeps callbacks off what is being destroyed. A multi-threaded container unloads a component in one thread while
-/// another one still calls back, or is about to. Guarded callbacks run one at a time; none begins after `close`, which
-/// waits for the one that runs.
+/// Prevents callbacks on an object during and after its destruction. A multi-threaded container unloads a
+/// component in one thread while another thread runs or starts its callbacks. Guarded callbacks run one at a time.
+/// `close` waits for the running callback, and no callback begins after it.
 class CallbackGuard {
  public:
   CallbackGuard() = default;
@@ -26,24 +26,24 @@ class CallbackGuard {
   CallbackGuard& operator=(const CallbackGuard&) = delete;
   ~CallbackGuard() { close(); }
 
-  /// The function, doing nothing once the guard was closed after this.
+  /// The function, without effect if the guard is closed after this call.
   template <typename Function>
   auto operator()(Function function) const {
     return guarded(std::function(std::move(function)));
   }
 
-  /// While this is held, no guarded callback runs in another thread.
+  /// While you hold this lock, no guarded callback runs in another thread.
   std::unique_lock<std::recursive_mutex> hold() const { return std::unique_lock<std::recursive_mutex>(state_->mutex); }
 
   void close() {
-    ++state_->closed;  // Before it waits: who comes now does not take the lock, else they could keep it from us.
+    ++state_->closed;  // Counts before it locks: new callbacks skip the lock and can't starve this thread.
     const auto lock = hold();
   }
 
  private:
   struct State {
     std::recursive_mutex mutex;
-    std::atomic<std::uint64_t> closed{0};  ///< How often.
+    std::atomic<std::uint64_t> closed{0};  ///< The number of calls of `close`.
   };
 
   template <typename... Arguments>
@@ -59,11 +59,11 @@ class CallbackGuard {
   std::shared_ptr<State> state_ = std::make_shared<State>();
 };
 
-/// Takes a callback group from its executor for good, as soon as nothing of it runs: what rclcpp itself has in it (the
-/// services of parameters, of a managed node) can't be guarded. The executor must not find the group taken while it
-/// chooses what to run: rclcpp asserts that it does not. So it may first let go of the group's services, as it does
-/// once it hears that the node was removed; then only their owner and who looks here point to them. An executor that
-/// runs this can't, and one that is busy does not for now: neither is waited for long.
+/// Takes a callback group from its executor for good, once none of its callbacks runs. The services that rclcpp adds to
+/// the group (for parameters and the lifecycle) can't be guarded. The group must not become taken while the executor
+/// selects a callback: rclcpp asserts that. So the function first lets the executor release the group's services. The
+/// executor does so when it learns that the node was removed. Then only their owner and this function refer to them. An
+/// executor cannot release them while it runs this function or another callback. So both waits are bounded.
 template <typename Group>
 void withdraw(Group& group) {
   const auto until = [start = std::chrono::steady_clock::now()](std::chrono::milliseconds patience, auto condition) {

@@ -1,4 +1,4 @@
-// Requests to cancel a goal, without middleware.
+// Requests to cancel a goal, independent of the middleware.
 #ifndef ROBOSC_CANCEL_REQUESTS_HPP_
 #define ROBOSC_CANCEL_REQUESTS_HPP_
 
@@ -13,35 +13,35 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// A server's answer to a request to cancel one goal. `terminated`: the goal has ended or is being canceled; `unknown`:
-/// the server does not know it.
+/// A server's answer to a request to cancel one goal. `terminated`: the goal has ended or is being canceled. `unknown`:
+/// the server does not know the goal.
 enum class CancelAnswer { accepted, refused, terminated, unknown };
 
-/// Why a goal is lost whose result comes without an end.
+/// The reason for a goal whose result has no known end.
 inline constexpr const char* kLostGoal = "the server has lost the goal";
-/// How long the end of a node waits for the end of a goal whose server has accepted to cancel it.
+/// The time that a node waits at its end for the end of a goal whose cancel the server has accepted.
 inline constexpr std::chrono::milliseconds kFarewell(500);
 
-/// What becomes of a goal that has not ended when its node ends; `trouble` is empty where its server cancels it.
+/// The report on a goal that has not ended when its node ends. `trouble` is empty if the server cancels the goal.
 inline std::string left_behind(bool accepted, bool canceling, const std::string& trouble, const std::string& node) {
   const std::string running = accepted ? "the goal has not ended" : "the goal may still begin";
   const std::string why = !trouble.empty() ? trouble : "the server has not answered";
   return running + " when this " + node + " ends: " + (canceling ? "the server cancels the goal" : why);
 }
 
-/// The requests to cancel one goal after the other: each is repeated until the server accepts it.
+/// The requests to cancel successive goals. Each request is repeated until the server accepts it.
 ///
-/// `Countdown` calls a function once, some time after each start.
+/// `Countdown` calls a function once, a given time after each start.
 template <typename Countdown>
 class CancelRequests {
  public:
   struct Actions {
     std::function<void()> send;                         ///< Sends one request.
-    std::function<void(const std::string& text)> warn;  ///< Reports a kind of refusal, once for each goal.
+    std::function<void(const std::string& text)> warn;  ///< Reports each kind of refusal once per goal.
   };
 
-  /// A refused request is repeated after `retry`, or never where that is 0; no answer within `timeout` counts as a
-  /// refusal. `place`: what a countdown begins with.
+  /// A refused request is repeated after `retry`, or never if `retry` is 0. No answer within `timeout` counts as a
+  /// refusal. `place`: first arguments of a countdown.
   template <typename... Place>
   CancelRequests(std::chrono::milliseconds timeout, std::chrono::milliseconds retry, Actions actions, Place&... place)
       : actions_(std::move(actions)),
@@ -55,14 +55,14 @@ class CancelRequests {
   CancelRequests(const CancelRequests&) = delete;
   CancelRequests& operator=(const CancelRequests&) = delete;
 
-  /// A new goal.
+  /// Prepares for a new goal.
   void reset() {
     stop();
     stopped_ = sent_ = accepted_ = false;
     reported_.clear();
   }
 
-  /// Sends a request, unless one was sent.
+  /// Sends the first request. Does nothing if one was sent.
   void ask() {
     if (sent_ || accepted_ || stopped_) return;
     sent_ = true;
@@ -70,12 +70,12 @@ class CancelRequests {
     send();
   }
 
-  /// The end of the node waits for the answer as long as for one to a first request.
+  /// Extends the wait for an answer at the end of the node, as after a first request.
   void extend() {
     if (!accepted_) until_ = std::chrono::steady_clock::now() + timeout_;
   }
 
-  /// The server cancels the goal.
+  /// The server has accepted to cancel the goal.
   void accept() {
     answer_.stop();
     retry_.stop();
@@ -84,7 +84,7 @@ class CancelRequests {
     until_ = std::chrono::steady_clock::now() + kFarewell;
   }
 
-  /// The server does not cancel the goal; `why` is reported.
+  /// The server does not cancel the goal. Reports `why`.
   void refuse(const std::string& why = "the server refuses to cancel the goal") {
     if (accepted_ || stopped_) return;
     answer_.stop();
@@ -93,7 +93,7 @@ class CancelRequests {
     if (reported_.insert(why).second) actions_.warn(why);
   }
 
-  /// The goal has ended, or its end is known to come: nothing is sent any more.
+  /// Stops sending: the goal has ended, or its end is certain.
   void stop() {
     answer_.stop();
     retry_.stop();
@@ -103,9 +103,9 @@ class CancelRequests {
 
   bool sent() const { return sent_; }
   bool accepted() const { return accepted_; }
-  /// Why the goal is not being canceled; empty where the server has accepted that, or may still.
+  /// The reason why the goal is not being canceled. Empty if the server has accepted the request or still may.
   const std::string& trouble() const { return trouble_; }
-  /// Whether the end of the node waits: for an answer, then a little for the end of the goal.
+  /// Whether the end of the node waits for an answer and then briefly for the end of the goal.
   bool waits() const { return sent_ && !stopped_ && std::chrono::steady_clock::now() < until_; }
 
  private:

@@ -1,4 +1,4 @@
-// What a node tells on /diagnostics.
+// The status of components on /diagnostics.
 #ifndef ROBOSC_COMPONENT_STATUS_HPP_
 #define ROBOSC_COMPONENT_STATUS_HPP_
 
@@ -14,7 +14,7 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// A value as people and plots read it.
+/// A value as readable text, also for plots.
 inline std::string plain_text(double value) {
   return std::isnan(value) ? "nan" : std::isinf(value) ? (value < 0 ? "-inf" : "inf") : to_json(value);
 }
@@ -23,7 +23,7 @@ inline std::string plain_text(const char* value) { return value; }
 inline std::string plain_text(bool value) { return to_json(value); }
 inline std::string plain_text(Integer value) { return to_json(value); }
 
-/// Which ticks are followed by a report: the first, then one in so many milliseconds; none where these are 0.
+/// Selects the ticks that a report follows: the first one, then one per `wanted` milliseconds. None if `wanted` is 0.
 class ReportPace {
  public:
   void open(std::chrono::milliseconds wanted, std::chrono::milliseconds period) {
@@ -31,7 +31,7 @@ class ReportPace {
     passed_ = 0;
   }
 
-  /// A tick is over: whether it is time for a report.
+  /// Counts a tick. Returns whether to report.
   bool due() {
     if (every_ == 0) return false;
     const bool due = passed_ == 0;
@@ -44,7 +44,7 @@ class ReportPace {
   std::chrono::milliseconds::rep passed_ = 0;
 };
 
-/// The status of a component in the making; `Status` is that of diagnostic_msgs, of either ROS.
+/// Builder of a component's status. `Status` is the type of diagnostic_msgs in ROS 1 or ROS 2.
 template <typename Status>
 class ComponentStatus {
  public:
@@ -62,7 +62,7 @@ class ComponentStatus {
     status_.values.back().value = plain_text(value);
   }
 
-  /// Something is wrong with it.
+  /// Adds a warning.
   void warn(const std::string& what) {
     status_.level = Status::WARN;
     status_.message += "; " + what;

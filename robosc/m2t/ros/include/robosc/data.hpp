@@ -1,4 +1,4 @@
-// How data of the model and data of ROS become each other.
+// Conversion between data of the model and data of ROS.
 #ifndef ROBOSC_DATA_HPP_
 #define ROBOSC_DATA_HPP_
 
@@ -17,11 +17,11 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// A whole number of the model. Where a result does not fit, it is the nearest number that does.
+/// A whole number of the model. Results saturate at the nearest number that fits.
 class Integer {
  public:
   template <typename Number, typename = std::enable_if_t<std::is_integral_v<Number>>>
-  constexpr Integer(Number value)  // NOLINT: numbers of ROS are numbers of the model
+  constexpr Integer(Number value)  // NOLINT: numbers of ROS convert implicitly to numbers of the model
       : value_(fits(value) ? static_cast<std::int64_t>(value) : most) {}
 
   /// The nearest number between two bounds.
@@ -62,7 +62,7 @@ class Integer {
     }
     return a.value_ * b.value_;
   }
-  /// The remainder of a division by a positive number, which is never negative.
+  /// The remainder of a division by a positive number. Never negative.
   friend Integer mod(Integer a, Integer b) {
     const std::int64_t remainder = a.value_ % b.value_;
     return remainder < 0 ? remainder + b.value_ : remainder;
@@ -90,25 +90,25 @@ class Integer {
   std::int64_t value_;
 };
 
-/// Whether two numbers differ; false where one of them is no number, as for every comparison.
+/// Whether two numbers differ. False if one of them is NaN, as for each comparison.
 inline bool differ(double a, double b) { return a < b || a > b; }
 
 inline double magnitude(double a) { return std::fabs(a); }
-/// The smaller of two numbers, or the larger: the other one where one is no number.
+/// The smaller or larger of two numbers. If one is NaN, the other one.
 inline double smaller(double a, double b) { return b < a || std::isnan(a) ? b : a; }
 inline double larger(double a, double b) { return b > a || std::isnan(a) ? b : a; }
 
-/// A time in milliseconds that is set in units of so many.
+/// A duration in milliseconds. `value` counts units of `unit` milliseconds.
 inline std::uint32_t duration_ms(double value, double unit) {
   return static_cast<std::uint32_t>(std::floor(value * unit + 0.5));
 }
 
-/// How many characters a text in UTF-8 has.
+/// The number of characters of a text in UTF-8.
 inline Integer size_of(const std::string& text) {
   return std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; });
 }
 
-/// Some elements of an array.
+/// A range of an array's elements.
 template <typename Iterator>
 class Slice {
  public:
@@ -127,13 +127,14 @@ class Slice {
   Iterator begin_, end_;
 };
 
-/// How many elements an array has.
+/// The number of elements of an array.
 template <typename Array>
 Integer size_of(const Array& array) {
   return array.size();
 }
 
-/// Whether a condition holds of all elements of an array, or of any; from left to right, no further than needed.
+/// Whether a condition holds for all elements of an array, or for any. Evaluates from left to right until the result is
+/// certain.
 template <typename Array, typename Condition>
 bool for_all(const Array& array, Condition holds) {
   for (const auto& element : array) {
@@ -146,7 +147,7 @@ bool for_any(const Array& array, Condition holds) {
   return !for_all(array, [&](const auto& element) { return !holds(element); });
 }
 
-/// How many elements of an array a condition holds of.
+/// The number of elements of an array for which a condition holds.
 template <typename Array, typename Condition>
 Integer number_of(const Array& array, Condition holds) {
   std::int64_t count = 0;
@@ -154,7 +155,7 @@ Integer number_of(const Array& array, Condition holds) {
   return count;
 }
 
-/// Keeps data as it came, or element by element where it is an array of another kind.
+/// Assigns data, element by element if the types of the arrays differ.
 template <typename Kept, typename Data>
 void store(Kept& kept, const Data& data) {
   if constexpr (std::is_assignable_v<Kept&, const Data&>) {
@@ -166,7 +167,7 @@ void store(Kept& kept, const Data& data) {
   }
 }
 
-/// Reads elements of arrays and rounds numbers, and remembers the first that can't be.
+/// Reads elements of arrays, rounds numbers, and records the first failure.
 class ArrayReader {
  public:
   Integer floor(double number) { return whole(std::floor(number)); }
@@ -182,7 +183,7 @@ class ArrayReader {
     return nothing;
   }
 
-  /// The elements from one to another, both included; none where the last one is before the first.
+  /// The elements from `first` to `last`, both included. Empty if `last` is less than `first`.
   template <typename Array>
   Slice<typename Array::const_iterator> slice(const Array& array, Integer first, Integer last) {
     const auto from = first.to<std::int64_t>(), to = last.to<std::int64_t>();
@@ -205,14 +206,14 @@ class ArrayReader {
     return first_of<Number>(array, [](Number a, Number b) { return a > b; });
   }
 
-  /// Whether all could be read.
+  /// Whether all reads succeeded.
   bool complete() const { return fault_.empty(); }
 
-  /// What could not.
+  /// The first failure.
   const std::string& fault() const { return fault_; }
 
  private:
-  /// The number that is before all others; what is no number is passed over.
+  /// The first number in the order `before`. Skips NaN.
   template <typename Number, typename Array, typename Before>
   Number first_of(const Array& array, Before before) {
     Number found = 0;
@@ -244,7 +245,7 @@ class ArrayReader {
   std::string fault_;
 };
 
-/// What `read` gives; `unread` where it can't be read.
+/// The value that `read` returns, or `unread` after a failed read.
 template <typename Value, typename Read>
 Value read_or(Value unread, Read read) {
   ArrayReader reader;
@@ -252,7 +253,7 @@ Value read_or(Value unread, Read read) {
   return reader.complete() ? value : unread;
 }
 
-/// Keeps what is read, where all of it is there.
+/// Stores the value that `read` returns unless a read failed.
 template <typename Kept, typename Read>
 void store_if_readable(Kept& kept, Read read) {
   ArrayReader reader;

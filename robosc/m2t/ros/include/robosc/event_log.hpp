@@ -1,4 +1,4 @@
-// The file that tells what happened.
+// The file with the events of a node.
 #ifndef ROBOSC_EVENT_LOG_HPP_
 #define ROBOSC_EVENT_LOG_HPP_
 
@@ -23,8 +23,8 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Where a log goes that nobody named: the folder of ROS's own logs. `node` is the node's full name, such as
-/// `/left/base`; where it was renamed, its package is told, too.
+/// The default path of a log, in the folder of ROS's own logs. `node` is the node's full name, such as `/left/base`.
+/// The path of a renamed node contains its package, too.
 inline std::string default_log(std::string node, const std::string& package) {
   const auto variable = [](const char* name) {
     const char* value = std::getenv(name);
@@ -33,7 +33,7 @@ inline std::string default_log(std::string node, const std::string& package) {
   std::filesystem::path folder = variable("ROS_LOG_DIR");
   if (folder.empty() && !variable("ROS_HOME").empty()) folder = std::filesystem::path(variable("ROS_HOME")) / "log";
   if (folder.empty()) folder = std::filesystem::path(variable("HOME")) / ".ros" / "log";
-  std::error_code failed;  // the log itself complains
+  std::error_code failed;  // opening the log reports the failure
   std::filesystem::create_directories(folder, failed);
   node.erase(0, node.find_first_not_of('/'));
   if (node.substr(node.rfind('/') + 1) != package) node += "/" + package;
@@ -41,8 +41,8 @@ inline std::string default_log(std::string node, const std::string& package) {
   return folder / (node + "-events.jsonl");
 }
 
-/// Writes lines to the end of a file in a thread of its own, so that a slow disk delays nobody: within 20 ms, and all
-/// of them when the writer ends. Of what the disk does not take in time, some MB are kept.
+/// Appends lines to a file in a separate thread, so that a slow disk delays no caller. Writes within 20 ms, and writes
+/// all lines at destruction. Keeps some MB of lines for a slow disk.
 class LineWriter {
  public:
   explicit LineWriter(const std::string& path) : file_(path, std::ios::app) {
@@ -74,7 +74,7 @@ class LineWriter {
     if (waits) changed_.notify_one();
   }
 
-  /// How many lines were lost that were not told yet, once a second; else 0.
+  /// The number of lost lines not reported yet, once a second. Otherwise 0.
   std::size_t lost() {
     const std::lock_guard<std::mutex> lock(mutex_);
     const auto now = std::chrono::steady_clock::now();
@@ -104,7 +104,7 @@ class LineWriter {
 
   static constexpr std::size_t kKept = std::size_t{8} << 20U;
 
-  std::ofstream file_;  // the thread's alone
+  std::ofstream file_;  // used by the thread only
   std::mutex mutex_;
   std::condition_variable changed_;
   std::string lines_;
@@ -115,7 +115,7 @@ class LineWriter {
   std::thread thread_;
 };
 
-/// A file that gets a line of JSON for each event; without a name, none.
+/// A file with a line of JSON for each event. No file without a path.
 class EventLog {
  public:
   explicit EventLog(const std::string& path = "") {
@@ -124,13 +124,13 @@ class EventLog {
 
   bool active() const { return writer_ != nullptr; }
 
-  /// The data that comes with the next event.
+  /// Adds the data of the next event.
   template <typename Value>
   void note(const Value& value) {
     data_ = ",\"data\":{\"value\":" + to_json(value) + '}';
   }
 
-  /// The reason of the next event, an error; behind its data.
+  /// Adds the reason of the next event, an error, after its data.
   void note_reason(const char* reason) {
     if (data_.empty()) {
       data_ = ",\"data\":{";
@@ -146,7 +146,7 @@ class EventLog {
                    std::exchange(data_, "") + "}\n");
   }
 
-  /// How many events the file could not take that were not told yet, once a second; else 0.
+  /// The number of lost events not reported yet, once a second. Otherwise 0.
   std::size_t lost() { return active() ? writer_->lost() : 0; }
 
  private:

@@ -1,4 +1,4 @@
-// Why a service or an action has failed.
+// Reasons for failed services and actions.
 #ifndef ROBOSC_FAILURE_HPP_
 #define ROBOSC_FAILURE_HPP_
 

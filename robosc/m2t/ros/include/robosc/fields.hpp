@@ -1,4 +1,4 @@
-// Data of the model on its way into a message.
+// Conversion of data of the model into messages.
 #ifndef ROBOSC_FIELDS_HPP_
 #define ROBOSC_FIELDS_HPP_
 
@@ -21,10 +21,10 @@ inline constexpr bool is_array_v = false;
 template <typename Data>
 inline constexpr bool is_array_v<Data, std::void_t<typename Data::const_iterator>> = true;
 
-/// Tells the message types of ROS, of which `robosc_ros1/finite.hpp` or `robosc_ros2/finite.hpp` says what is finite.
+/// Tag for message types of ROS. `robosc_ros1/finite.hpp` and `robosc_ros2/finite.hpp` define `finite` for them.
 struct OfRos {};
 
-/// Whether a message, or an array of messages, holds finite numbers only.
+/// Whether a message, or an array of messages, contains finite numbers only.
 template <typename Data>
 bool all_finite(const Data& data) {
   if constexpr (is_array_v<Data>) {
@@ -34,13 +34,13 @@ bool all_finite(const Data& data) {
   }
 }
 
-/// Fills the fields of a message, and remembers the first one whose value is no finite number.
+/// Fills the fields of a message and records the first one whose value is not a finite number.
 class FieldWriter {
  public:
-  /// `noted`: whether what is set is kept as JSON, too.
+  /// `noted`: whether to record the fields as JSON, too.
   explicit FieldWriter(bool noted) : noted_(noted) {}
 
-  /// Sets the elements of an array; one of a fixed length keeps the elements behind them.
+  /// Sets the elements of an array. An array of fixed length keeps its remaining elements.
   template <typename Array, typename Values>
   void set_elements(const char* path, Array& array, const Values& values) {
     reserve(array, values.size(), 0);
@@ -63,7 +63,7 @@ class FieldWriter {
     note(path, list);
   }
 
-  /// Sets a field, or the whole data, to what came in; it is not noted.
+  /// Sets a field, or the whole data, to received data. Records no JSON.
   template <typename Field, typename Data>
   void hand_on(const char* path, Field& field, const Data& data) {
     store(field, data);
@@ -85,10 +85,10 @@ class FieldWriter {
     }
   }
 
-  /// The first field whose value is not finite; null: there is none.
+  /// The path of the first field whose value is not finite. Null if there is none.
   const char* fault() const { return fault_; }
 
-  /// What was set, as it is in the message; of basic data the value itself.
+  /// The recorded fields as in the message. For basic data, the value itself.
   friend std::string to_json(const FieldWriter& writer) {
     return writer.fields_ == 1 && !writer.basic_.empty() ? writer.basic_ : to_json(writer.tree_);
   }
@@ -125,7 +125,7 @@ class FieldWriter {
       field = static_cast<Field>(value);
       check(path, static_cast<double>(field));
     } else if (check(path, value)) {
-      // The largest number of a field may have no double of its own: compare with the next power of two.
+      // A double may not represent the largest number of a field: compare with the next power of two.
       const double end = std::ldexp(1.0, std::numeric_limits<Field>::digits);
       const double least = static_cast<double>(std::numeric_limits<Field>::min());
       field = value >= end     ? std::numeric_limits<Field>::max()

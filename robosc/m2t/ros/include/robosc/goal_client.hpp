@@ -1,4 +1,4 @@
-// A goal of an action from its start to its one end, without middleware.
+// One goal of an action, independent of the middleware.
 #ifndef ROBOSC_GOAL_CLIENT_HPP_
 #define ROBOSC_GOAL_CLIENT_HPP_
 
@@ -15,42 +15,42 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// The client of one action, with one goal at a time. A derived class sends the goal and says what its server does.
+/// The client of one action, with one goal at a time. A derived class sends the goal and reports the server's actions.
 ///
-/// Everything runs where the countdowns run, one call after the other. `Countdown` calls a function once, some time
+/// All functions run sequentially, in the thread of the countdowns. `Countdown` calls a function once, a given time
 /// after each start.
 template <typename Countdown, typename FeedbackType, typename ResultType>
 class GoalClient {
  public:
-  /// Why a goal has ended without success, and the result that came with its end, else a default one.
+  /// The end of a goal without success: the reason and the received result, or a default result.
   using Ended = std::function<void(Failure reason, const std::string& why, const ResultType& result)>;
 
-  /// Any number of feedbacks follows a start, then exactly one of the others; never from inside `start` or `cancel`.
+  /// Any number of feedbacks follows a start, then exactly one other handler. None runs inside `start` or `cancel`.
   struct Handlers {
     std::function<void(const FeedbackType&)> feedback;
     std::function<void(const ResultType&)> response;  ///< The goal has succeeded.
-    Ended error;                                      ///< It was not carried out, aborted or lost.
-    Ended canceled;  ///< It has ended because of a cancel; the reason counts where the model did not cancel it.
+    Ended error;                                      ///< The goal was not executed, was aborted, or is lost.
+    Ended canceled;  ///< A cancel has ended the goal. The reason applies if the model did not cancel it.
   };
 
   GoalClient(const GoalClient&) = delete;
   GoalClient& operator=(const GoalClient&) = delete;
   virtual ~GoalClient() = default;
 
-  /// Whether there is a goal whose end is not known; until then no other may start.
+  /// Whether there is a goal without a known end. No other goal may start until then.
   bool busy() const { return phase_ != Phase::idle; }
 
-  /// Whether the end of the node waits: for the goal's acceptance, for the answer to a cancel, then a little for its
-  /// end. The steady clock bounds it: simulated time may stand still.
+  /// Whether the end of the node waits for the goal's acceptance, for the answer to a cancel, and then briefly for the
+  /// goal's end. The steady clock bounds the wait because simulated time may stand still.
   bool waits() const {
     const bool undecided = busy() && phase_ != Phase::accepted;
     return requests_.waits() || (undecided && std::chrono::steady_clock::now() < until_);
   }
 
-  /// Why the goal has not ended though it should have; empty where nothing is wrong.
+  /// The reason why the goal has not ended although it should have. Empty without trouble.
   std::string trouble() const { return late_ && phase_ == Phase::sent ? not_accepted_ : requests_.trouble(); }
 
-  /// Cancels the goal: where the server does not know it yet, as soon as it does.
+  /// Cancels the goal. If the server does not know it yet, cancels it once it does.
   void cancel() {
     if (!busy()) return;
     canceling_ = true;
@@ -58,7 +58,7 @@ class GoalClient {
     requests_.extend();
   }
 
-  /// Reports a goal that has not ended when the node ends, once.
+  /// Reports once a goal that has not ended when the node ends.
   void leave() {
     if ((phase_ != Phase::sent && phase_ != Phase::accepted) || std::exchange(left_, true)) return;
     warn(left_behind(phase_ == Phase::accepted, requests_.accepted(), trouble(), "node"));
@@ -67,9 +67,9 @@ class GoalClient {
  protected:
   enum class Phase { idle, waiting, sent, accepted, over };
 
-  /// `timeout`: of the search for a server together with the wait for its acceptance, never of the goal's work; of a
-  /// cancel, which is repeated after `retry`, or never where that is 0; from the end of a goal to its result. `place`:
-  /// what a countdown begins with.
+  /// `timeout` bounds three waits: for a server and its acceptance, for the answer to a cancel, and from the end of a
+  /// goal to its result. It never bounds the goal's execution. A cancel is repeated after `retry`, or never if `retry`
+  /// is 0. `place`: first arguments of a countdown.
   template <typename... Place>
   GoalClient(std::chrono::milliseconds timeout, std::chrono::milliseconds retry, Handlers handlers, Place&... place)
       : handlers_(std::move(handlers)),
@@ -85,27 +85,27 @@ class GoalClient {
                                                               [this](const std::string& text) { warn(text); }},
                   place...) {}
 
-  // What the middleware does.
+  // Functions that the middleware implements.
 
-  /// Whether a server is there; asked again and again while a goal is under way.
+  /// Whether a server is available. Called repeatedly during a goal.
   virtual bool is_served() = 0;
-  /// Whether the server that has the goal is gone; asked after `is_served`.
+  /// Whether the server of the goal is gone. Called after `is_served`.
   virtual bool is_gone() = 0;
-  /// Whether the server says that the goal is being canceled.
+  /// Whether the server reports that the goal is being canceled.
   virtual bool is_canceling() = 0;
-  /// Sends the goal; false: that is not possible now.
+  /// Sends the goal. Returns false if that is not possible now.
   virtual bool send() = 0;
-  /// Asks the server to cancel the goal, if that is possible yet.
+  /// Requests the server to cancel the goal, if possible yet.
   virtual void request_cancel() = 0;
-  /// Forgets the goal, which is over.
+  /// Forgets the goal after its end.
   virtual void reset() = 0;
   virtual void warn(const std::string& text) = 0;
-  /// Whether to look for the server also where no goal is under way.
+  /// Whether to look for the server without a goal, too.
   virtual bool keeps_looking() const { return false; }
 
-  // What the server does.
+  // Functions that the derived class calls.
 
-  /// Begins to look for a server, for a new goal.
+  /// Begins the search for a server for a new goal.
   void begin() {
     phase_ = Phase::waiting;
     left_ = false;
@@ -116,7 +116,7 @@ class GoalClient {
     poll();
   }
 
-  /// The server knows the goal: it can be canceled.
+  /// The server knows the goal, so that it can be canceled.
   void know() {
     if (!std::exchange(known_, true) && canceling_) requests_.ask();
   }
@@ -143,7 +143,7 @@ class GoalClient {
 
   void hear(const FeedbackType& feedback) { handlers_.feedback(feedback); }
 
-  /// The goal is over, its result is not there yet.
+  /// The goal has ended. Its result has not arrived yet.
   void await_result() {
     phase_ = Phase::over;
     until_ = std::chrono::steady_clock::now() + kFarewell;
@@ -157,7 +157,7 @@ class GoalClient {
     handlers_.response(result);
   }
 
-  /// The goal has ended as canceled. `more`: what the server says about it.
+  /// The goal has ended as canceled. `more`: details from the server.
   void canceled(const std::string& more = "", const ResultType& result = ResultType()) {
     const std::string by =
         canceling_ ? "canceled by the controller itself, an error to the model" : "canceled by someone else";
@@ -168,10 +168,10 @@ class GoalClient {
     finish(handlers_.error, Failure::aborted, "aborted" + more, result);
   }
 
-  /// The server does not know the goal any more, or its end: the robot may still move.
+  /// The server no longer knows the goal or its end. The robot may still move.
   void lose(const std::string& more = "") { fail(Failure::lost, kLostGoal + more); }
 
-  /// Nothing is known of a result.
+  /// Reports a failure without a result.
   void fail(Failure reason, const std::string& why) { finish(handlers_.error, reason, why, ResultType()); }
 
   void forget() {
@@ -185,7 +185,7 @@ class GoalClient {
   }
 
   Phase phase() const { return phase_; }
-  /// Which goal this is: what comes of another one has another number.
+  /// The number of the current goal. Answers for another goal have another number.
   std::uint64_t number() const { return number_; }
 
  private:
@@ -211,7 +211,7 @@ class GoalClient {
         fail(Failure::unavailable, unsent_ + within_);
         break;
       case Phase::sent:
-        // It may still begin, and is canceled then.
+        // The goal may still begin. Then it is canceled.
         warn(not_accepted_);
         late_ = canceling_ = true;
         until_lost_.start();
@@ -219,7 +219,7 @@ class GoalClient {
         break;
       case Phase::over:
         if (is_canceling()) {
-          // Somebody else had it canceled before: a server calls that terminated, too.
+          // Another client canceled the goal before: a server reports that as terminated, too.
           phase_ = Phase::accepted;
           requests_.reset();
           requests_.accept();
@@ -233,7 +233,7 @@ class GoalClient {
     }
   }
 
-  /// The goal is over.
+  /// Reports the end of the goal.
   void finish(const Ended& told, Failure reason, const std::string& why, const ResultType& result) {
     const bool late = late_ && (reason == Failure::canceled || reason == Failure::aborted);
     const std::string text = late ? "accepted too late, then " + why : why;
@@ -245,13 +245,13 @@ class GoalClient {
   const std::chrono::milliseconds timeout_;
   const std::string within_;
   const std::string not_accepted_;
-  std::string unsent_;  ///< Why the goal was not sent yet.
+  std::string unsent_;  ///< The reason why the goal was not sent yet.
   std::chrono::steady_clock::time_point until_;
   Phase phase_ = Phase::idle;
-  bool known_ = false;      ///< To the server.
-  bool canceling_ = false;  ///< Somebody here wants it to end.
-  bool late_ = false;       ///< It was not accepted in time.
-  bool left_ = false;       ///< It was reported as left behind.
+  bool known_ = false;      ///< The server knows the goal.
+  bool canceling_ = false;  ///< This client cancels the goal.
+  bool late_ = false;       ///< The goal was not accepted in time.
+  bool left_ = false;       ///< The goal was reported as left behind.
   std::uint64_t number_ = 0;
   Countdown deadline_;
   Countdown poll_;

@@ -1,4 +1,4 @@
-// A goal of an action that is handed on, from its start to its one end, without middleware.
+// One forwarded goal of an action, independent of the middleware.
 #ifndef ROBOSC_GOAL_PROXY_HPP_
 #define ROBOSC_GOAL_PROXY_HPP_
 
@@ -14,51 +14,51 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// What stands between a controller and the robot's action. One goal runs at a time; another one is rejected until that
-/// has ended. A derived class hands on what both sides say, one by one, so that goals keep their identity.
+/// The part of a layer between a controller and the robot's action. One goal runs at a time. Further goals are rejected
+/// until it has ended. A derived class forwards each message of both sides, so that goals keep their identity.
 template <typename Countdown, typename Goal, typename Feedback, typename Result>
 class GoalProxy {
  public:
-  /// Why a goal has ended without success, and the result that came with its end, else a default one.
+  /// The end of a goal without success: the reason and the received result, or a default result.
   using Ended = std::function<void(Failure reason, const std::string& why, const Result& result)>;
 
-  /// What the supervisor has to say and to hear.
+  /// Decisions and notifications of the supervisor.
   struct Handlers {
-    std::function<bool(const Goal&)> goal;          ///< Whether a goal goes on.
-    std::function<void()> busy;                     ///< A goal is rejected because another one has not ended.
-    std::function<void(const Feedback&)> feedback;  ///< The goal at hand goes on.
-    std::function<void(const Result&)> response;    ///< It has succeeded.
-    Ended error;                                    ///< It was not carried out, aborted or lost.
-    Ended canceled;  ///< It has ended because of a cancel; the reason counts where the model did not cancel it.
-    std::function<void(const std::string&)> warn;  ///< The goal at hand has not ended though it should have.
+    std::function<bool(const Goal&)> goal;          ///< Returns whether to forward a goal.
+    std::function<void()> busy;                     ///< A goal was rejected because another one has not ended.
+    std::function<void(const Feedback&)> feedback;  ///< The current goal has feedback.
+    std::function<void(const Result&)> response;    ///< The goal has succeeded.
+    Ended error;                                    ///< The goal was not executed, was aborted, or is lost.
+    Ended canceled;  ///< A cancel has ended the goal. The reason applies if the model did not cancel it.
+    std::function<void(const std::string&)> warn;  ///< The current goal has not ended although it should have.
   };
 
   GoalProxy(const GoalProxy&) = delete;
   GoalProxy& operator=(const GoalProxy&) = delete;
   virtual ~GoalProxy() = default;
 
-  /// Cancels the goal at hand, if there is one; before the robot has accepted it, as soon as it does.
+  /// Cancels the current goal, if there is one. If the robot has not accepted it, cancels it on acceptance.
   void cancel() {
     if (!running_) return;
     canceling_ = true;
     if (accepted_ && !over_) requests_.ask();
   }
 
-  /// Why the goal at hand has not ended though it should have; empty where nothing is wrong.
+  /// The reason why the current goal has not ended although it should have. Empty without trouble.
   std::string trouble() const { return late_ && !accepted_ ? "not accepted" + within_ : requests_.trouble(); }
 
-  /// Whether the end of the layer waits: for the acceptance of a goal that it cancels, for the answer, for its end.
+  /// Whether the end of the layer waits for the acceptance of a goal that it cancels, for the answer, and for its end.
   bool waits() const { return running_ && canceling_ && !over_ && (requests_.waits() || (!accepted_ && !late_)); }
 
-  /// Reports a goal that the layer has canceled and that has not ended when the layer ends, once.
+  /// Reports once a goal that the layer has canceled and that has not ended when the layer ends.
   void leave() {
     if (!running_ || !canceling_ || over_ || std::exchange(left_, true)) return;
     handlers_.warn(left_behind(accepted_, requests_.accepted(), trouble(), "layer"));
   }
 
  protected:
-  /// `timeout`: for acceptance, for the answer to a cancel, which is repeated after `retry`, for a server that is
-  /// missing, and for the result of a goal that has ended. `place`: what a countdown begins with.
+  /// `timeout` bounds the waits for acceptance, for the answer to a cancel, for a missing server, and for the result of
+  /// an ended goal. A cancel is repeated after `retry`. `place`: first arguments of a countdown.
   template <typename... Place>
   GoalProxy(std::chrono::milliseconds timeout, std::chrono::milliseconds retry, Handlers handlers, Place&... place)
       : handlers_(std::move(handlers)),
@@ -68,26 +68,26 @@ class GoalProxy {
                       [this] { send_cancel(); }, [this](const std::string& text) { handlers_.warn(text); }},
                   place...) {}
 
-  // What the middleware does.
+  // Functions that the middleware implements.
 
-  /// Whether the robot can be asked for what comes next.
+  /// Whether the robot's server for the next step is available.
   virtual bool is_served() = 0;
-  /// Whether the robot says that the goal at hand is being canceled.
+  /// Whether the robot reports that the current goal is being canceled.
   virtual bool is_canceling() = 0;
-  /// Hands the goal on to the robot; false: that is not possible now.
+  /// Forwards the goal to the robot. Returns false if that is not possible now.
   virtual bool send() = 0;
-  /// Asks the robot to cancel the goal at hand.
+  /// Requests the robot to cancel the current goal.
   virtual void send_cancel() = 0;
-  /// The time for acceptance, for a result, or for a server that is missing, begins anew; `more` is added to it.
+  /// Restarts the deadline for acceptance, for a result, or for a missing server, with `more` time.
   virtual void restart(std::chrono::milliseconds more = std::chrono::milliseconds(0)) = 0;
-  /// Whether that time is over.
+  /// Whether the deadline has passed.
   virtual bool is_over() = 0;
-  /// Tells the controller that the goal has ended without a result.
+  /// Reports to the controller that the goal has ended without a result.
   virtual void abandon() = 0;
 
-  // What the controller and the robot do.
+  // Functions that the derived class calls.
 
-  /// The controller has sent a goal that `keep` keeps; false: it is rejected.
+  /// Handles a goal of the controller, which `keep` stores. Returns false if the goal is rejected.
   template <typename Keep>
   bool admit(const Goal& goal, Keep keep) {
     if (running_) {
@@ -103,7 +103,7 @@ class GoalProxy {
     return running_;
   }
 
-  /// To be called again and again while a goal runs.
+  /// Checks the current goal. Call it repeatedly.
   void look() {
     if (!running_) return;
     if (canceling_ && !sent_) {
@@ -129,7 +129,7 @@ class GoalProxy {
     if (canceling_) requests_.ask();
   }
 
-  /// The robot has answered a request of the layer's to cancel the goal at hand.
+  /// Handles the robot's answer to the layer's request to cancel the current goal.
   void cancel_answered(CancelAnswer answer) {
     if (!running_) return;
     if (answer == CancelAnswer::accepted) {
@@ -141,7 +141,7 @@ class GoalProxy {
     }
   }
 
-  /// The goal at hand has ended, its result is not there yet.
+  /// The current goal has ended. Its result has not arrived yet.
   void await_result() {
     if (std::exchange(over_, true)) return;
     requests_.stop();
@@ -150,24 +150,24 @@ class GoalProxy {
 
   void hear(const Feedback& feedback) { handlers_.feedback(feedback); }
 
-  // The robot's goal has ended; `finish` comes before.
+  // Ends of the robot's goal. Call `finish` first.
 
   void succeed(const Result& result) { handlers_.response(result); }
   void canceled(const Result& result) {
     handlers_.canceled(late_ ? Failure::timeout : Failure::canceled, "canceled", result);
   }
   void abort(const Result& result) { handlers_.error(late_ ? Failure::timeout : Failure::aborted, "aborted", result); }
-  /// The server does not know the goal any more, or its end: the robot may still move.
+  /// The server no longer knows the goal or its end. The robot may still move.
   void lose() { handlers_.error(Failure::lost, kLostGoal, Result()); }
 
-  /// It has ended without a result, or nobody knows what becomes of it.
+  /// The goal has ended without a result, or its end is unknown.
   void fail(Failure reason, const std::string& why) {
     finish();
     handlers_.error(reason, why, Result());
     abandon();
   }
 
-  /// The goal is over.
+  /// Ends the current goal.
   void finish() {
     running_ = false;
     requests_.stop();
@@ -179,7 +179,7 @@ class GoalProxy {
  private:
   void expire() {
     if (over_ && is_canceling()) {
-      // Somebody else had it canceled before: a server calls that terminated, too.
+      // Another client canceled the goal before: a server reports that as terminated, too.
       over_ = false;
       requests_.reset();
       requests_.accept();
@@ -190,7 +190,7 @@ class GoalProxy {
     } else if (late_) {
       fail(Failure::lost, "neither accepted nor rejected");
     } else if (sent_) {
-      // The robot might still accept it: then it is canceled.
+      // The robot might still accept the goal. Then it is canceled.
       handlers_.warn("not accepted" + within_);
       late_ = canceling_ = true;
       restart(std::chrono::seconds(30));
@@ -204,11 +204,11 @@ class GoalProxy {
   const std::string within_;
   bool running_ = false;
   bool sent_ = false;
-  bool accepted_ = false;   ///< By the robot.
-  bool canceling_ = false;  ///< By the layer.
-  bool late_ = false;       ///< It was not accepted in time.
-  bool left_ = false;       ///< It was reported as left behind.
-  bool over_ = false;       ///< It has ended, its result is not there yet.
+  bool accepted_ = false;   ///< The robot has accepted the goal.
+  bool canceling_ = false;  ///< The layer cancels the goal.
+  bool late_ = false;       ///< The goal was not accepted in time.
+  bool left_ = false;       ///< The goal was reported as left behind.
+  bool over_ = false;       ///< The goal has ended. Its result has not arrived yet.
   CancelRequests<Countdown> requests_;
 };
 

@@ -1,4 +1,4 @@
-// What a hangup does.
+// Handling of SIGHUP.
 #ifndef ROBOSC_HANGUP_HPP_
 #define ROBOSC_HANGUP_HPP_
 
@@ -10,9 +10,9 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// While one of these lives, a hangup (the terminal or the connection to the robot is gone) ends the process as SIGTERM
-/// does, which rclcpp handles: it would kill the node, and nobody would stop the robot. Where it is ignored (nohup) or
-/// handled already, that stays.
+/// Ends the process on a hangup as on SIGTERM, during the lifetime of this object. A hangup means that the terminal or
+/// the connection to the robot is gone. By default it would kill the node without stopping the robot. rclcpp handles
+/// SIGTERM. An ignored hangup (nohup) or an existing handler stays.
 class Hangup {
  public:
 #ifdef SIGHUP

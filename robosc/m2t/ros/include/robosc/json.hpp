@@ -1,4 +1,4 @@
-// What the node tells about itself, as JSON.
+// Output of a node as JSON.
 #ifndef ROBOSC_JSON_HPP_
 #define ROBOSC_JSON_HPP_
 
@@ -22,7 +22,7 @@ inline std::string to_json(bool value) { return value ? "true" : "false"; }
 
 inline std::string to_json(Integer value) { return std::to_string(value.to<std::int64_t>()); }
 
-/// The shortest text that reads back as the same number; JSON has none for what is not finite.
+/// The shortest text that parses to the same number. JSON has no number for infinity and NaN.
 inline std::string to_json(double value) {
   if (!std::isfinite(value)) return "null";
   char text[32];
@@ -36,7 +36,7 @@ inline std::string to_json(double value) {
   return number;
 }
 
-/// How many bytes from `start` on are one character of UTF-8; 0: none.
+/// The length in bytes of the character of UTF-8 at `start`. 0 if there is none.
 inline std::size_t character(const std::string& text, std::size_t start) {
   const auto byte = [&](std::size_t offset) {
     return start + offset < text.size() ? static_cast<unsigned char>(text[start + offset]) : 0U;
@@ -48,7 +48,7 @@ inline std::size_t character(const std::string& text, std::size_t start) {
                              : first < 0xF0 ? 3
                              : first < 0xF5 ? 4
                                             : 0;
-  // No character in more bytes than it needs, no half of a surrogate pair, nothing past the last code point.
+  // Reject overlong encodings, halves of surrogate pairs, and values past the last code point.
   if ((first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) || (first == 0xF0 && second < 0x90) ||
       (first == 0xF4 && second > 0x8F)) {
     return 0;
@@ -59,7 +59,7 @@ inline std::size_t character(const std::string& text, std::size_t start) {
   return length;
 }
 
-/// The code point of a character in so many bytes of UTF-8.
+/// The code point of a character that has `length` bytes of UTF-8.
 inline std::uint32_t code_point(const std::string& text, std::size_t start, std::size_t length) {
   std::uint32_t code = static_cast<unsigned char>(text[start]) & (length == 1 ? 0x7FU : 0xFFU >> (length + 1));
   for (std::size_t offset = 1; offset < length; ++offset) {
@@ -68,7 +68,7 @@ inline std::uint32_t code_point(const std::string& text, std::size_t start, std:
   return code;
 }
 
-/// Whether a character breaks lines, reorders them, is obeyed by terminals, or can't be seen: `HIDDEN` of
+/// Whether a character breaks lines, reorders them, controls terminals, or is invisible: `HIDDEN` of
 /// robosc/base/diagnostics/visible.py.
 inline bool hidden(std::uint32_t code) {
   constexpr std::uint32_t ranges[][2] = {
@@ -80,7 +80,7 @@ inline bool hidden(std::uint32_t code) {
                      [code](const auto& range) { return range[0] <= code && code <= range[1]; });
 }
 
-/// A character by its code, in halves where it needs two.
+/// A character as an escape sequence, a surrogate pair if necessary.
 inline std::string escaped(std::uint32_t code) {
   char text[16];
   if (code < 0x10000) {
@@ -93,7 +93,7 @@ inline std::string escaped(std::uint32_t code) {
   return text;
 }
 
-/// What is no UTF-8 becomes the replacement character; a line stays one, whatever the text holds.
+/// Bytes that are not UTF-8 become the replacement character. The text never breaks a line.
 inline std::string to_json(const std::string& value) {
   std::string text = "\"";
   for (std::size_t at = 0; at < value.size();) {
@@ -115,7 +115,7 @@ inline std::string to_json(const std::string& value) {
 
 inline std::string to_json(const char* value) { return to_json(std::string(value)); }
 
-/// An object or an array in the making.
+/// Builder of an object or an array.
 class Json {
  public:
   static Json object() { return Json('{', '}'); }
@@ -150,7 +150,7 @@ class Json {
   char end_;
 };
 
-/// A list of what a function makes of the elements of an array.
+/// A list of the values of a function for each element of an array.
 template <typename Array, typename Function>
 Json json_list(const Array& array, Function shown) {
   Json list = Json::array();
@@ -158,7 +158,7 @@ Json json_list(const Array& array, Function shown) {
   return list;
 }
 
-/// An object whose members are named by paths such as `position.x`; those of one object follow each other.
+/// Builder of an object whose members have paths such as `position.x`. Members of one object must follow each other.
 class JsonTree {
  public:
   template <typename Value>
@@ -177,7 +177,7 @@ class JsonTree {
     text_ += member(path.substr(parent.size())) + to_json(value);
   }
 
-  /// Adds what a function makes of elements of arrays, where these are there.
+  /// Adds the value of a function of array elements unless an element is missing.
   template <typename Function>
   void add_if_there(const std::string& path, Function function) {
     ArrayReader element;

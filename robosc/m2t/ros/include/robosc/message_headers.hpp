@@ -1,4 +1,4 @@
-// The headers in a message that the model leaves to the node.
+// Headers of messages that the node fills in.
 #ifndef ROBOSC_MESSAGE_HEADERS_HPP_
 #define ROBOSC_MESSAGE_HEADERS_HPP_
 
@@ -16,7 +16,7 @@ struct has_header : std::false_type {};
 template <typename Part>
 struct has_header<Part, std::void_t<decltype(std::declval<Part&>().header.stamp)>> : std::true_type {};
 
-/// Gives the headers of parts of a message, where they have one, the time and the frame.
+/// Sets the time and the frame in the headers of parts of a message. Skips parts without a header.
 template <typename Time, typename... Parts>
 void set_headers(const Time& time, const std::string& frame, Parts&... parts) {
   const auto set = [&](auto& part) {

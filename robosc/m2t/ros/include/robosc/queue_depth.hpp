@@ -1,4 +1,4 @@
-// How many messages wait where the configuration says nothing.
+// The default number of queued messages.
 #ifndef ROBOSC_QUEUE_DEPTH_HPP_
 #define ROBOSC_QUEUE_DEPTH_HPP_
 

@@ -1,4 +1,4 @@
-// Keeps reports from coming too often.
+// A limit on the rate of reports.
 #ifndef ROBOSC_THROTTLE_HPP_
 #define ROBOSC_THROTTLE_HPP_
 
@@ -10,7 +10,7 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Lets one report of each kind pass in five seconds, on the steady clock.
+/// Passes one report of each kind in five seconds of the steady clock.
 template <typename Kind>
 class Throttle {
  public:

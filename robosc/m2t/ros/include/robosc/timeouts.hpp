@@ -1,4 +1,4 @@
-// The times of a model, without middleware.
+// The timers of a model, independent of the middleware.
 #ifndef ROBOSC_TIMEOUTS_HPP_
 #define ROBOSC_TIMEOUTS_HPP_
 
@@ -14,17 +14,17 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Tells the engine what time it is, and has it look when the next time of the model is up. A derived class has the
-/// clock and one timer on it.
+/// Connects the engine's timers to a clock: calls the engine when the next timer expires. A derived class has the clock
+/// and one timer on it.
 class Timeouts {
  public:
-  /// What the engine does at a time in milliseconds, which wraps.
+  /// Functions of the engine. They take a time in milliseconds, which wraps.
   struct Engine {
-    std::function<void(std::uint32_t)> restart;  ///< All times that run begin anew.
+    std::function<void(std::uint32_t)> restart;  ///< Restarts all running timers.
     std::function<std::uint32_t(std::uint32_t)>
-        wait;                                   ///< How long until the next one is up; the largest number: never.
-    std::function<bool(std::uint32_t)> expire;  ///< Handles one that is up; false: none is.
-    /// Takes in what came before the next one was up; false: times do not count now.
+        wait;                                   ///< The time until the next timer expires. The largest number: never.
+    std::function<bool(std::uint32_t)> expire;  ///< Handles an expired timer. Returns false if there is none.
+    /// Handles messages that arrived before the next timer expired. Returns false if timers are ignored now.
     std::function<bool()> hear = [] { return true; };
   };
 
@@ -32,10 +32,10 @@ class Timeouts {
   Timeouts& operator=(const Timeouts&) = delete;
   virtual ~Timeouts() = default;
 
-  /// The time in whole milliseconds, rounded down; it wraps.
+  /// The time in whole milliseconds, rounded down. It wraps.
   std::uint32_t now() const { return static_cast<std::uint32_t>(nanoseconds() / kMillisecond); }
 
-  /// The same for an event that happens. A clock that begins late starts all times.
+  /// The time of an event. The late start of a clock restarts all timers.
   std::uint32_t at() {
     const std::uint32_t time = now();
     if (late_ && has_begun()) {
@@ -45,7 +45,8 @@ class Timeouts {
     return time;
   }
 
-  /// Looks when the next time is up, unless it does before. To be called after whatever may start one.
+  /// Schedules the next call of the engine, unless an earlier one is scheduled. Call it after each function that may
+  /// start a timer.
   void wait() {
     const std::uint32_t left = engine_.wait(now());
     const std::int64_t up = nanoseconds() + left * kMillisecond;
@@ -59,7 +60,7 @@ class Timeouts {
     if (engine_.wait(now()) == 0) ring();
   }
 
-  /// All times that run begin anew.
+  /// Restarts all running timers.
   void restart() {
     engine_.restart(now());
     wait();
@@ -73,10 +74,10 @@ class Timeouts {
   virtual std::int64_t nanoseconds() const = 0;
   /// Whether the clock has begun.
   virtual bool has_begun() const = 0;
-  /// Calls `ring` once in so many milliseconds, and not when it was to be called.
+  /// Calls `ring` once after `left`, in the place of an earlier scheduled call.
   virtual void set(std::chrono::milliseconds left) = 0;
 
-  /// Some time may be up.
+  /// Handles expired timers, if there are any.
   void ring() {
     up_.reset();
     if (!engine_.hear()) return;
@@ -90,7 +91,7 @@ class Timeouts {
 
   const Engine engine_;
   bool late_;
-  std::optional<std::int64_t> up_;  ///< When it looks.
+  std::optional<std::int64_t> up_;  ///< The scheduled time of the next call.
 };
 
 }  // namespace ROBOSC_VERSION

@@ -1,4 +1,4 @@
-// What a node tells about its state.
+// Reports on the state of a node.
 #ifndef ROBOSC_TRANSITIONS_HPP_
 #define ROBOSC_TRANSITIONS_HPP_
 
@@ -16,11 +16,11 @@ inline namespace ROBOSC_VERSION {
 /// `TRANSITIONS_KEPT` of robosc/model/semantics/definition.py.
 inline constexpr std::size_t kTransitionsKept = 5000;
 
-/// The events since the last report on the state. Where simulated time stands still, or the period is long, many come
-/// before the next one: the last are kept.
+/// The events since the last report on the state. With stopped simulated time or a long period, many events precede a
+/// report. Then only the last ones are kept.
 class Transitions {
  public:
-  /// `event`: a name that lasts.
+  /// `event`: a name that outlives this object.
   void add(const char* event) {
     events_.push_back(event);
     if (events_.size() > kTransitionsKept) events_.pop_front();
@@ -29,7 +29,7 @@ class Transitions {
   bool empty() const { return events_.empty(); }
   void clear() { events_.clear(); }
 
-  /// The state, and what led to it.
+  /// The state and the events that led to it.
   std::string report(const char* robot, double time, const Json& components) const {
     Json transitions = Json::array();
     for (const char* event : events_) transitions.add(event);
@@ -44,10 +44,10 @@ class Transitions {
   std::deque<const char*> events_;
 };
 
-/// Those who listen to a report.
+/// The listeners to a report.
 class Audience {
  public:
-  /// Whether they are to be told: on every change, and when another one begins to listen.
+  /// Whether to publish: after each change, and for each new listener.
   bool waits(std::size_t listeners, bool changed) {
     const bool more = listeners > std::exchange(listeners_, listeners);
     return more || (listeners > 0 && changed);

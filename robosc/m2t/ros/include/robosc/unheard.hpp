@@ -1,4 +1,4 @@
-// The topics that commands wait for.
+// Topics that must be heard before the first command.
 #ifndef ROBOSC_UNHEARD_HPP_
 #define ROBOSC_UNHEARD_HPP_
 
@@ -12,13 +12,13 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Topics that were not heard yet.
+/// The topics without a message yet.
 class Unheard {
  public:
   Unheard() = default;
   explicit Unheard(std::vector<std::string> topics) : topics_(std::move(topics)) {}
 
-  /// A message came. True: it was the last topic that was not heard.
+  /// Records a message. Returns true for the first message of the last unheard topic.
   bool hear(const std::string& topic) {
     const auto found = std::find(topics_.begin(), topics_.end(), topic);
     if (found == topics_.end()) return false;
@@ -29,7 +29,7 @@ class Unheard {
   bool empty() const { return topics_.empty(); }
   bool has(const std::string& topic) const { return std::count(topics_.begin(), topics_.end(), topic) > 0; }
 
-  /// Their names, with commas between them.
+  /// The names of the topics, separated by commas.
   std::string names() const {
     std::string names;
     for (const std::string& topic : topics_) names += (names.empty() ? "" : ", ") + topic;

@@ -2,8 +2,8 @@
 #ifndef ROBOSC_VERSION_HPP_
 #define ROBOSC_VERSION_HPP_
 
-/// The namespace of all that these headers declare, named for what stands in them: one process may load packages that
-/// were generated with others, and the linker must take nothing of one for the other's.
-#define ROBOSC_VERSION v3397ac79
+/// The namespace of all declarations in these headers, with a hash of their contents. One process may load packages
+/// generated with different headers, and the linker must not mix their symbols.
+#define ROBOSC_VERSION vbf01677e
 
 #endif  // ROBOSC_VERSION_HPP_

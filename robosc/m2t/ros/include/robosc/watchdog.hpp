@@ -1,4 +1,4 @@
-// Notices when a topic falls silent.
+// Detection of silent topics.
 #ifndef ROBOSC_WATCHDOG_HPP_
 #define ROBOSC_WATCHDOG_HPP_
 
@@ -12,12 +12,12 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Waits for the messages of a topic; the first one counts from `start` on.
+/// Watches the messages of a topic. The wait for the first one begins at `start`.
 template <typename Countdown>
 class Watchdog {
  public:
-  /// `patience` is the longest silence in milliseconds, 0 any; `fell_silent` is called once for each longer one.
-  /// `place`: what a countdown begins with.
+  /// `patience`: the longest allowed silence in milliseconds, 0 for any. `fell_silent` is called once for each longer
+  /// silence. `place`: first arguments of a countdown.
   template <typename... Place>
   Watchdog(int patience, std::function<void(const Watchdog&)> fell_silent, Place&... place)
       : patience_(patience), fell_silent_(std::move(fell_silent)) {
@@ -39,7 +39,7 @@ class Watchdog {
     silent_ = false;
   }
 
-  /// A message came. True: it ended a silence.
+  /// Records a message. Returns true if it ended a silence.
   bool hear() {
     if (watching_) countdown_->start();
     return std::exchange(silent_, false);

@@ -1,4 +1,4 @@
-// Sends goals to an action server.
+// Client of an action.
 #ifndef ROBOSC_ROS1_ACTION_CLIENT_HPP_
 #define ROBOSC_ROS1_ACTION_CLIENT_HPP_
 
@@ -17,7 +17,7 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// A client of one action over actionlib. Everything runs on the thread that serves the node's callback queue.
+/// A client of one action over actionlib. All functions run in the thread that serves the node's callback queue.
 template <typename Type>
 class ActionClient : public GoalClient<Countdown, typename Type::_action_feedback_type::_feedback_type,
                                        typename Type::_action_result_type::_result_type> {
@@ -27,21 +27,21 @@ class ActionClient : public GoalClient<Countdown, typename Type::_action_feedbac
 
   ActionClient(ros::NodeHandle& node, const std::string& name, std::chrono::milliseconds timeout,
                typename Base::Handlers handlers)
-      // There is no answer to a request to cancel in ROS 1, and so no refusal that another one would follow.
+      // ROS 1 does not answer requests to cancel. So there is no refusal after which to repeat one.
       : Base(timeout, std::chrono::milliseconds(0), std::move(handlers), node),
         name_(node.resolveName(name)),
         client_(node, name, node.getCallbackQueue()) {}
 
   ~ActionClient() override { stop(); }  // NOLINT(bugprone-exception-escape): locks of boost, should they fail
 
-  /// Sends a goal as soon as there is a server. A goal that has not ended is given up.
+  /// Sends a goal once there is a server. Gives up a goal that has not ended.
   void start(const Goal& goal) {
     stop();
     waiting_ = goal;
     this->begin();
   }
 
-  /// Gives up the goal: its server is told to cancel it, and nothing follows.
+  /// Gives up the goal: requests its server to cancel it. No handler follows.
   void stop() {
     if (this->busy() && this->phase() != Phase::waiting) goal_.cancel();
     this->forget();
@@ -54,7 +54,7 @@ class ActionClient : public GoalClient<Countdown, typename Type::_action_feedbac
   using TerminalState = actionlib::TerminalState;
   using Phase = typename Base::Phase;
 
-  // Looks in which a server may be missing: one that came back after a crash is seen in parts for a moment.
+  // Checks that a server may miss: after its restart from a crash, only parts of it are visible for a moment.
   static constexpr int kPatience = 10;
 
   bool is_served() override {
@@ -66,11 +66,11 @@ class ActionClient : public GoalClient<Countdown, typename Type::_action_feedbac
 
   bool is_gone() override {
     if (missed_ <= kPatience) return false;
-    lost_ = goal_;  // it ends, should the server come back with it
+    lost_ = goal_;  // canceled if the server comes back with it
     return true;
   }
 
-  /// A server of ROS 1 has ended a goal where it says so.
+  /// In ROS 1, the end of a goal is final when the server reports it.
   bool is_canceling() override { return false; }
 
   bool keeps_looking() const override { return !lost_.isExpired(); }

@@ -1,4 +1,4 @@
-// Wakes a node when the next time of its model is up.
+// Timer for the next timeout of a model.
 #ifndef ROBOSC_ROS1_ALARM_HPP_
 #define ROBOSC_ROS1_ALARM_HPP_
 
@@ -17,7 +17,7 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Times on the steady clock or, with use_sim_time, in ROS time. They are up behind the messages that came before, in
+/// Timers on the steady clock or, with use_sim_time, in ROS time. Each expires after the messages that precede it in
 /// the node's callback queue.
 class Alarm final : public Timeouts {
  public:

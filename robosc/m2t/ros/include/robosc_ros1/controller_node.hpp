@@ -1,4 +1,4 @@
-// What controllers have in common.
+// Base class of controllers.
 #ifndef ROBOSC_ROS1_CONTROLLER_NODE_HPP_
 #define ROBOSC_ROS1_CONTROLLER_NODE_HPP_
 
@@ -20,15 +20,15 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// A node that stops its robot when it goes.
+/// A node that stops its robot at its end.
 class ControllerNode {
  public:
   ControllerNode(const ControllerNode&) = delete;
   ControllerNode& operator=(const ControllerNode&) = delete;
   virtual ~ControllerNode() = default;
 
-  /// Stops the robot, while nobody else delivers; then `deliver` hands on what comes in until it is known what becomes
-  /// of the goals, not for long.
+  /// Stops the robot. Call it while nothing else delivers messages. Then `deliver` handles incoming messages for a
+  /// bounded time, until the ends of the goals are known.
   template <typename Deliver>
   void end(Deliver deliver) {
     if (!std::exchange(stopping_, true)) halt();
@@ -37,30 +37,30 @@ class ControllerNode {
   }
 
  protected:
-  /// All that happens comes through the queue of `node`, which one thread serves.
+  /// One thread serves the callback queue of `node`, which delivers all messages and calls.
   explicit ControllerNode(const ros::NodeHandle& node) : node_(node) {}
 
-  // What the model decides.
+  // Functions that depend on the model.
 
   /// Stops the robot while all triggers are held.
   virtual void halt() = 0;
-  /// Whether the end waits for what becomes of a goal.
+  /// Whether the end of the node waits for the end of a goal.
   virtual bool waits() const { return false; }
-  /// What else there is to do before the node ends.
+  /// Other steps before the end of the node.
   virtual void finish() {}
-  /// A period is over.
+  /// Handles the end of a period.
   virtual void tick() = 0;
 
-  // What the node does.
+  // Functions of the node.
 
-  /// A publisher of commands, of which it is the only one as far as it knows.
+  /// A publisher of commands. The node should be the only publisher on its topic.
   template <typename Message>
   ros::Publisher advertise(const std::string& topic) {
     monitor_.commands<Message>(topic);
     return node_.advertise<Message>(topic, kQueueDepth);
   }
 
-  /// A subscription to what the robot tells.
+  /// A subscription to a topic of the robot.
   template <typename Message>
   ros::Subscriber subscribe(const std::string& topic, std::function<void(const Message&)> heard) {
     monitor_.listens_to<Message>(topic);
@@ -68,21 +68,21 @@ class ControllerNode {
                                            ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
   }
 
-  /// What is wrong around the node with a topic.
+  /// Faults of the ROS graph that concern a topic.
   std::vector<std::string> faults(const std::string& topic) const { return monitor_.faults(topic); }
 
-  /// Ticks from now on.
+  /// Starts the ticks.
   void start(std::chrono::milliseconds period) {
     timer_.emplace(node_, period, [this] { tick(); });
     timer_->start();
     monitor_.start();
   }
 
-  /// The first thing that the destructor of a derived class does: nothing is delivered any more, but ROS still runs.
+  /// Stops all deliveries while ROS still runs. Call it first in the destructor of a derived class.
   void stop() {
     if (!std::exchange(stopping_, true)) halt();
     finish();
-    ros::WallDuration(0.2).sleep();  // nothing tells when a message has left the node
+    ros::WallDuration(0.2).sleep();  // ROS 1 does not report when a message has left the node
   }
 
   /// The time of the node.

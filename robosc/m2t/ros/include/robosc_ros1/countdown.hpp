@@ -1,4 +1,4 @@
-// What happens later, once or again and again.
+// Timers, periodic or for one call.
 #ifndef ROBOSC_ROS1_COUNTDOWN_HPP_
 #define ROBOSC_ROS1_COUNTDOWN_HPP_
 
@@ -16,8 +16,8 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Calls a function at the end of every period, or `once`, after each start: on the steady clock or, with use_sim_time,
-/// in ROS time. The calls come through the node's callback queue.
+/// Calls a function at the end of each period, or `once` after each start: on the steady clock or, with use_sim_time,
+/// in ROS time. The node's callback queue delivers the calls.
 class Timer {
  public:
   Timer(ros::NodeHandle& node, std::chrono::milliseconds period, std::function<void()> function, bool once = false)
@@ -51,7 +51,7 @@ class Timer {
   ros::SteadyTimer steady_;
 };
 
-/// Calls a function once, some time after its start.
+/// Calls a function once, a given time after its start.
 class Countdown {
  public:
   Countdown(ros::NodeHandle& node, std::chrono::milliseconds time, std::function<void()> over)
@@ -64,7 +64,7 @@ class Countdown {
             },
             true) {}
 
-  /// Counts from the full time, also where it was counting.
+  /// Restarts with the full time.
   void start() {
     stop();
     running_ = true;

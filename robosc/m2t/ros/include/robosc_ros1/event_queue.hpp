@@ -1,4 +1,4 @@
-// What other threads have to say, in line with what ROS delivers.
+// Calls from other threads, in line with the messages of ROS.
 #ifndef ROBOSC_ROS1_EVENT_QUEUE_HPP_
 #define ROBOSC_ROS1_EVENT_QUEUE_HPP_
 
@@ -15,8 +15,8 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Puts calls into a node's callback queue, from any thread; they run one at a time with its messages and timers.
-/// What has not run when this ends never runs.
+/// Puts calls from any thread into a node's callback queue. They run one at a time with its messages and timers.
+/// Pending calls never run after the destruction of this object.
 class EventQueue {
  public:
   explicit EventQueue(const ros::NodeHandle& node) : queue_(node.getCallbackQueue()) {}

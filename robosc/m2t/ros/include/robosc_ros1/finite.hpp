@@ -1,4 +1,4 @@
-// Whether a message that is handed on as it came holds finite numbers only.
+// Test for finite numbers in a message that is forwarded unchanged.
 #ifndef ROBOSC_ROS1_FINITE_HPP_
 #define ROBOSC_ROS1_FINITE_HPP_
 
@@ -14,7 +14,7 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Visits a message as a stream does that writes it.
+/// Visits a message as a serializing stream does.
 struct FiniteNumbers {
   bool found = true;
 

@@ -1,4 +1,4 @@
-// Who else is on the node's topics.
+// Monitor of the ROS graph around the node.
 #ifndef ROBOSC_ROS1_GRAPH_MONITOR_HPP_
 #define ROBOSC_ROS1_GRAPH_MONITOR_HPP_
 
@@ -29,9 +29,9 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Asks the master every second, on a thread of its own, and reports by name, once: a publisher of another type, a
-/// topic that nobody publishes, a foreign publisher on a topic that the node commands. `faults` has them as long as
-/// they last.
+/// Queries the master every second in a separate thread. Reports once by name: a publisher of another type, a topic
+/// without a publisher, and a foreign publisher on a topic that the node commands. `faults` returns these faults as
+/// long as they last.
 class GraphMonitor {
  public:
   explicit GraphMonitor(const ros::NodeHandle& node) : node_(node) {}
@@ -58,14 +58,14 @@ class GraphMonitor {
     commanded_[node_.resolveName(topic)] = ros::message_traits::datatype<Message>();
   }
 
-  /// The faults of a topic at the last look.
+  /// The faults of a topic at the last query.
   std::vector<std::string> faults(const std::string& topic) const {
     const std::lock_guard<std::mutex> lock(mutex_);
     const auto found = faults_.find(node_.resolveName(topic));
     return found == faults_.end() ? std::vector<std::string>() : found->second;
   }
 
-  /// Begins to ask; all topics are known.
+  /// Starts the queries. No topic may follow.
   void start() {
     thread_ = std::thread([this] { work(); });
   }
@@ -103,7 +103,7 @@ class GraphMonitor {
     for (const auto& [topic, type] : listened_) {
       missing_[topic] = publishers[topic].empty() ? missing_[topic] + 1 : 0;
       if (missing_[topic] >= 5) {
-        // A publisher that comes late is usual while a robot starts. So this is no warning in the log.
+        // While a robot starts, publishers are often late. So the log contains no warning.
         faults[topic].push_back(topic + ": nobody publishes it");
         if (is_new(topic, "nobody publishes it after 5 s")) {
           ROS_INFO("%s: nobody publishes it after 5 s", topic.c_str());
@@ -126,8 +126,8 @@ class GraphMonitor {
     faults_ = std::move(faults);
   }
 
-  // What a node sends on a topic, in its own words: the master knows one type for all of them. Empty: it does not
-  // answer.
+  // The type that a node itself reports for its publications on a topic: the master keeps only one type per topic.
+  // Empty if the node does not answer.
   static std::string type_at(const std::string& node, const std::string& topic) {
     XmlRpc::XmlRpcValue name(ros::this_node::getName()), request, answer, place;
     request[0] = name;
@@ -159,7 +159,7 @@ class GraphMonitor {
   ros::NodeHandle node_;
   Types listened_;
   Types commanded_;
-  std::map<std::string, int> missing_;                                // For so many looks nobody has published it.
+  std::map<std::string, int> missing_;                                // Number of queries without a publisher.
   std::map<std::pair<std::string, std::string>, std::string> types_;  // By topic and publisher.
   std::set<std::pair<std::string, std::string>> reported_;
   Faults faults_;

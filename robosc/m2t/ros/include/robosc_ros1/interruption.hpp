@@ -1,4 +1,4 @@
-// How the node is asked to end.
+// Requests to end the node.
 #ifndef ROBOSC_ROS1_INTERRUPTION_HPP_
 #define ROBOSC_ROS1_INTERRUPTION_HPP_
 
@@ -17,11 +17,11 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Seconds that the end of a node waits for what becomes of its goals.
+/// The longest wait in seconds at the end of a node for the ends of its goals.
 inline constexpr double kLongestEnd = 0.5;
 
-/// Waits for Ctrl-C, SIGTERM, a hangup, `rosnode kill` or a new node of the same name, so that ROS is still there for
-/// the last messages. To be made before any thread starts.
+/// Waits for Ctrl-C, SIGTERM, a hangup, `rosnode kill` or a new node of the same name. Keeps ROS available for the last
+/// messages. Create it before any thread starts.
 class Interruption {
  public:
   Interruption() {
@@ -30,11 +30,11 @@ class Interruption {
     sigaddset(&signals_, SIGTERM);
     struct sigaction hangup = {};
     sigaction(SIGHUP, nullptr, &hangup);
-    if (hangup.sa_handler != SIG_IGN) sigaddset(&signals_, SIGHUP);  // else it was started with nohup
+    if (hangup.sa_handler != SIG_IGN) sigaddset(&signals_, SIGHUP);  // ignored after a start with nohup
     pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
   }
 
-  /// Takes the master's request to end in the place of ROS; between `ros::init` and the first node handle.
+  /// Replaces ROS's handler of the master's request to end. Call it between `ros::init` and the first node handle.
   static void take_requests() {
     ros::XMLRPCManager::instance()->bind("shutdown", [](XmlRpc::XmlRpcValue&, XmlRpc::XmlRpcValue& result) {
       result = ros::xmlrpc::responseInt(1, "", 0);
@@ -43,7 +43,7 @@ class Interruption {
     });
   }
 
-  /// Waits until a condition holds, and says after a second what is missing; false: the node shall end before.
+  /// Waits until a condition holds. After a second, warns about `missing`. Returns false if the node has to end before.
   template <typename Condition>
   bool wait_until(Condition condition, const std::string& missing) {
     const timespec pause = {0, 20'000'000};
@@ -54,13 +54,13 @@ class Interruption {
     return true;
   }
 
-  /// Waits until the node shall end.
+  /// Waits for a request to end the node.
   void wait() {
     int signal = 0;
     sigwait(&signals_, &signal);
   }
 
-  /// From now on signals end the process at once, as usual; not those that meanwhile asked for the same once more.
+  /// Restores the default: from now on, a signal ends the process at once. Discards pending repeated requests.
   void let_go() {
     const std::lock_guard<std::mutex> lock(mutex_);
     ending_ = true;
@@ -72,7 +72,7 @@ class Interruption {
 
  private:
   inline static std::mutex mutex_;
-  inline static bool ending_ = false;  ///< Requests have nothing left to ask for.
+  inline static bool ending_ = false;  ///< Further requests have no effect.
   sigset_t signals_;
 };
 

@@ -1,4 +1,4 @@
-// Parameters with their type and their range.
+// Parameters with their types and ranges.
 #ifndef ROBOSC_ROS1_PARAMETERS_HPP_
 #define ROBOSC_ROS1_PARAMETERS_HPP_
 
@@ -16,8 +16,8 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// A parameter, or a value where it is not set; throws std::invalid_argument where it has another type. What it means
-/// is said to readers of the code only.
+/// The value of a parameter, or `value` if it is not set. Throws std::invalid_argument for another type. The last
+/// argument documents its meaning in the code.
 template <typename Value>
 Value parameter(const ros::NodeHandle& node, const std::string& name, const Value& value, const char* = "") {
   Value found = value;
@@ -38,8 +38,8 @@ inline int parameter(const ros::NodeHandle& node, const std::string& name, int v
                               ", not between " + std::to_string(low) + " and " + std::to_string(high));
 }
 
-/// A parameter of the model, which keeps the value with which the node starts; throws std::invalid_argument where it
-/// has another type or is not finite.
+/// A parameter of the model. It keeps the value with which the node starts. Throws std::invalid_argument for another
+/// type or a value that is not finite.
 template <typename Value>
 Value model_parameter(const ros::NodeHandle& node, const std::string& name, const Value& value, const char* meaning) {
   const Value found = parameter(node, name, value, meaning);
@@ -61,7 +61,7 @@ Number model_parameter(const ros::NodeHandle& node, const std::string& name, Num
                               ", not between " + std::to_string(low) + " and " + std::to_string(high));
 }
 
-/// Sets how much the node prints to what the parameter `log_level` says.
+/// Sets the verbosity of the node to the value of the parameter `log_level`.
 inline void set_log_level(const ros::NodeHandle& node) {
   const std::string wanted = parameter<std::string>(node, "log_level", "");
   if (wanted.empty()) return;

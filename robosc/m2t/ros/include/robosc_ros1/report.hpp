@@ -1,4 +1,4 @@
-// A topic on which a node tells about itself.
+// Topics with reports of a node about itself.
 #ifndef ROBOSC_ROS1_REPORT_HPP_
 #define ROBOSC_ROS1_REPORT_HPP_
 
@@ -21,19 +21,19 @@ class Report {
     publisher_ = node.advertise<Message>(topic, kQueueDepth);
   }
 
-  /// What is published is kept for those who come later.
+  /// Opens the topic and keeps the last message for later subscribers.
   void open_lasting(ros::NodeHandle& node, const std::string& topic) {
     publisher_ = node.advertise<Message>(topic, 1, true);
   }
 
-  /// Whether anyone listens.
+  /// Whether there are subscribers.
   bool heard() const { return publisher_.getNumSubscribers() > 0; }
-  /// Whether those who listen are to be told what has `changed`, or another one what is.
+  /// Whether to publish: the state has `changed` and there are subscribers, or there is a new one.
   bool due(bool changed) { return audience_.waits(publisher_.getNumSubscribers(), changed); }
 
   void publish(const Message& message) const { publisher_.publish(message); }
 
-  /// Of a message with a text.
+  /// Publishes a message that contains a text.
   void publish_text(const std::string& text) const {
     Message message;
     message.data = text;

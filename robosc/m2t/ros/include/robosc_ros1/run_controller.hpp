@@ -1,4 +1,4 @@
-// The program of a controller.
+// Program of a controller.
 #ifndef ROBOSC_ROS1_RUN_CONTROLLER_HPP_
 #define ROBOSC_ROS1_RUN_CONTROLLER_HPP_
 
@@ -17,8 +17,8 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Runs a controller until it is asked to end. All that happens comes through one queue, which one thread serves; the
-/// controller goes when nothing is delivered any more, but ROS still runs.
+/// Runs a controller until it receives a request to end. One thread serves the one queue of all messages and calls. The
+/// controller ends after the last delivery, while ROS still runs.
 template <typename Controller>
 int run_controller(int argc, char** argv, const std::string& name) {
   Interruption interruption;

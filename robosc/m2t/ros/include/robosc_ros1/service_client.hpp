@@ -1,4 +1,4 @@
-// Calls a service without waiting for it.
+// Client of a service that does not block.
 #ifndef ROBOSC_ROS1_SERVICE_CLIENT_HPP_
 #define ROBOSC_ROS1_SERVICE_CLIENT_HPP_
 
@@ -28,8 +28,8 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// A client of one service. ROS 1 calls block: a thread of its own makes them, and the answer comes through the node's
-/// callback queue. All functions belong to the thread that serves this queue.
+/// A client of one service. ROS 1 calls block, so a separate thread makes them. The node's callback queue delivers the
+/// response. Call all functions in the thread that serves this queue.
 template <typename Type>
 class ServiceClient final : public CallClient<Countdown, typename Type::Response> {
  public:
@@ -57,7 +57,7 @@ class ServiceClient final : public CallClient<Countdown, typename Type::Response
   ServiceClient(const ServiceClient&) = delete;
   ServiceClient& operator=(const ServiceClient&) = delete;
 
-  /// Calls the service; a call that is still under way is given up.
+  /// Calls the service. Gives up an earlier call that has not ended.
   void call(const Request& request) {
     const std::uint64_t number = this->begin();
     {
@@ -79,7 +79,7 @@ class ServiceClient final : public CallClient<Countdown, typename Type::Response
       link.swap(link_);
     }
     changed_.notify_one();
-    if (link) link->getConnection()->drop(ros::Connection::Destructing);  // what the worker waits for
+    if (link) link->getConnection()->drop(ros::Connection::Destructing);  // ends the wait of the worker
   }
 
   typename Base::Missing missing() override {
@@ -88,7 +88,7 @@ class ServiceClient final : public CallClient<Countdown, typename Type::Response
     return {Failure::unavailable, "no server"};
   }
 
-  // On the worker's thread: one call after the other.
+  // Makes one call after the other, in the worker's thread.
   void work() {
     std::unique_lock<std::mutex> lock(mutex_);
     while (true) {
@@ -120,7 +120,7 @@ class ServiceClient final : public CallClient<Countdown, typename Type::Response
     }
   }
 
-  // A connection to the server, as soon as there is one; null where nobody waits for this call any more.
+  // A connection to the server, once there is one. Null if the call was given up.
   ros::ServiceServerLinkPtr find(std::uint64_t number) {
     const std::string type = ros::service_traits::md5sum<Type>();
     std::unique_lock<std::mutex> lock(mutex_);
@@ -149,11 +149,11 @@ class ServiceClient final : public CallClient<Countdown, typename Type::Response
   }
 
   const std::string name_;
-  std::mutex mutex_;  // of what both threads use, up to `ending_`
+  std::mutex mutex_;  // for the members that both threads use, up to `ending_`
   std::condition_variable changed_;
   std::optional<Request> request_;
-  std::uint64_t current_ = 0;  // the call that somebody waits for; 0: none
-  bool found_ = false;         // its server
+  std::uint64_t current_ = 0;  // the number of the current call; 0: none
+  bool found_ = false;         // whether its server was found
   ros::ServiceServerLinkPtr link_;
   bool ending_ = false;
 

@@ -1,4 +1,4 @@
-// The quaternions of a message that the model leaves to the node.
+// Quaternions of messages that the node fills in.
 #ifndef ROBOSC_ROS1_UNIT_QUATERNIONS_HPP_
 #define ROBOSC_ROS1_UNIT_QUATERNIONS_HPP_
 
@@ -19,7 +19,7 @@ struct has_w : std::false_type {};
 template <typename Part>
 struct has_w<Part, std::void_t<decltype(std::declval<Part&>().w)>> : std::true_type {};
 
-/// Visits a message as a stream does that writes it, and makes each quaternion on the way one of length 1.
+/// Visits a message as a serializing stream does, and sets each quaternion to length 1.
 struct UnitQuaternions {
   template <typename Part>
   void next([[maybe_unused]] Part& part) {
@@ -32,7 +32,7 @@ struct UnitQuaternions {
   }
 };
 
-/// Gives every quaternion of a message no rotation.
+/// Sets each quaternion of a message to no rotation.
 template <typename Message>
 void set_unit_quaternions(Message& message) {
   UnitQuaternions().next(message);

@@ -1,4 +1,4 @@
-// Has an action carried out.
+// Client of an action.
 #ifndef ROBOSC_ROS2_ACTION_CLIENT_HPP_
 #define ROBOSC_ROS2_ACTION_CLIENT_HPP_
 
@@ -25,14 +25,14 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// A client of one action over rclcpp_action, of goals of its own only. Handlers are called by the node's executor.
+/// A client of one action over rclcpp_action, for its own goals only. The node's executor calls the handlers.
 template <typename Type>
 class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typename Type::Result> {
  public:
   using Goal = typename Type::Goal;
   using Base = GoalClient<Countdown, typename Type::Feedback, typename Type::Result>;
 
-  /// `quality`: of the feedback. A refused cancel is repeated after `retry`.
+  /// `quality`: quality of service of the feedback. A refused cancel is repeated after `retry`.
   template <typename Node>
   ActionClient(Node& node, const CallbackGuard& guard, const std::string& name, const rclcpp::QoS& quality,
                std::chrono::milliseconds timeout, std::chrono::milliseconds retry, typename Base::Handlers handlers)
@@ -45,7 +45,7 @@ class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typen
             name + "/_action/feedback", quality, guard([this](const FeedbackMessage& message) { hear(message); }))),
         servers_(node, name) {}
 
-  /// A goal that did not end has to be waited for: see `busy`.
+  /// Sends a goal. The previous goal must have ended: see `busy`.
   void start(const Goal& goal) {
     goal_ = goal;
     this->begin();
@@ -90,7 +90,7 @@ class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typen
     }
   }
 
-  /// A callback that only runs while the goal at hand is this client's.
+  /// A callback that runs only while this goal is the current one.
   template <typename Value, typename Function>
   auto mine(Function function) {
     return guard_([this, function, number = this->number()](const Value& value) {
@@ -105,7 +105,8 @@ class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typen
     for (const FeedbackMessage& message : std::exchange(early_, {})) hear(message);
   }
 
-  /// Feedback may overtake the answer to the goal, which rclcpp_action does not expect: here it waits.
+  /// Handles feedback. It may overtake the answer to the goal, which rclcpp_action does not expect: then it is kept
+  /// until the answer arrives.
   void hear(const FeedbackMessage& message) {
     if (this->phase() == Phase::sent) {
       early_.push_back(message);
@@ -136,16 +137,16 @@ class ActionClient : public GoalClient<Countdown, typename Type::Feedback, typen
                                    this->cancel_answered(cancel_answer(*answer, handle_->get_goal_id()));
                                  }));
     } catch (const rclcpp_action::exceptions::UnknownGoalHandleError&) {
-      this->await_result();  // It has ended; its result is on the way.
+      this->await_result();  // The goal has ended. Its result will arrive.
     }
   }
 
-  /// A goal that was taken for lost, accepted after all.
+  /// Cancels a goal that was given up as lost and then accepted.
   void cancel_stray(const Handle& handle) {
     try {
       client_->async_cancel_goal(handle);
     } catch (const rclcpp_action::exceptions::UnknownGoalHandleError&) {
-      // It has ended.
+      // The goal has ended.
     }
   }
 

@@ -1,4 +1,4 @@
-// Hands goals of an action on that the supervisor lets through.
+// Forwarded goals of an action that the supervisor permits.
 #ifndef ROBOSC_ROS2_ACTION_PROXY_HPP_
 #define ROBOSC_ROS2_ACTION_PROXY_HPP_
 
@@ -27,13 +27,13 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// The three services and two topics of an action towards the controller, behind which stand those of the robot.
+/// The three services and two topics of an action for the controller, which forward to those of the robot.
 template <typename Type>
 class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Type::Feedback, typename Type::Result> {
  public:
   using Base = GoalProxy<Countdown, typename Type::Goal, typename Type::Feedback, typename Type::Result>;
 
-  /// `quality`: of the feedback that the robot sends.
+  /// `quality`: quality of service of the robot's feedback.
   ActionProxy(rclcpp::Node& node, const CallbackGuard& guard, const std::string& controller_side,
               const std::string& robot_side, const rclcpp::QoS& quality, std::chrono::milliseconds timeout,
               typename Base::Handlers handlers)
@@ -90,7 +90,7 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
     typename GetResult::Response result;
   };
 
-  /// A request of the controller's to cancel that the robot has not answered.
+  /// A request of the controller to cancel without an answer of the robot.
   struct Cancelling {
     std::uint64_t number;
     std::int64_t request;
@@ -98,7 +98,7 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
     rclcpp::Time deadline;
   };
 
-  // From the controller.
+  // Messages from the controller.
 
   void on_goal(const rmw_request_id_t& caller, std::shared_ptr<typename SendGoal::Request> request) {
     const bool admitted = this->admit(request->goal, [this, &caller, &request] {
@@ -130,11 +130,11 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
     if (!cancel_client_->service_is_ready() || !ask_to_cancel(request, caller)) reject_cancel(caller);
   }
 
-  // From the robot.
+  // Messages from the robot.
 
   void on_accepted(const Id& id, const typename SendGoal::Response& response) {
     if (!is_running(id) || this->accepted()) {
-      if (response.accepted) cancel_goal(id);  // too late: nobody waits for it
+      if (response.accepted) cancel_goal(id);  // too late: the controller no longer waits for it
       return;
     }
     if (!response.accepted) return this->fail(Failure::rejected, "rejected");
@@ -176,7 +176,7 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
     conclude(response);
   }
 
-  // That a goal has ended is told with its result, not before: the supervisor knows first.
+  // Reports the end of a goal only with its result, so that the supervisor handles it first.
   void on_status(const StatusArray& message) {
     statuses_.status_list.clear();
     for (const auto& status : message.status_list) {
@@ -192,7 +192,7 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
     status_publisher_->publish(statuses_);
   }
 
-  // Waiting.
+  // Deadlines.
 
   void look_after() {
     forget_cancels(clock_->now());
@@ -202,7 +202,7 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
 
   bool is_canceling() override { return status_ == Status::STATUS_CANCELING; }
 
-  /// A server that has died and one that has come in its place offer the same services.
+  /// Checks `servers_`, too, because the services of a restarted server do not differ from those of the previous one.
   bool is_served() override { return this->accepted() ? !servers_.are_gone() : goal_client_->service_is_ready(); }
 
   bool send() override {
@@ -228,7 +228,7 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
   void conclude(const typename GetResult::Response& response) {
     this->finish();
     result_client_->prune_pending_requests();
-    // One that is accepted late is canceled; so long after its time for acceptance is over it is taken for lost.
+    // A goal that is accepted late is canceled. After this time past the deadline for acceptance, it counts as lost.
     const auto patience = timeout_.to_chrono<std::chrono::milliseconds>() + std::chrono::seconds(30);
     goal_client_->prune_requests_older_than(std::chrono::system_clock::now() - patience);
     cancel_client_->prune_requests_older_than(std::chrono::system_clock::now() - patience);
@@ -263,7 +263,7 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
     return true;
   }
 
-  /// Nobody waits longer for what the robot does not answer.
+  /// Rejects the controller's requests to cancel that the robot does not answer in time.
   void forget_cancels(const rclcpp::Time& now) {
     while (!cancels_.empty() && cancels_.front().deadline <= now) {
       const Cancelling late = cancels_.front();
@@ -279,7 +279,7 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
     answer_cancel(caller, response);
   }
 
-  /// Sends a request; its number for rclcpp, or nothing where it can't be sent.
+  /// Sends a request. Returns its number in rclcpp, or nothing if it can't be sent.
   template <typename Service, typename Answered>
   std::optional<std::int64_t> ask(rclcpp::Client<Service>& client, std::shared_ptr<typename Service::Request> request,
                                   Answered answered) {
@@ -310,7 +310,7 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
   rclcpp::Clock::SharedPtr clock_;
   rclcpp::Duration timeout_;
   ActionServers servers_;
-  std::int8_t status_ = Status::STATUS_UNKNOWN;  ///< Of the goal at hand, as the robot says.
+  std::int8_t status_ = Status::STATUS_UNKNOWN;  ///< Status of the current goal, as the robot reports it.
   std::shared_ptr<rclcpp::Client<SendGoal>> goal_client_;
   std::shared_ptr<rclcpp::Client<GetResult>> result_client_;
   std::shared_ptr<rclcpp::Client<CancelGoal>> cancel_client_;

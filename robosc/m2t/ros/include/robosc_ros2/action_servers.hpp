@@ -1,4 +1,4 @@
-// Whether the server of a goal is still there.
+// Detection of lost action servers.
 #ifndef ROBOSC_ROS2_ACTION_SERVERS_HPP_
 #define ROBOSC_ROS2_ACTION_SERVERS_HPP_
 
@@ -14,21 +14,21 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// The servers of one action. One that dies can't say so, and one that comes in its place offers the same services: it
-/// has died when none of those that were there for the goal is left.
+/// The servers of one action. A crashed server sends no notice, and a restarted one offers the same services. The
+/// server of a goal is gone if none of the servers at the start of the goal is left.
 class ActionServers {
  public:
   template <typename Node>
   ActionServers(Node& node, const std::string& action)
       : servers_([&node, action] { return node.get_publishers_info_by_topic(action + "/_action/status"); }) {}
 
-  /// A goal is sent to those that are there now.
+  /// Records the current servers as those of a new goal.
   void remember() {
     then_ = servers_();
     gone_ = false;
   }
 
-  /// Whether they are gone; to be asked again and again.
+  /// Whether the recorded servers are gone. Call it repeatedly.
   bool are_gone() {
     if (++looks_ % kLooks != 0) return gone_;
     const auto is_left = [this](const rclcpp::TopicEndpointInfo& now) {
@@ -46,7 +46,7 @@ class ActionServers {
   }
 
  private:
-  static constexpr int kLooks = 4;  ///< How many looks there are for each at the graph.
+  static constexpr int kLooks = 4;  ///< Number of calls per query of the graph.
 
   std::function<std::vector<rclcpp::TopicEndpointInfo>()> servers_;
   std::vector<rclcpp::TopicEndpointInfo> then_;

@@ -1,4 +1,4 @@
-// Wakes a node when the next time of its model is up.
+// Timer for the next timeout of a model.
 #ifndef ROBOSC_ROS2_ALARM_HPP_
 #define ROBOSC_ROS2_ALARM_HPP_
 
@@ -17,7 +17,7 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Times on the steady clock or, with `use_sim_time`, in the time of ROS.
+/// Timers on the steady clock or, with `use_sim_time`, in the time of ROS.
 class Alarm final : public Timeouts {
  public:
   template <typename Node>
@@ -32,7 +32,7 @@ class Alarm final : public Timeouts {
       if (simulated) return rclcpp::create_timer(&node, clock_, left, call);
       return node.create_wall_timer(left, call);
     };
-    // The times run from the start of the clock, also if nothing else happens at that moment.
+    // Timers run from the start of the clock, even without an event at that moment.
     if (!clock_->started()) {
       begin_ = node.create_wall_timer(kLook, guard([this] {
                                         if (!clock_->started()) return;

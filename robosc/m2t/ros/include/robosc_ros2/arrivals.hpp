@@ -1,4 +1,4 @@
-// What has arrived and was not handled yet.
+// Received messages that were not handled yet.
 #ifndef ROBOSC_ROS2_ARRIVALS_HPP_
 #define ROBOSC_ROS2_ARRIVALS_HPP_
 
@@ -9,7 +9,7 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Handles what has arrived before a time is up: an executor asks timers first.
+/// Handles received messages before an expired timer. Necessary because an executor checks timers first.
 template <typename Message, typename Handle>
 void hear_all(rclcpp::Subscription<Message>& subscription, Handle handle) {
   Message message;

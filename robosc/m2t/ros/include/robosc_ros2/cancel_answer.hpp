@@ -1,4 +1,4 @@
-// What a server answers to a request to cancel a goal.
+// Answers of a server to requests to cancel a goal.
 #ifndef ROBOSC_ROS2_CANCEL_ANSWER_HPP_
 #define ROBOSC_ROS2_CANCEL_ANSWER_HPP_
 
@@ -10,8 +10,8 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// The answer to a request to cancel the goal `id`; one that names only other goals is a refusal. `Response`: that of
-/// `action_msgs/srv/CancelGoal`.
+/// The answer to a request to cancel the goal `id`. An answer that names only other goals is a refusal. `Response`: the
+/// response type of `action_msgs/srv/CancelGoal`.
 template <typename Response, typename Id>
 CancelAnswer cancel_answer(const Response& response, const Id& id) {
   if (response.return_code == Response::ERROR_GOAL_TERMINATED) return CancelAnswer::terminated;

@@ -1,4 +1,4 @@
-// What controllers have in common.
+// Base class of controllers.
 #ifndef ROBOSC_ROS2_CONTROLLER_NODE_HPP_
 #define ROBOSC_ROS2_CONTROLLER_NODE_HPP_
 
@@ -22,17 +22,17 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// A subscription that is made anew where its quality of service changes.
+/// A subscription that is replaced when its quality of service changes.
 template <typename Message>
 using Subscription = std::shared_ptr<typename rclcpp::Subscription<Message>::SharedPtr>;
 
-/// A node that stops its robot before ROS closes, or when it goes.
+/// A node that stops its robot before ROS closes, or at its destruction.
 template <typename Node>
 class ControllerNode : public GuardedNode<Node> {
  protected:
   using GuardedNode<Node>::GuardedNode;
 
-  /// The first thing that the destructor of a derived class does.
+  /// Closes the node. Call it first in the destructor of a derived class.
   void close() {
     shutdown_hook_.reset();
     {
@@ -42,36 +42,36 @@ class ControllerNode : public GuardedNode<Node> {
     GuardedNode<Node>::close();
   }
 
-  // What the model decides.
+  // Functions that depend on the model.
 
   /// Whether a goal has not ended.
   virtual bool busy() const { return false; }
-  /// Whether the end waits for what becomes of a goal.
+  /// Whether the end of the node waits for the end of a goal.
   virtual bool waits() const { return false; }
   /// Reports goals that have not ended when the node ends.
   virtual void leave() {}
   /// Stops the robot while all triggers are held.
   virtual void halt() = 0;
-  /// What else there is to do before the node ends.
+  /// Other steps before the end of the node.
   virtual void finish() {}
-  /// A period is over.
+  /// Handles the end of a period.
   virtual void tick() = 0;
 
-  // What the node does.
+  // Functions of the node.
 
-  /// A publisher of commands, of which it is the only one as far as it knows.
+  /// A publisher of commands. The node should be the only publisher on its topic.
   template <typename Message>
   auto advertise(const std::string& topic, const rclcpp::QoS& quality) {
     rclcpp::PublisherOptions options;
     options.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
-    options.use_default_callbacks = false;  // The graph monitor says what does not fit.
+    options.use_default_callbacks = false;  // The graph monitor reports incompatible subscribers.
     auto publisher = this->template create_publisher<Message>(topic, quality, options);
     monitor().command(topic, rosidl_generator_traits::name<Message>(), publisher->get_actual_qos(),
                       publisher->get_gid());
     return publisher;
   }
 
-  /// A subscription to what the robot tells.
+  /// A subscription to a topic of the robot.
   template <typename Message>
   Subscription<Message> subscribe(const std::string& topic, const rclcpp::QoS& quality,
                                   std::function<void(const Message&)> heard) {
@@ -80,14 +80,14 @@ class ControllerNode : public GuardedNode<Node> {
     return subscription;
   }
 
-  /// The same, `kept` as long as the publishers keep their last messages.
+  /// The same, with the quality of service `kept` while the publishers keep their last messages.
   template <typename Message>
   Subscription<Message> subscribe(const std::string& topic, const rclcpp::QoS& quality, const rclcpp::QoS& kept,
                                   std::function<void(const Message&)> heard) {
     const auto subscription = subscribe<Message>(topic, quality, heard);
     if (!durabilities_) durabilities_.emplace(*this, this->guard_);
     const auto changed = [this, subscription, topic, quality, kept, heard](bool lasting) {
-      // The parameters have the reliability of the first subscription by default.
+      // By default, the parameters have the reliability of the first subscription.
       open<Message>(*subscription, topic, lasting ? kept : quality, heard,
                     {rclcpp::QosPolicyKind::History, rclcpp::QosPolicyKind::Depth});
     };
@@ -95,23 +95,23 @@ class ControllerNode : public GuardedNode<Node> {
     return subscription;
   }
 
-  /// Watches the servers of a service that the node calls; `part`: which one of an action.
+  /// Watches the servers of a service that the node calls. `part`: the service's role in an action.
   template <typename Service>
   void watch_servers(const std::string& name, const std::string& part = "") {
     monitor().call(name, part, rosidl_generator_traits::name<Service>());
   }
 
-  /// What is wrong around the node with a topic, service or action.
+  /// Faults of the ROS graph that concern a topic, service or action.
   std::vector<std::string> faults(const std::string& name) const {
     return monitor_ ? monitor_->faults(name) : std::vector<std::string>();
   }
 
-  /// Why a call or goal has failed: a server of another type is none to ROS.
+  /// The reason of a failed call or goal. ROS does not match a server of another type.
   std::string explained(const std::string& name, const std::string& why) const {
     return monitor_ && monitor_->has_other_type(name) ? "the server has another type" : why;
   }
 
-  /// Ticks from now on.
+  /// Starts the ticks.
   void start(std::chrono::milliseconds period) {
     const auto tick = this->guard_([this] { this->tick(); });
     if (this->get_parameter("use_sim_time").as_bool()) {
@@ -121,8 +121,7 @@ class ControllerNode : public GuardedNode<Node> {
     }
   }
 
-  /// The last thing that the constructor of a derived class does: from here on, the robot is stopped when the node
-  /// ends.
+  /// Makes the node stop the robot at its end. Call it last in the constructor of a derived class.
   void stop_at_end() {
     const auto end = [this] {
       const auto lock = this->guard_.hold();
@@ -140,7 +139,7 @@ class ControllerNode : public GuardedNode<Node> {
     });
   }
 
-  /// Before the node ends, and while it can still send.
+  /// Stops the robot before the node ends, while it can still send.
   void stop() {
     if (std::exchange(stopping_, true)) return;
     halt();

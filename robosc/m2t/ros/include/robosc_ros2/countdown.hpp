@@ -1,4 +1,4 @@
-// Clocks that waiting is measured with, and a timer that runs once.
+// Clocks for timeouts, and a timer for one call.
 #ifndef ROBOSC_ROS2_COUNTDOWN_HPP_
 #define ROBOSC_ROS2_COUNTDOWN_HPP_
 
@@ -16,20 +16,20 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// How often something that is waited for is looked at.
+/// The interval between checks of a condition.
 inline constexpr std::chrono::milliseconds kLook(20);
 
-/// The steady clock; the time of ROS where `use_sim_time` is set.
+/// The steady clock, or the time of ROS if `use_sim_time` is set.
 template <typename Node>
 rclcpp::Clock::SharedPtr waiting_clock(Node& node) {
   if (node.get_parameter("use_sim_time").as_bool()) return node.get_clock();
   return std::make_shared<rclcpp::Clock>(RCL_STEADY_TIME);
 }
 
-/// Calls a function once, some time after each start: on the steady clock, or in ROS time with `use_sim_time`.
+/// Calls a function once, a given time after each start: on the steady clock, or in ROS time with `use_sim_time`.
 ///
 /// An events executor queues the calls of timers that have expired. Such a call may run after the countdown was stopped
-/// or started again; then it has no effect.
+/// or started again. Then it has no effect.
 class Countdown {
  public:
   template <typename Node>
@@ -56,7 +56,7 @@ class Countdown {
   Countdown& operator=(const Countdown&) = delete;
   ~Countdown() { stop(); }
 
-  /// Begins, or begins again, with the full time.
+  /// Starts or restarts with the full time.
   void start() {
     began_ = clock_->started();
     started_ = clock_->now().nanoseconds();
@@ -66,7 +66,7 @@ class Countdown {
   bool running() const { return !timer_->is_canceled(); }
 
  private:
-  /// Whether the time since the last start is not over. Where the clock was set back, the timer alone knows.
+  /// Whether the time since the last start has not elapsed. After a backward jump of the clock, only the timer decides.
   bool is_early() const {
     const std::int64_t passed = clock_->now().nanoseconds() - started_;
     return passed >= 0 && passed < std::chrono::nanoseconds(time_).count();
@@ -76,7 +76,7 @@ class Countdown {
   std::chrono::milliseconds time_;
   rclcpp::Clock::SharedPtr clock_;
   std::int64_t started_ = 0;  ///< In nanoseconds.
-  bool began_ = true;         ///< The first message sets a clock of simulated time: until then no time has passed.
+  bool began_ = true;         ///< The first message starts a clock of simulated time. No time elapses before it.
   rclcpp::TimerBase::SharedPtr timer_;
 };
 

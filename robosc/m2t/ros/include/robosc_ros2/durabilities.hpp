@@ -1,4 +1,4 @@
-// Whether publishers keep their last messages for late subscribers.
+// Detection of publishers that keep their last messages for late subscribers.
 #ifndef ROBOSC_ROS2_DURABILITIES_HPP_
 #define ROBOSC_ROS2_DURABILITIES_HPP_
 
@@ -18,15 +18,15 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Watches the publishers of topics. A topic lasts where all of its publishers are transient-local and reliable: a
-/// subscription that asks for less hears them, but does not get what they keep. One that asks for that does not hear
-/// other publishers.
+/// Watches the publishers of topics. A topic is lasting if all its publishers are transient-local and reliable. A
+/// volatile subscription receives their messages, but not the kept ones. A transient-local subscription does not
+/// receive from other publishers.
 class Durabilities {
  public:
   template <typename Node>
   Durabilities(Node& node, const CallbackGuard& guard)
       : publishers_([&node](const std::string& topic) { return node.get_publishers_info_by_topic(topic); }),
-        // Here, since the first one of a context takes locks of it that its closing takes in another order.
+        // Created here: the first event of a context takes its locks in another order than closing does.
         graph_(node.get_graph_event()),
         timer_(node.create_wall_timer(std::chrono::milliseconds(20), guard([this] {
                                         if (graph_->check_and_clear()) look();
@@ -36,10 +36,11 @@ class Durabilities {
   Durabilities& operator=(const Durabilities&) = delete;
   ~Durabilities() { timer_->cancel(); }
 
-  /// Calls `changed` whenever a topic lasts or no longer does. `lasting`: what is known; nothing: not even that.
+  /// Calls `changed` whenever a topic becomes lasting or no longer is. `lasting`: the known value, or nothing if
+  /// unknown.
   void watch(const std::string& topic, std::function<void(bool)> changed, std::optional<bool> lasting = std::nullopt) {
     topics_.push_back({topic, std::move(changed), lasting});
-    graph_->set();  // for publishers that are there already
+    graph_->set();  // for existing publishers
   }
 
  private:

@@ -1,4 +1,4 @@
-// Whether a message that is handed on as it came holds finite numbers only.
+// Test for finite numbers in a message that is forwarded unchanged.
 #ifndef ROBOSC_ROS2_FINITE_HPP_
 #define ROBOSC_ROS2_FINITE_HPP_
 

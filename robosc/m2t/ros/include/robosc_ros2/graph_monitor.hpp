@@ -1,4 +1,4 @@
-// What is wrong around the node.
+// Monitor of the ROS graph around the node.
 #ifndef ROBOSC_ROS2_GRAPH_MONITOR_HPP_
 #define ROBOSC_ROS2_GRAPH_MONITOR_HPP_
 
@@ -20,8 +20,8 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Looks once a second at who else is on the node's topics, and at the servers of what it calls. Says once, by name,
-/// what keeps them from working; `faults` has it as long as it lasts.
+/// Checks once a second the other nodes on the node's topics and the servers of its calls. Reports once by name each
+/// fault that prevents communication. `faults` returns a fault as long as it lasts.
 class GraphMonitor {
  public:
   template <typename Node>
@@ -38,13 +38,13 @@ class GraphMonitor {
   GraphMonitor& operator=(const GraphMonitor&) = delete;
   ~GraphMonitor() { stop(); }
 
-  /// Looks no more: with its context closed, a node can't.
+  /// Stops the checks. A node can't query the graph after its context is closed.
   void stop() {
-    stopped_ = true;  // An events executor may have a look in its queue.
+    stopped_ = true;  // An events executor may have queued a check.
     timer_->cancel();
   }
 
-  /// The node listens to a topic; again where its quality of service changes.
+  /// Adds a topic that the node receives, or updates its quality of service.
   void hear(const std::string& topic, const std::string& type, const rclcpp::QoS& quality) {
     const auto known = std::find_if(heard_.begin(), heard_.end(), [&](const Topic& one) { return one.name == topic; });
     if (known == heard_.end()) {
@@ -54,27 +54,27 @@ class GraphMonitor {
     }
   }
 
-  /// The node commands a topic: it alone, as far as it knows.
+  /// Adds a topic that the node commands. The node should be its only publisher.
   void command(const std::string& topic, const std::string& type, const rclcpp::QoS& quality, const rmw_gid_t& own) {
     commanded_.push_back({topic, type, quality, own});
   }
 
-  /// The node calls a service, which may be a part of an action.
+  /// Adds a service that the node calls, which may be a part of an action.
   void call(const std::string& name, const std::string& part, const std::string& type) {
     called_.push_back({name, services_->resolve_service_name(name + part), type});
   }
 
-  /// The faults of a topic, service or action at the last look.
+  /// The faults of a topic, service or action at the last check.
   std::vector<std::string> faults(const std::string& name) const {
     const auto found = faults_.find(name);
     return found == faults_.end() ? std::vector<std::string>() : found->second;
   }
 
-  /// Whether the only servers of a service or action at the last look were of another type.
+  /// Whether all servers of a service or action at the last check had another type.
   bool has_other_type(const std::string& name) const { return other_types_.count(name) > 0; }
 
  private:
-  // Looks for which two nodes of one name may serve: one that was killed and started anew is there twice for 20 s.
+  // Checks for which two nodes of one name may serve: after a crash and restart, the graph has both for 20 s.
   static constexpr int kLease = 25;
 
   struct Topic {
@@ -82,14 +82,14 @@ class GraphMonitor {
     std::string type;
     rclcpp::QoS quality;
     rmw_gid_t own;
-    int missing = 0;  ///< For so many looks nobody has published it.
+    int missing = 0;  ///< Number of checks without a publisher.
   };
 
   struct Called {
     std::string name;
     std::string service;
     std::string type;
-    int twice = 0;  ///< For so many looks two nodes of one name have served it.
+    int twice = 0;  ///< Number of checks with two servers of one name.
   };
 
   void look() {
@@ -110,7 +110,7 @@ class GraphMonitor {
         std::all_of(others.begin(), others.end(), [this](const auto& other) { return is_self(other); });
     topic.missing = is_missing ? topic.missing + 1 : 0;
     if (topic.missing >= 5) {
-      // A publisher that comes late is usual while a robot starts. So this is no warning in the log.
+      // While a robot starts, publishers are often late. So the log contains no warning.
       note(topic.name, topic.name + ": nobody publishes it");
       const std::string text = topic.name + ": nobody publishes it after 5 s";
       if (told_.insert(text).second) RCLCPP_INFO(logger_, "%s", text.c_str());
@@ -132,7 +132,7 @@ class GraphMonitor {
   }
 
   void look_at_servers(Called& called) {
-    // The types of clients are among these; which nodes are servers takes longer to find out.
+    // These types include those of clients. To find the servers takes longer.
     const auto types = graph_->get_service_names_and_types()[called.service];
     const auto is_other = [&](const std::string& type) { return type != called.type; };
     const bool may_be_single = std::none_of(types.begin(), types.end(), is_other) && count(*graph_, called, 0) <= 1;
@@ -147,7 +147,7 @@ class GraphMonitor {
     look_for_single(called, servers);
   }
 
-  /// Several servers of the right type: the first answer counts, whatever the others do.
+  /// Reports several servers of the right type: the first answer counts, regardless of the others.
   void look_for_single(Called& called, const std::vector<std::string>& servers) {
     const std::set<std::string> names(servers.begin(), servers.end());
     called.twice = names.size() < servers.size() ? called.twice + 1 : 0;
@@ -173,12 +173,12 @@ class GraphMonitor {
           }
         }
       } catch (const std::exception&) {
-        // The node has just gone.
+        // The node has just left.
       }
     }
   }
 
-  /// The number of servers; several may be there where rclcpp can't count them (before Iron).
+  /// The number of servers. Several if rclcpp can't count them (before Iron).
   template <typename Graph>
   static auto count(const Graph& graph, const Called& called, int) -> decltype(graph.count_services(called.service)) {
     return graph.count_services(called.service);
@@ -188,14 +188,14 @@ class GraphMonitor {
     return 2;
   }
 
-  /// Whether both sides mean the same type.
+  /// Whether both sides use the same type. Reports a difference.
   bool fits(const Topic& topic, const rclcpp::TopicEndpointInfo& other, const std::string& verb) {
     if (other.topic_type() == topic.type) return true;
     tell(topic.name, name(other) + " " + verb + " " + other.topic_type() + ", not " + topic.type);
     return false;
   }
 
-  /// Whether what one side offers is enough for the other.
+  /// Reports an offered quality of service that is too low for the other side.
   void meets(const Topic& topic, const rclcpp::TopicEndpointInfo& other, const rclcpp::QoS& offered,
              const rclcpp::QoS& asked, const std::string& verb) {
     const auto result = rclcpp::qos_check_compatible(offered, asked);
@@ -211,7 +211,7 @@ class GraphMonitor {
 
   bool is_self(const rclcpp::TopicEndpointInfo& other) const { return name(other) == self_; }
 
-  /// Whether it is not known, or not yet, of which node it is.
+  /// Whether the endpoint's node is unknown, or not known yet.
   static bool is_nameless(const rclcpp::TopicEndpointInfo& other) {
     return other.node_name().find("UNKNOWN") != std::string::npos;
   }
@@ -224,7 +224,7 @@ class GraphMonitor {
     return (space == "/" ? space : space + "/") + node;
   }
 
-  /// The type of an action by that of its service.
+  /// The type of an action, from the type of its service.
   static std::string plain(const std::string& type) { return type.substr(0, type.find("_SendGoal")); }
 
   void note(const std::string& name, const std::string& fault) {

@@ -1,4 +1,4 @@
-// What controllers and layers have in common.
+// Base class of controllers and layers.
 #ifndef ROBOSC_ROS2_GUARDED_NODE_HPP_
 #define ROBOSC_ROS2_GUARDED_NODE_HPP_
 
@@ -11,13 +11,13 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// A node whose callbacks end with it.
+/// A node without callbacks after its end.
 template <typename Node>
 class GuardedNode : public Node {
  protected:
   using Node::Node;
 
-  /// The first thing that the destructor of a derived class does: executors may call back until the end of this.
+  /// Closes the node. Call it first in the destructor of a derived class: executors may call back until this returns.
   void close() {
     guard_.close();
     withdraw(*this->get_node_base_interface()->get_default_callback_group());

@@ -1,4 +1,4 @@
-// A controller with a life cycle.
+// Controllers with a lifecycle.
 #ifndef ROBOSC_ROS2_MANAGED_NODE_HPP_
 #define ROBOSC_ROS2_MANAGED_NODE_HPP_
 
@@ -14,8 +14,7 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// A controller that others configure and activate. While it is not active, it follows what the robot does and sends
-/// nothing.
+/// A controller that other nodes configure and activate. While inactive, it follows the robot and sends nothing.
 class ManagedNode : public ControllerNode<rclcpp_lifecycle::LifecycleNode> {
  public:
   using CallbackReturn = rclcpp_lifecycle::node_interfaces::LifecycleNodeInterface::CallbackReturn;
@@ -71,15 +70,15 @@ class ManagedNode : public ControllerNode<rclcpp_lifecycle::LifecycleNode> {
  protected:
   using ControllerNode::ControllerNode;
 
-  // What the model decides.
+  // Functions that depend on the model.
 
-  /// Connects the node to everything that the model names.
+  /// Connects the node to all topics, services and actions of the model.
   virtual void configure() = 0;
-  /// It may send from now on.
+  /// Permits the node to send.
   virtual void activate() = 0;
-  /// Stops the robot; nothing is sent any more.
+  /// Stops the robot. The node sends nothing afterwards.
   virtual void deactivate() = 0;
-  /// Lets go of all that it was connected to, and keeps nothing.
+  /// Disconnects the node and discards its state.
   virtual void disconnect() = 0;
 
  private:

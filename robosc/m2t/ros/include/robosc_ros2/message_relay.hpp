@@ -1,4 +1,4 @@
-// Hands messages on that the supervisor lets through.
+// Forwarded messages that the supervisor permits.
 #ifndef ROBOSC_ROS2_MESSAGE_RELAY_HPP_
 #define ROBOSC_ROS2_MESSAGE_RELAY_HPP_
 
@@ -17,14 +17,14 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Takes messages from one topic to another.
+/// Forwards messages from one topic to another.
 ///
-/// What is published is reliable, and transient-local where the publishers of the messages keep them. That must be
-/// known before the subscription is made: it begins when the first publisher is seen.
+/// Publishes reliably, and transient-local if the publishers of the messages keep them. The relay must know that before
+/// it subscribes. So it subscribes when it sees the first publisher.
 template <typename Message>
 class MessageRelay {
  public:
-  /// `kept`: how messages are received that their publishers keep. `pass`: whether a message goes on.
+  /// `kept`: quality of service for messages that their publishers keep. `pass`: returns whether to forward a message.
   MessageRelay(rclcpp::Node& node, const CallbackGuard& guard, const std::string& from, const std::string& to,
                const rclcpp::QoS& received, const rclcpp::QoS& kept, const rclcpp::QoS& sent,
                std::function<bool(const Message&)> pass)
@@ -41,12 +41,12 @@ class MessageRelay {
     durabilities_.watch(from, [this](bool lasting) { open(lasting); });
   }
 
-  /// Hands on what has arrived already.
+  /// Handles messages that have already arrived.
   void hear() {
     if (subscription_ != nullptr) hear_all(*subscription_, [this](const Message& message) { forward(message); });
   }
 
-  /// Sends a message to those who get what is handed on.
+  /// Publishes a message to the subscribers of forwarded messages.
   void publish(const Message& message) { publisher_->publish(message); }
 
  private:

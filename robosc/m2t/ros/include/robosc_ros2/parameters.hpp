@@ -1,4 +1,4 @@
-// Parameters with their meaning and their range.
+// Parameters with their meanings and ranges.
 #ifndef ROBOSC_ROS2_PARAMETERS_HPP_
 #define ROBOSC_ROS2_PARAMETERS_HPP_
 
@@ -25,7 +25,7 @@ Value parameter(Node& node, const std::string& name, const Value& value, const s
   return node.template declare_parameter<Value>(name, value, descriptor);
 }
 
-/// The same for a whole number between two bounds; another value is refused.
+/// The same for a whole number between two bounds. Other values are rejected.
 template <typename Node>
 int parameter(Node& node, const std::string& name, int value, int low, int high, const std::string& meaning) {
   if (node.has_parameter(name)) return static_cast<int>(node.get_parameter(name).as_int());
@@ -39,7 +39,7 @@ int parameter(Node& node, const std::string& name, int value, int low, int high,
   return static_cast<int>(node.template declare_parameter<std::int64_t>(name, value, descriptor));
 }
 
-/// A parameter of the model: it may be set while the node runs.
+/// A parameter of the model. It may be set while the node runs.
 template <typename Value, typename Node>
 Value model_parameter(
     Node& node, const std::string& name, const Value& value, const std::string& meaning,
@@ -49,7 +49,7 @@ Value model_parameter(
   return node.template declare_parameter<Value>(name, value, descriptor);
 }
 
-/// The same for a number between two bounds; another value is refused.
+/// The same for a number between two bounds. Other values are rejected.
 template <typename Number, typename Node>
 Number model_parameter(Node& node, const std::string& name, Number value, const std::string& meaning, Number low,
                        Number high) {
@@ -67,7 +67,7 @@ Number model_parameter(Node& node, const std::string& name, Number value, const 
   return model_parameter<Number>(node, name, value, meaning, descriptor);
 }
 
-/// Whether values may be set: each number is finite.
+/// Whether the values may be set: each number is finite.
 inline rcl_interfaces::msg::SetParametersResult accepted(const std::vector<rclcpp::Parameter>& given) {
   rcl_interfaces::msg::SetParametersResult result;
   result.successful = true;

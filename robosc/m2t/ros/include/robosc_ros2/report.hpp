@@ -1,4 +1,4 @@
-// A topic on which a node tells about itself.
+// Topics with reports of a node about itself.
 #ifndef ROBOSC_ROS2_REPORT_HPP_
 #define ROBOSC_ROS2_REPORT_HPP_
 
@@ -23,7 +23,7 @@ class Report {
     publisher_ = rclcpp::create_publisher<Message>(node, topic, quality, options);
   }
 
-  /// What is published is kept for those who come later.
+  /// Opens the topic and keeps the last message for later subscribers.
   template <typename Node>
   void open_lasting(Node& node, const std::string& topic) {
     open(node, topic, rclcpp::QoS(1).transient_local());
@@ -31,14 +31,14 @@ class Report {
 
   void close() { *this = Report(); }
 
-  /// Whether anyone listens.
+  /// Whether there are subscribers.
   bool heard() const { return publisher_->get_subscription_count() > 0; }
-  /// Whether those who listen are to be told what has `changed`, or another one what is.
+  /// Whether to publish: the state has `changed` and there are subscribers, or there is a new one.
   bool due(bool changed) { return audience_.waits(publisher_->get_subscription_count(), changed); }
 
   void publish(const Message& message) const { publisher_->publish(message); }
 
-  /// Of a message with a text.
+  /// Publishes a message that contains a text.
   void publish_text(const std::string& text) const {
     Message message;
     message.data = text;

@@ -1,4 +1,4 @@
-// Calls a service.
+// Client of a service.
 #ifndef ROBOSC_ROS2_SERVICE_CLIENT_HPP_
 #define ROBOSC_ROS2_SERVICE_CLIENT_HPP_
 
@@ -19,7 +19,7 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Handlers are called by the node's executor.
+/// A client of one service. The node's executor calls the handlers.
 template <typename Type>
 class ServiceClient final : public CallClient<Countdown, typename Type::Response> {
  public:
@@ -35,7 +35,7 @@ class ServiceClient final : public CallClient<Countdown, typename Type::Response
         client_(node.template create_client<Type>(name, quality)),
         search_(node, guard, std::chrono::milliseconds(20), [this] { send(); }) {}
 
-  /// Calls the service; a call that is still under way is given up.
+  /// Calls the service. Gives up an earlier call that has not ended.
   void call(const Request& request) {
     number_ = this->begin();
     request_ = std::make_shared<Request>(request);

@@ -1,4 +1,4 @@
-// Hands calls of a service on that the supervisor lets through.
+// Forwarded service calls that the supervisor permits.
 #ifndef ROBOSC_ROS2_SERVICE_PROXY_HPP_
 #define ROBOSC_ROS2_SERVICE_PROXY_HPP_
 
@@ -18,8 +18,8 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// A service for the controller behind which stands the robot's one. Who calls it waits for the robot's answer; whose
-/// call is blocked, or has no answer, gets a response with nothing set.
+/// A service for the controller that forwards to the robot's service. A client waits for the robot's answer. A blocked
+/// or failed call gets a response with default values.
 template <typename Type>
 class ServiceProxy final : public CallProxy<rmw_request_id_t, typename Type::Request, typename Type::Response> {
  public:
@@ -27,7 +27,7 @@ class ServiceProxy final : public CallProxy<rmw_request_id_t, typename Type::Req
   using Response = typename Type::Response;
   using Base = CallProxy<rmw_request_id_t, Request, Response>;
 
-  /// `quality`: of calls of the robot's service.
+  /// `quality`: quality of service for calls of the robot's service.
   ServiceProxy(rclcpp::Node& node, const CallbackGuard& guard, const std::string& controller_side,
                const std::string& robot_side, const rclcpp::QoS& quality, std::chrono::milliseconds timeout,
                typename Base::Handlers handlers)

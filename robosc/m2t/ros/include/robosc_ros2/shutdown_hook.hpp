@@ -1,4 +1,4 @@
-// What is done before ROS closes.
+// Functions to run before ROS closes.
 #ifndef ROBOSC_ROS2_SHUTDOWN_HOOK_HPP_
 #define ROBOSC_ROS2_SHUTDOWN_HOOK_HPP_
 
@@ -18,20 +18,20 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// Waits, not for long, until what was sent has arrived.
+/// Waits for a bounded time until the sent messages have arrived.
 inline void flush(rclcpp::PublisherBase& publisher) {
   try {
     publisher.wait_for_all_acked(std::chrono::milliseconds(200));
   } catch (const std::exception&) {
-    // Not every middleware can tell; then nobody waits.
+    // Not every middleware reports that. Then do not wait.
   }
 }
 
-/// Calls a function once before the context closes, or when the node goes: while it can still send. The context stays
-/// open while the node `waits`; a node that goes before its context does not wait.
+/// Calls a function once before the context closes, or at the destruction of the node, while it can still send. The
+/// context stays open while the node `waits`. A node that is destroyed before its context does not wait.
 ///
-/// The context closes in a thread of its own, so the function is handed to the executor of the node; only where none
-/// is running for a second does that thread call it.
+/// The context closes in a separate thread, so the node's executor calls the function. If no executor runs for a
+/// second, that thread calls it.
 class ShutdownHook {
  public:
   template <typename Node>
@@ -85,7 +85,7 @@ class ShutdownHook {
   rclcpp::TimerBase::SharedPtr timer_;
   std::atomic<bool> started_{false};
   std::atomic<bool> served_{false};
-  bool finished_ = false;  ///< Only the executor of the node reads and sets it.
+  bool finished_ = false;  ///< Used by the node's executor only.
   std::promise<void> done_;
   CallbackGuard guard_;
 };

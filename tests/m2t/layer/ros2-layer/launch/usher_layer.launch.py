@@ -1,4 +1,4 @@
-"""Starts usher_layer, and the controller behind it."""
+"""Start usher_layer, and the controller behind it."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
@@ -6,8 +6,8 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 
-# What a controller is started with other names for, which are below the layer's own name. Actions are re-mapped by the
-# names of their services and topics.
+# Names that are remapped for a controller, to names below the layer's own. Actions are remapped by the names of their
+# services and topics.
 NAMES = [
     "/stop",
     "/resume",
@@ -26,7 +26,7 @@ NAMES = [
 
 def remappings(context):
     name, namespace = (LaunchConfiguration(argument).perform(context) for argument in ("name", "namespace"))
-    # What this file is included into may have pushed a namespace; an absolute one does not care.
+    # An including file may have pushed a namespace. It does not affect an absolute namespace.
     pushed = "" if namespace.startswith("/") else context.launch_configurations.get("ros_namespace", "")
     layer = "/".join(filter(None, (part.strip("/") for part in (pushed, namespace, name))))
     return [(topic, f"/{layer}/controller/{topic.lstrip('/')}") for topic in NAMES]

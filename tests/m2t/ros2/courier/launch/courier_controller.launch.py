@@ -1,4 +1,4 @@
-"""Starts courier_controller."""
+"""Start courier_controller."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
@@ -12,7 +12,7 @@ NAME = "courier_controller"
 
 
 def start(context):
-    """The node; its remappings are one text until here."""
+    """Return the node. Its remappings arrive as one text."""
     remappings = LaunchConfiguration("remappings").perform(context).split()
     parameters = [LaunchConfiguration("params_file")]
     if LaunchConfiguration("use_sim_time").perform(context):
