@@ -664,6 +664,8 @@ class Linker:
             return
         if self._file.may_declare(name.text, *own_text, imported=False):
             return
+        if qualifies and self._file.may_declare(name.text, Declared.DATA_TYPE):
+            return
         word = self._file.references[access]["item"] if qualifies else None
         if own is not None and self._call_misread(own, name, [word] if word is not None else []):
             return

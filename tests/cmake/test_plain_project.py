@@ -139,11 +139,6 @@ def test_the_page_can_be_followed(tmp_path: Path) -> None:
     assert done.stdout.endswith("\n10\n")
 
 
-def test_the_three_packages_find_the_program_alike() -> None:
-    places = ["robosc", "ament_cmake_robosc", "catkin_robosc/cmake"]
-    assert len({(CMAKE / place / "find-robosc.cmake").read_text(encoding="utf-8") for place in places}) == 1
-
-
 def test_their_version_is_that_of_the_tool() -> None:
     version = (CMAKE / "robosc" / "robosc-config-version.cmake").read_text(encoding="utf-8")
     assert f'set(PACKAGE_VERSION "{robosc.__version__}")' in version

@@ -74,6 +74,8 @@ class _Controller(DrivenController):
         return may_happen
 
 
+#: Maximum number of periods of one wait, which take about a minute.
+_MOST_PERIODS = 1_000_000
 #: Kinds of events that a step may name.
 _FROM_THE_ROBOT = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.canceled)
 
@@ -227,7 +229,11 @@ class Player(Drive):
         elif isinstance(line, Refusal):
             self._refuse(event_named(self._graph.model, line.event))
         else:
-            for _ in range(math.ceil(round(line.seconds / self._period, 6))):
+            periods = math.ceil(round(line.seconds / self._period, 6))
+            if periods > _MOST_PERIODS:
+                hint = "wait for less, or play with a longer `controlLoop.periodMs`"
+                raise NamingError(f"the wait has {periods:,} ticks of the control loop, at most a million", hint)
+            for _ in range(periods):
                 self._pass_period()
 
     def _come_in(self, line: Incoming) -> None:

@@ -27,6 +27,7 @@ from robosc.language.checks import check
 from robosc.language.libraries import declared_name
 from robosc.language.reading import read
 from robosc.language.text import Documents, Text, decode
+from robosc.model import robosc
 from robosc.tools.editor.slices import LARGE, Slices
 
 if TYPE_CHECKING:
@@ -322,6 +323,20 @@ class Snapshot:
                 analysis = self.analysis(path)
                 if analysis is not None:
                     yield analysis
+
+    def importers(self, paths: Iterable[Path]) -> Iterator[Analysis]:
+        """Yield the analyses of all texts of the project that import one of these files, directly or not."""
+        pending, known = list(paths), set(paths)
+        while pending:
+            analysis = self.analysis(pending.pop())
+            base = None if analysis is None else analysis.reading.base
+            if not isinstance(base, robosc.Library):
+                continue
+            for found in self.analyses_with(base.name):
+                if found.path not in known:
+                    known.add(found.path)
+                    pending.append(found.path)
+                    yield found
 
     def uri(self, file: str) -> str:
         """Return the URI of a file; if the file is open, the URI of the editor."""

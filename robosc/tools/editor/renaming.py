@@ -112,12 +112,13 @@ def _require_same(
     They are also rejected if the word occurs in an unreadable part of a text.
     """
     analyses = {analysis.path: analysis} | {found.path: found for found in snapshot.analyses_with(word)}
+    by_path = {Path(name).resolve(): changes for name, changes in edits.items()}
+    analyses |= {found.path: found for found in snapshot.importers(by_path)}
     for found in analyses.values():
         for file in found.reading.files.values():
             skipped = (file.text.content[start:end] for start, end in file.skipped)
             if any(re.search(rf"\b{re.escape(word)}\b", part) for part in skipped):
                 raise _refused(f"mend {file.text.file} first: `{word}` stands in what can't be read")
-    by_path = {Path(name).resolve(): changes for name, changes in edits.items()}
     after = snapshot.edited(by_path)
     for path, found in analyses.items():
         renamed = after.analysis(path)

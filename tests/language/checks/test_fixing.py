@@ -376,3 +376,26 @@ def test_a_string_is_replaced_as_a_whole_or_not_at_all() -> None:
     content = ROBOT.replace("go with", 'go with identifier: "/go", ')
     assert objected(content, at(content, '"/go"', '"/stop"')) is None
     assert objected(content, at(content, "/go", "/stop")) == "a string would change"
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "variable max speed: boolean",
+        "variable speed speed: integer(0..9)",
+        "initial state off { } variable x : enum = 1",
+    ],
+)
+def test_no_chain_of_guesses_that_ends_in_an_error(line: str) -> None:
+    text = f"robot R {{ component C {{ outgoing message m with type: none behaviour {{\n{line}\n}} }} }}\n"
+    assert fixed(text) == text
+
+
+def test_no_guess_at_names_of_a_library_that_is_missing() -> None:
+    text = """robot R {
+      component Weigher from Nowhere import Scale
+      component Base { incoming message stop with type: none }
+      requirement stop needs Weigher.last = Weight.heavy
+    }"""
+    assert fixed(text) == text
+    assert [finding.message for finding in checked(text).findings] == ["there is no library `Nowhere`"]

@@ -10,8 +10,10 @@ import robosc
 from robosc.engine.interpreter import Engine
 from robosc.model import expression as ex
 from robosc.model.reflection import tree
+from robosc.model.semantics import expansion
 from robosc.model.semantics.evaluation import evaluate, literal
 from robosc.model.semantics.operators import UnreadableError
+from robosc.model.semantics.walks import copied
 
 MODEL = """\
 robot Round {
@@ -115,3 +117,25 @@ def test_where_ieee_754_has_nan() -> None:
 
 def call(function: str, *values: float) -> object:
     return evaluate(ex.FunctionCall(function=function, arguments=[literal(value) for value in values]), lambda _: 0)
+
+
+def test_nested_calls_copy_an_argument_only_where_it_occurs_twice() -> None:
+    """The work is in proportion to the result, which doubles with each function."""
+    calls = [f"function f{n}(a: integer): integer = f{n + 1}(f{n + 1}(a))\n" for n in range(11)]
+    text = f"robot R {{ {''.join(calls)} function f11(a: integer): integer = a + 1 constant c: integer = f0(1) }}"
+    copies = []
+
+    def counted(element: ex.Expression) -> ex.Expression:
+        copies.append(element)
+        return copied(element)
+
+    robot = robosc.load(text=text)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(expansion, "copied", counted)
+        assert expansion.constant_value(robot.definitions[-1].value) == 2049
+    assert len(copies) < 10
+
+
+def test_a_text_is_no_number() -> None:
+    robot = robosc.load(text='robot R { constant c: double = 2.0 * "x" parameter p: integer(0..9) = 3 - "x" }')
+    assert {finding.rule for finding in robosc.check(robot)} == {"type"}

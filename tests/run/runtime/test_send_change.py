@@ -6,8 +6,10 @@ import math
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 import robosc
+from robosc.tools.cli import main
 from tests.run.runtime.fake import World
 
 LAMPS = Path(__file__).parent / "lamps.rscd"
@@ -75,3 +77,22 @@ def test_generated_nodes_compare_too() -> None:
     assert texts["ros2"].count("rclcpp::QoS(10).transient_local());") == 1
     # The layer has no part in this.
     assert "_handed_" not in texts["ros2-layer"]
+
+
+def test_a_message_without_data_is_sent_once(tmp_path: Path) -> None:
+    """The command is sent when it becomes possible, also by the simulated robot of scenarios."""
+    robot = tmp_path / "bell.rscd"
+    robot.write_text(
+        """robot R { component Bell { incoming message ring with type: none, send: change
+        outgoing message press with type: boolean
+        behaviour { initial marked state quiet { on response from press if value goto loud }
+                    marked state loud { on response from press if !value goto quiet } } }
+        requirement ring needs Bell.loud }"""
+    )
+    scenarios = tmp_path / "bell.scenarios"
+    scenarios.write_text(
+        'scenario "once"\n  press with true\n  expect ring sent\n  wait 500 ms\n  expect ring not sent\n'
+        "  press with false\n  press with true\n  expect ring sent\n"
+    )
+    answer = CliRunner().invoke(main, ["test", str(robot), str(scenarios)])
+    assert answer.exit_code == 0, answer.output

@@ -110,6 +110,26 @@ def test_a_call_without_an_answer_takes_its_time() -> None:
         assert 4.8 < waited < 5.2  # in simulated time
 
 
+def test_a_goal_that_is_not_accepted_takes_its_time() -> None:
+    """A goal fails with `timeout` or `unavailable` after the time for its acceptance, not before."""
+    for reason in ("timeout", "unavailable"):
+        text = f'scenario "one"\n  wait 1 s\n  error from go because {reason}\n  expect !Base.going\n'
+        assert played(text, "--traces", "traces").exit_code == 0
+        lines = list(map(json.loads, Path("traces/scenario_1.jsonl").read_text().splitlines()))
+        times = {line["event"]: line["time"] for line in lines}
+        waited = times["action_go.u_error"] - times["action_go.c_trigger"]
+        assert 4.8 < waited < 5.2  # in simulated time
+
+
+@pytest.mark.parametrize("reason", ["rejected", "unavailable"])
+def test_a_goal_is_not_rejected_after_its_time(reason: str) -> None:
+    ((line, message, hint),) = findings(
+        f'scenario "one"\n  wait 6 s\n  error from go because {reason}\n  expect Base.low\n'
+    )
+    assert (line, message) == (3, f"the goal was sent too long ago to fail with `{reason}`")
+    assert "fails with `timeout`" in hint
+
+
 def test_a_pause_follows_a_failure() -> None:
     model = Path("crane.rscd")
     model.write_text(

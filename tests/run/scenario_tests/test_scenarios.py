@@ -242,6 +242,17 @@ def test_a_file_without_scenarios(text: str) -> None:
     assert findings(text) == [(1, 1, "the file has no scenario")]
 
 
+def test_a_tab_separates_words() -> None:
+    assert findings('scenario\t"one"\n\twait\t100 ms\n\texpect\tDock.docking\n') == []
+
+
+def test_a_wait_has_a_limit(folder: Path) -> None:
+    (folder / "fast.json").write_text('{"controlLoop": {"periodMs": 1}}')
+    text = 'scenario "one"\n  wait 60 min\n  expect lamp sent\n'
+    limit = "the wait has 3,600,000 ticks of the control loop, at most a million"
+    assert findings(text, "--config", "fast.json") == [(2, 3, limit)]
+
+
 def test_conditions_know_the_language() -> None:
     assert findings('scenario "one"\n  expect Dock.away => !(Bumper.pressed) and 1 + 1 = 2 // so it is\n') == []
 

@@ -114,3 +114,20 @@ def test_names_of_others_stay(project: Project, tmp_path: Path) -> None:
             prepare_rename(snapshot, analysis, asked)
     asked = types.PrepareRenameParams(types.TextDocumentIdentifier(path.as_uri()), position(text, "Stop from"))
     assert prepare_rename(snapshot, analysis, asked).placeholder == "Stop"
+
+
+def test_a_finding_in_a_text_that_imports_the_element_is_refused(project: Project, tmp_path: Path) -> None:
+    """The text of the robot does not contain the old name."""
+    library = """library Arms {
+          datatype enum Hold from integer(0..3) to { value > 2 -> tight default -> loose }
+          component Arm { outgoing message grip with type: Hold }
+        }"""
+    project.put((tmp_path / "arms.rscd").as_uri(), 1, library)
+    (tmp_path / "hand.rscd").write_text(
+        """robot Hand {
+          component A from Arms import Arm
+          component Lamp { incoming message light with type: none behaviour { initial marked state dark {} } }
+        }"""
+    )
+    with pytest.raises(JsonRpcException, match=r"hand\.rscd"):
+        renamed(project, library, "loose", "dark")
