@@ -181,7 +181,7 @@ class _Findings:
         hint = way_out(trace)
         if ends := [requirement for requirement in told if requirement.automaton is not None]:
             hint = (
-                f"a start can be refused, a cancel can't: take the end of `{action}` out of {called(ends)}, "
+                f"a start can be refused, a cancel cannot: take the end of `{action}` out of {called(ends)}, "
                 f"or restrict the start of `{action}`"
             )
         return _finding(
@@ -213,7 +213,7 @@ class _Findings:
             "cancel-held-back",
             f"{requirement} holds back the cancel of `{action}` where it is due, and the controller could not stop it: "
             f"after {in_words(observed.trace, self._model)}",
-            f"a start can be refused, a cancel can't: take `cancel from {action.rpartition('.')[2]}` out of the"
+            f"a start can be refused, a cancel cannot: take `cancel from {action.rpartition('.')[2]}` out of the"
             f" requirement, or restrict the start of `{action}`",
             Severity.ERROR,
         )
@@ -357,7 +357,7 @@ def _not_requested(observed: NeverEnabled) -> str:
     waiting = [f"`{name(plant)}`" for plant in observed.plants]
     if not waiting:
         return "the components that wait for its request never do so at the same time"
-    return f"{listed(waiting)} can't reach a state that waits for its request"
+    return f"{listed(waiting)} cannot reach a state that waits for its request"
 
 
 def _entered(event: sct.Event) -> Iterable[tuple[sct.Plant, sct.Location]]:

@@ -101,7 +101,7 @@ def test_synthesis_keeps_away_from_where_something_uncontrollable_leads_to_a_vio
     found = supervise(made).findings
     never = next(finding for finding in found if finding.rule == "never-enabled")
     assert never.message == (
-        "`Base.drive` can never be started: after request to `Base.drive`, response from `Stop.pressed` can't be "
+        "`Base.drive` can never be started: after request to `Base.drive`, response from `Stop.pressed` cannot be "
         "prevented, and then `requirement SR1: never Stop.stopped and Base.driving` is violated"
     )
     assert never.hint == (
@@ -124,7 +124,7 @@ def test_what_could_happen_only_beyond_names_the_requirement(tmp_path: Path) -> 
     assert toot.rule == "never-enabled"
     assert toot.message == (
         "therefore, `Horn.toot` can never be sent: the supervisor lets the robot reach no state in which it could be "
-        "sent: after request to `Base.drive`, response from `Stop.pressed` can't be prevented, and then `requirement "
+        "sent: after request to `Base.drive`, response from `Stop.pressed` cannot be prevented, and then `requirement "
         "SR1: never Stop.stopped and Base.driving` is violated"
     )
 
@@ -150,7 +150,7 @@ def test_an_action_is_cancelled_for_no_invariant(tmp_path: Path) -> None:
         (
             "requirement SR1: never Stop.stopped and Base.driving",
             (
-                "response from `Stop.pressed` can't be prevented, and after it {} is violated; a shortest trace: "
+                "response from `Stop.pressed` cannot be prevented, and after it {} is violated; a shortest trace: "
                 "response from `Base.moved`, then response from `Stop.pressed`"
             ),
         ),

@@ -260,7 +260,7 @@ OUT_OF_REACH = "the supervisor lets the robot reach no state in which it could b
         (  # by an automaton that could not get back to where it may rest
             "requirement T: automaton { initial marked state a { on grip goto b } state b { } }",
             "place",
-            OUT_OF_REACH + "after request to `Arm.grip`, `T` can't get back to a marked state",
+            OUT_OF_REACH + "after request to `Arm.grip`, `T` cannot get back to a marked state",
         ),
     ],
 )

@@ -93,8 +93,8 @@ def test_an_attribute_may_be_an_element(write: Any) -> None:
 
 
 DAMAGES = [
-    ('kind="message"', 'kind="massage"', ["3:18: 'kind' can't be 'massage'"]),
-    ('initial="true"', 'initial="yes"', ["6:27: 'initial' can't be 'yes'"]),
+    ('kind="message"', 'kind="massage"', ["3:18: 'kind' cannot be 'massage'"]),
+    ('initial="true"', 'initial="yes"', ["6:27: 'initial' cannot be 'yes'"]),
     ('name="p"', 'nam="p"', ["3:1: a Plant needs 'name'", "3:9: a Plant has no attribute 'nam'"]),
     ('name="p"', 'name="p q"', ["3:1: 'name' is to be an identifier, which 'p q' is not"]),
     ('name="p"', 'name="p"\n  locations="x"', ["4:3: a Plant has no attribute 'locations'"]),
@@ -116,7 +116,7 @@ DAMAGES = [
     (
         "expression:BooleanType",
         'expression:IntegerType" minimum="9223372036854775808" maximum="x',
-        ["5:60: 'minimum' can't be '9223372036854775808'", "5:90: 'maximum' can't be 'x'"],
+        ["5:60: 'minimum' cannot be '9223372036854775808'", "5:90: 'maximum' cannot be 'x'"],
     ),
     (
         'target="//@plants.0/@locations.0"',
@@ -208,9 +208,9 @@ def test_nesting_is_bounded(write: Any) -> None:
 
 
 FOREIGN = [
-    ("<sct:Plant xmlns:sct='urn:robosc:sct:1'/>", "a file can't hold a Plant by itself"),
-    ("<sct:Nothing xmlns:sct='urn:robosc:sct:1'/>", "a file can't hold a Nothing by itself"),
-    ("<e:BooleanLiteral xmlns:e='urn:robosc:expression:1'/>", "a file can't hold a BooleanLiteral by itself"),
+    ("<sct:Plant xmlns:sct='urn:robosc:sct:1'/>", "a file cannot hold a Plant by itself"),
+    ("<sct:Nothing xmlns:sct='urn:robosc:sct:1'/>", "a file cannot hold a Nothing by itself"),
+    ("<e:BooleanLiteral xmlns:e='urn:robosc:expression:1'/>", "a file cannot hold a BooleanLiteral by itself"),
     (
         "<x:Robot xmlns:x='http://example.org/robot'/>",
         "no model of RoboSC has the namespace 'http://example.org/robot'",
@@ -235,8 +235,8 @@ def test_a_metamodel_is_no_model(name: str) -> None:
 
 
 def test_what_cannot_be_read(tmp_path: Path) -> None:
-    assert shown(tmp_path / "none.xmi") == ["1:1: the file can't be read: No such file or directory"]
-    assert shown(tmp_path) == ["1:1: the file can't be read: Is a directory"]
+    assert shown(tmp_path / "none.xmi") == ["1:1: the file cannot be read: No such file or directory"]
+    assert shown(tmp_path) == ["1:1: the file cannot be read: Is a directory"]
 
 
 OUTSIDE = [

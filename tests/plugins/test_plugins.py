@@ -199,7 +199,7 @@ def test_the_supervisor_of_another_tool_is_explained(broken) -> None:
     ours, other = (CliRunner().invoke(main, [*asked, *more]).stdout for more in ((), ("--synthesizer", "broken")))
     assert ours.startswith("The request to `Platform.move` can happen here.")
     assert other.startswith(
-        "The request to `Platform.move` can't happen here: only this supervisor forbids it, neither the robot"
+        "The request to `Platform.move` cannot happen here: only this supervisor forbids it, neither the robot"
         " nor a requirement, nor would synthesis."
     )
     assert "From here the robot gets to no state where it can happen." in other
@@ -222,7 +222,7 @@ def test_the_debugger_takes_another_synthesizer(broken, tmp_path: Path) -> None:
         program.launch(LINE_FOLLOWER)
         for text in ("pressed false", "continue", "correction 0.1", 'scan "clear"', "component_Lidar.c_tau1"):
             program.console(text)
-        move = program.scope("Can't happen")["message_move.c_trigger"]
+        move = program.scope("Cannot happen")["message_move.c_trigger"]
         assert program.children(move)["supervisor"]["value"].startswith("only this supervisor forbids it")
         program.do("disconnect")
         assert program.end() == (0, "")

@@ -69,7 +69,7 @@ class Renderer:
         elif told.by is None:
             yield f"Neither the robot nor a requirement forbids the {event} here, but the robot never gets here."
         else:
-            yield f"The {event} can't happen here: {_because(told)}."
+            yield f"The {event} cannot happen here: {_because(told)}."
         yield from self._situation(told.situation)
         yield from self._refused(told.refusal)
         yield from self._obstacles(told)
@@ -116,7 +116,7 @@ class Renderer:
         because = _because(refusal)
         yield from [
             "",
-            f"On this way the {words(refusal.event)} can't happen{f' after {after}' if after else ''}: {because}.",
+            f"On this way the {words(refusal.event)} cannot happen{f' after {after}' if after else ''}: {because}.",
         ]
         yield from self._obstacles(refusal)
 

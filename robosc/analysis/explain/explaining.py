@@ -251,7 +251,7 @@ def _stuck(reason: Reason) -> list[Note]:
     for plant in reason.unmarked:
         here = plant.locations[reason.codes[plant]]
         marked = listed([f"`{location.name}`" for location in plant.locations if location.marked])
-        goal = f"can't get back to {marked}" if marked else "has no marked state"
+        goal = f"cannot get back to {marked}" if marked else "has no marked state"
         details = [
             f"its transition on {words(edge.event)} asks for `{printed(edge.guard)}`"
             for edge in edges_from(here)

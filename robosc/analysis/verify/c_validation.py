@@ -68,4 +68,4 @@ def _examined(
             except CompileError as error:
                 return [refuted(question, str(error)) for question in examinations]
     except OSError as error:  # The C is not the cause.
-        return skipped(f"it can't be tried in the folder for temporary files: {error}")
+        return skipped(f"it cannot be tried in the folder for temporary files: {error}")

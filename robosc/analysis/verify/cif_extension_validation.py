@@ -42,7 +42,7 @@ def validate_extension(model: sct.SupervisoryControlModel, text: str) -> Verdict
     """
     reading = read_supervised(model, text)
     if reading is None:
-        return Verdict(PROPERTY, Outcome.SKIPPED, "", "the CIF that the model was read from can't be read any more")
+        return Verdict(PROPERTY, Outcome.SKIPPED, "", "the CIF that the model was read from cannot be read any more")
     if reading.model is None:
         finding = reading.findings[0]
         return refuted(PROPERTY, f"{TEXT} is wrong: line {finding.span.line}: {finding.message}")

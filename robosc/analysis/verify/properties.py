@@ -104,7 +104,7 @@ def controllability(system: GuardedSystem) -> Verdict:
     def explanation(relation: EventRelation, _path: Path) -> str:
         parts = ["a requirement"] if relation.requirements else []
         who = " or ".join([*parts, "its guard"] if relation.event in system.guards else parts)
-        return f"{words(relation.event)} can't be prevented, but {who} forbids it here"
+        return f"{words(relation.event)} cannot be prevented, but {who} forbids it here"
 
     evidence = f"{system.size}, {counted(len(uncontrollable), 'uncontrollable event')}"
     return _nowhere("controllability", system, evidence, forbidden, explanation)
@@ -267,7 +267,7 @@ def cancel_when_due(system: GuardedSystem) -> Verdict:
     }
 
     def explanation(cancel: sct.Event, _path: Path) -> str:
-        return f"a requirement on the start of `{name(plant_of(cancel))}` does not hold, and its cancel can't happen"
+        return f"a requirement on the start of `{name(plant_of(cancel))}` does not hold, and its cancel cannot happen"
 
     evidence = f"{system.size}, {counted(len(cancels), 'action')} that requirements cancel"
     return _nowhere("cancel when due", system, evidence, held_back, explanation)
@@ -343,9 +343,9 @@ def _permitted(relation: EventRelation, controlled: Diagram) -> Diagram:
 def _stuck(plants: Sequence[sct.Plant], codes: Codes) -> str:
     """Return a clause about plants that are never marked again, or never all at once if there are none."""
     if not plants:
-        return "the marked states of all components can't be reached together any more"
+        return "the marked states of all components cannot be reached together any more"
     places = (
         f"`{name(plant)}`" + (f" in `{plant.locations[codes[plant]].name}`" if len(plant.locations) > 1 else "")
         for plant in plants
     )
-    return f"{', '.join(places)} can't get back to a marked state"
+    return f"{', '.join(places)} cannot get back to a marked state"

@@ -106,7 +106,7 @@ def open_log(path: str | os.PathLike[str]) -> int:
     if not any(test(found.st_mode) for test in (stat.S_ISREG, stat.S_ISCHR, stat.S_ISFIFO)):
         fault = f"this is {reading.kind(found.st_mode)}, no file for a log"
     elif reading.input_named(found) is not None:
-        fault = "this call has read it: it can't be the log, too"
+        fault = "this call has read it: it cannot be the log, too"
     if fault is not None:
         os.close(descriptor)
         raise OSError(errno.EINVAL, fault, os.fspath(path))
@@ -131,7 +131,7 @@ def _write(trees: Mapping[Path, Mapping[str, str]], signals: _Signals) -> list[P
         for name, text in files.items():
             path = _inside(folder, name)
             if path.is_dir() and not path.is_symlink():
-                raise OutputError(f"{path} is a folder: a file of that name can't be written")
+                raise OutputError(f"{path} is a folder: a file of that name cannot be written")
             if texts.setdefault(path, text) != text:
                 raise OutputError(f"{path} would be written twice, with different texts")
             placed.setdefault(folder, {})[path] = text
@@ -163,7 +163,7 @@ def _inside(folder: Path, name: str) -> Path:
 
 def _refuse_existing(path: Path, found: os.stat_result) -> None:
     if stat.S_ISDIR(found.st_mode):
-        raise OutputError(f"{path} is a folder: a file of that name can't be written")
+        raise OutputError(f"{path} is a folder: a file of that name cannot be written")
     if not stat.S_ISREG(found.st_mode):
         what = "a link" if stat.S_ISLNK(found.st_mode) else reading.kind(found.st_mode)
         raise OutputError(f"{path} is {what}: nothing but a regular file is replaced")
@@ -223,7 +223,7 @@ def _replace(changed: Mapping[Path, Mapping[Path, bytes]], made: ExitStack, sign
         for _, path in moves:
             _make(path.parent, made)
             if not path.parent.is_dir():
-                raise OutputError(f"{path.parent} is no folder: {path.name} can't be written below it")
+                raise OutputError(f"{path.parent} is no folder: {path.name} cannot be written below it")
         signals.check()
         made.pop_all()
         for staged, path in moves:

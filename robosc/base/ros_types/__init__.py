@@ -173,7 +173,7 @@ class RosTypes:
             try:
                 distribution.fields(package, name, section)
             except DefinitionError as fault:
-                return f"the definition of {package}/{name} can't be read: {fault}", REPAIR, None
+                return f"the definition of {package}/{name} cannot be read: {fault}", REPAIR, None
         for other in Section:
             if other.kind != kind and any(known.defines(package, name, other) for known in self.distributions):
                 message = f"{package}/{name} is of kind {other.kind}, expected a type of kind {kind}"

@@ -130,7 +130,7 @@ class ExpressionCheck:
             case rsc.Access():
                 return self._access(expression, types)
             case rsc.ErrorReason() if not self.place.has_reason:
-                self.report(expression, "`error` can't be read here: it is the reason of one `error`", _STORE_REASON)
+                self.report(expression, "`error` cannot be read here: it is the reason of one `error`", _STORE_REASON)
                 return UNKNOWN
             case rsc.ArrayQuantifier():
                 self._quantifier(expression, types)
@@ -256,7 +256,7 @@ class ExpressionCheck:
             )
         if access.value and self.place.value is None:
             return (
-                f"`value` can't be read here: {self.place.why_no_value}",
+                f"`value` cannot be read here: {self.place.why_no_value}",
                 "store it in a variable by `on response from … do variable := value`, and read the variable",
             )
         if isinstance(item, rsc.Component):

@@ -174,7 +174,7 @@ class _Comparison:
         try:
             fields = self._distribution.fields(wire.package, wire.name, Section.MESSAGE)
         except DefinitionError as fault:
-            message = f"the definition of {wire}, the type of `{owner.name}`, can't be read: {fault}"
+            message = f"the definition of {wire}, the type of `{owner.name}`, cannot be read: {fault}"
             yield Fault(owner, message, REPAIR, unknown=True)
             return
         if fields is None:

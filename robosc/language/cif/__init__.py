@@ -95,7 +95,7 @@ class _Files:
                 content = documents.read(file)
             except OSError as error:
                 reason = error.strerror or str(error)
-                fault = CifFaultError(asked, "unresolved-reference", f"the file `{file}` can't be read: {reason}")
+                fault = CifFaultError(asked, "unresolved-reference", f"the file `{file}` cannot be read: {reason}")
                 self.findings.append(fault.finding())
             else:
                 self._parse(file, content)

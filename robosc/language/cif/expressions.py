@@ -123,7 +123,7 @@ class ExpressionReader:
                 self._done.append(self._choice(top, self._done.pop()))
                 return
             case _:
-                raise CifFaultError(token, "syntax", f"`{token.token}` can't stand here")
+                raise CifFaultError(token, "syntax", f"`{token.token}` cannot stand here")
         top.word = "switch:" if top.word == "switch" else word
 
     def _reduce(self, level: int) -> None:

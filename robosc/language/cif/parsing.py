@@ -231,7 +231,7 @@ def _message(found: str, wanted: list[str]) -> str:
         if len(word) < 20 and (word in _RULES or "\\" not in word)
     ]
     shown = f"`{found if len(found) <= 30 else found[:29] + chr(0x2026)}`" if found else "the end of the file"
-    return f"found {shown}, expected {enumeration(dict.fromkeys(told))}" if told else f"{shown} can't stand here"
+    return f"found {shown}, expected {enumeration(dict.fromkeys(told))}" if told else f"{shown} cannot stand here"
 
 
 def _tells(word: str) -> bool:

@@ -193,7 +193,7 @@ class Configuration(_Settings):
     )
     on_withheld: list[str] = Field(
         default=[],
-        description="Messages of the model to send, in this order, when a command's data can't be sent."
+        description="Messages of the model to send, in this order, when a command's data cannot be sent."
         " Without any the robot goes on as it was told last.",
     )
     on_blocked: list[str] = Field(

@@ -70,4 +70,4 @@ def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
 
 
 def _finding(culprit: Any, reason: str, hint: str) -> Diagnostic:
-    return Diagnostic(*place(culprit), Severity.ERROR, "cif", f"this can't be said in CIF: {reason}", hint)
+    return Diagnostic(*place(culprit), Severity.ERROR, "cif", f"this cannot be said in CIF: {reason}", hint)

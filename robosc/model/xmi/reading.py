@@ -110,7 +110,7 @@ class Document:
             self.report(top.span, f"no model of RoboSC has the namespace '{top.namespace}'", f"known are {known}")
         elif top.name not in ROOTS.get(package.name, ()):
             wanted = ", ".join(name for names in ROOTS.values() for name in names)
-            self.report(top.span, f"a file can't hold a {top.name} by itself", f"it may hold {wanted}")
+            self.report(top.span, f"a file cannot hold a {top.name} by itself", f"it may hold {wanted}")
         else:
             return package.getEClassifier(top.name)
         return None
@@ -193,7 +193,7 @@ class Document:
         if value is None:
             literals = ", ".join(literal.name for literal in kind.eLiterals) if isinstance(kind, EEnum) else ""
             hint = f"one of {literals}" if literals else None
-            self.report(where(), f"'{feature.name}' can't be '{text[:80]}'", hint)
+            self.report(where(), f"'{feature.name}' cannot be '{text[:80]}'", hint)
         else:
             _put(element, feature, value)
 
@@ -235,7 +235,7 @@ class _Loading:
                 self._texts[document.name] = content.decode("utf-8", errors="replace")
                 document.build(parse(content, document.name))
             except OSError as error:
-                document.report(START, f"the file can't be read: {error.strerror}")
+                document.report(START, f"the file cannot be read: {error.strerror}")
             except ModelError as error:
                 document.findings += error.diagnostics
             pending += self._referred(document)

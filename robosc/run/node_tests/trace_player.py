@@ -258,7 +258,7 @@ class Incoming:
         if not literals:
             return {}
         wanted = ", ".join(map(str, literals))
-        raise TraceError(f"line {line.number} can't be played: no message is known that the node reads as {wanted}")
+        raise TraceError(f"line {line.number} cannot be played: no message is known that the node reads as {wanted}")
 
 
 def last_index(path: tuple[str, ...]) -> int:
@@ -491,7 +491,7 @@ class Player:
         try:
             return self._sent(lines, position)
         except UNSENDABLE as error:
-            raise TraceError(f"line {lines[position].number}: this can't be sent: {error!r}") from None
+            raise TraceError(f"line {lines[position].number}: this cannot be sent: {error!r}") from None
 
     def _sent(self, lines: list[Line], position: int) -> int:
         line = lines[position]
@@ -539,7 +539,7 @@ class Player:
     @staticmethod
     def _unplayable(server: str, line: Line) -> TraceError:
         why = f"no test server lets {server} fail because {line.reason}"
-        return TraceError(f"line {line.number} can't be played: {why}")
+        return TraceError(f"line {line.number} cannot be played: {why}")
 
     def _batch(self, lines: list[Line], position: int, incoming: Incoming) -> list[Line]:
         """Return the lines of one message: all events of its topic, in order, except unreadable ones."""

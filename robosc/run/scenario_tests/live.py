@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 #: Seconds that a node has to end after an interrupt.
 _PATIENCE = 20.0
 #: Report of the player about a line of the log.
-_DIFFERENCE = re.compile(r"line (\d+)( can't be played)?: (.*)")
+_DIFFERENCE = re.compile(r"line (\d+)( cannot be played)?: (.*)")
 _MISSING = re.compile(r"(?:ModuleNotFound|Import)Error: (.*)")
 #: Number of characters shown of a program's output.
 _SHOWN = 1500
@@ -72,7 +72,7 @@ class LiveNode:
                     message = f"this could not be played over ROS: {said.strip()[-_SHOWN:]}"
                     return scenario.line.fault(message, _end(told))
         line = lines[int(found[1]) - 1] if int(found[1]) <= len(lines) else scenario.line
-        verdict = "this can't be played over ROS" if found[2] else "the node does something else"
+        verdict = "this cannot be played over ROS" if found[2] else "the node does something else"
         return line.fault(f"{verdict}: {found[3].strip()}")
 
     @contextmanager

@@ -119,7 +119,7 @@ def _impossible(line: Incoming, event: sct.Event) -> Iterator[Diagnostic]:
         yield line.fault("only the error of a service or an action has a reason", f"leave out `because {line.reason}`")
     elif line.reason is not None and line.reason not in possible:
         hint = f"possible is {listed([f'`{reason}`' for reason in sorted(possible)])}"
-        yield line.fault(f"the {words(event)} can't have the reason `{line.reason}`", hint)
+        yield line.fault(f"the {words(event)} cannot have the reason `{line.reason}`", hint)
     elif possible and line.data is not None and not brings_data(event, line.reason):
         yield line.fault(f"an error with the reason `{line.reason}` brings no data", "leave out `with …`")
 
@@ -236,7 +236,7 @@ class Player(Drive):
             if event.kind == sct.EventKind.canceled and self._clients[event] in self._robot.goals:
                 hint = f"write `error from {self._called(event)} because canceled`"
                 raise NamingError("the controller has not canceled this goal", hint)
-            raise NamingError(f"the {words(event)} can't come now: nothing that it ends is under way", "")
+            raise NamingError(f"the {words(event)} cannot come now: nothing that it ends is under way", "")
         if event.kind == sct.EventKind.error:
             self._fail(event, line)
         elif line.data is None and event.kind == sct.EventKind.canceled:
@@ -376,7 +376,7 @@ class Player(Drive):
                 is_excluded = False
         if is_excluded:
             hint = "an accepted goal fails with `aborted`, `canceled`, `lost` or `unreadable`"
-            raise NamingError(f"the goal has been accepted: it can't fail with `{reason}`", hint)
+            raise NamingError(f"the goal has been accepted: it cannot fail with `{reason}`", hint)
 
     def _give_up(self, client: Client, reason: Failure, result: Any = None) -> None:
         """Report a failure from the node's client of a service or action."""
@@ -462,7 +462,7 @@ class Player(Drive):
             return None
         unknown = _first_unknown(line.data, sent[-1], self._handed_on(event))
         if unknown:
-            message = f"`{unknown}` of the {told} can't be compared: it is handed on as it came"
+            message = f"`{unknown}` of the {told} cannot be compared: it is handed on as it came"
             return line.fault(message, "leave it out: times and fields of unknown definitions are not compared")
         return line.fault(f"the {told} was sent with other data", f"sent was {json_text(sent[-1])}")
 

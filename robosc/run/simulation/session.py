@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 HELP = """\
 NUMBER or EVENT, with data in JSON where it carries some: let it happen, as in  1 {"value": 3}
 or in the words of a scenario:  error from dock because timeout
-  e          what can happen now      d          what can't, and why
+  e          what can happen now      d          what cannot, and why
   s          the state                u          undo
   r [N]      N random events          t          what has happened
   save FILE  the trace to a file      load FILE  play a trace or script

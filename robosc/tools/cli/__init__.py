@@ -34,7 +34,7 @@ _COMMANDS = {
     "check": "Say what is wrong with models.",
     "transform": "Generate code and models.",
     "synthesize": "Show the supervisor.",
-    "explain": "Say why something can't happen.",
+    "explain": "Say why something cannot happen.",
     "verify": "Prove what the supervised robot promises.",
     "report": "Write what one reads who must sign for the robot.",
     "test": "Play scenarios, and say what is not as they expect.",
@@ -212,5 +212,5 @@ def run() -> NoReturn:
         pass  # the reader needs no more output
     except OSError as error:
         status = WRONG_CALL
-        say(f"Error: the output can't be written: {error.strerror}", err=True)
+        say(f"Error: the output cannot be written: {error.strerror}", err=True)
     os._exit(INTERRUPTED if interruption.happened() else status)

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 @click.command("explain")
 @model
-@click.option("--event", metavar="EVENT", help="Why EVENT can or can't happen in a state.")
+@click.option("--event", metavar="EVENT", help="Why EVENT can or cannot happen in a state.")
 @click.option(
     "--state",
     metavar="STATE",

@@ -178,7 +178,7 @@ def _settings(model: str, chosen: str | None, typed_state: bool, into: str | Non
     settings = settings.model_copy(update={"typed_state": typed_state or settings.typed_state})
     if into and settings.typed_state:
         message = (
-            "what a package of yours includes can't have a typed state: a message is built before the node that sends"
+            "what a package of yours includes cannot have a typed state: a message is built before the node that sends"
             " it, in a package of its own"
         )
         hint = "leave the typed state out, or --into: without it both packages are written"

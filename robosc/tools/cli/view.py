@@ -79,7 +79,7 @@ def command(
     if sum([live, log is not None, refuted is not None]) > 1:
         raise click.UsageError("--ros2, --log and --trace exclude each other")
     if live and folder is not None:
-        raise click.UsageError("a robot that runs can't be exported: record it, and export the recording with --log")
+        raise click.UsageError("a robot that runs cannot be exported: record it, and export the recording with --log")
     if len(models) > 1 and {node, log, refuted, folder} != {None}:
         raise click.UsageError("--node, --log, --trace and --export are for one model")
     try:

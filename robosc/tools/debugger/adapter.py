@@ -39,7 +39,7 @@ _HELP = """\
 EVENT [JSON]  let an event happen, with data: move, Lidar.scan {"value": "clear"}, message_move.c_trigger
 STEP          a step of a scenario: response from scan with clear, error from lift because timeout
 wait SECONDS  let time go by
-why EVENT     why an event can't happen here, and what would help
+why EVENT     why an event cannot happen here, and what would help
 NAME          a component's state, a variable's value, whether a state is the present one: Lidar, Lidar.free"""
 #: Requests that are allowed while the robot runs.
 _WHILE_RUNNING = (
@@ -248,7 +248,7 @@ class Adapter:
             raise RequestError("there is no such target")
         event = run.replay.engine.events[target]
         if event not in enabled:
-            raise RequestError(f"{event} can't happen here")
+            raise RequestError(f"{event} cannot happen here")
         moment = run.replay.inject(event, {})
         return None, lambda: self._injected(run, [moment])
 
@@ -612,7 +612,7 @@ def _data(text: str, event: sct.Event) -> Mapping[str, Any]:
     try:
         data = json_value(text)
     except JsonError as error:
-        raise RequestError(f'the data can\'t be read: {error}; write {{"value": ...}}') from None
+        raise RequestError(f'the data cannot be read: {error}; write {{"value": ...}}') from None
     known = {"value", "where", *(["reason"] if possible_reasons(event) else [])}
     return data if isinstance(data, dict) and set(data) <= known else {"value": data}
 

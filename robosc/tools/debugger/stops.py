@@ -21,7 +21,7 @@ REFUSED, FORBIDDEN, STUCK = "refused", "forbidden", "stuck"
 FILTERS = [
     {
         "filter": REFUSED,
-        "label": "An event that can't happen",
+        "label": "An event that cannot happen",
         "description": "Stops where the script asks for an event that the robot or the supervisor does not let happen.",
         "default": True,
     },

@@ -116,7 +116,7 @@ def _require_same(
         for file in found.reading.files.values():
             skipped = (file.text.content[start:end] for start, end in file.skipped)
             if any(re.search(rf"\b{re.escape(word)}\b", part) for part in skipped):
-                raise _refused(f"mend {file.text.file} first: `{word}` stands in what can't be read")
+                raise _refused(f"mend {file.text.file} first: `{word}` stands in what cannot be read")
     by_path = {Path(name).resolve(): changes for name, changes in edits.items()}
     after = snapshot.edited(by_path)
     for path, found in analyses.items():

@@ -50,11 +50,11 @@ class Choices:
     def fault(self) -> str | None:
         """Return the fault of a name with a hint, or None if all names are valid."""
         if not _ROBOT.fullmatch(self.name):
-            return f"`{self.name}` can't name a robot: letters, digits and single `_` can, such as `Porter`"
+            return f"`{self.name}` cannot name a robot: letters, digits and single `_` can, such as `Porter`"
         names = [*self.sensors, *self.commands, *([self.service] if self.service else [])]
         for name in names:
             if not _COMMUNICATION.fullmatch(name):
-                return f"`{name}` can't name a message or service: small letters, digits and single `_` can"
+                return f"`{name}` cannot name a message or service: small letters, digits and single `_` can"
             if name in ROBOSC_KEYWORDS:
                 return f"`{name}` is a word of the language: take another name"
         twice = next((name for name in names if names.count(name) > 1), None)

@@ -44,7 +44,7 @@ class Live(Moments):
             if json.dumps(json_value(text), sort_keys=True) != self._definition:
                 self._faults["definition"] = "The node runs another version of the model: what is shown may be wrong."
         except JsonError as error:
-            self._faults["definition"] = f"What the node tells of its model can't be read: {error}."
+            self._faults["definition"] = f"What the node tells of its model cannot be read: {error}."
         self._tracker.begin()
         self._say()
 
@@ -54,7 +54,7 @@ class Live(Moments):
             report = json_value(text)
             followed = self._tracker.report(report)
         except (JsonError, ReportError) as error:
-            self._faults["state"] = f"What the node tells can't be shown: {error}."
+            self._faults["state"] = f"What the node tells cannot be shown: {error}."
             self._say()
             return
         self._faults.pop("state", None)

@@ -23,8 +23,8 @@ from tests.run.runtime.fake import FakePort, supervised
 
 PORTER = Path(__file__).parent / "porter.rscd"
 WHY = (
-    "after request to `Door.open`, then request to `Base.enter`, response from `Door.closed` can't be prevented, and"
-    " then `Base` can't get back to a marked state"
+    "after request to `Door.open`, then request to `Base.enter`, response from `Door.closed` cannot be prevented, and"
+    " then `Base` cannot get back to a marked state"
 )
 
 

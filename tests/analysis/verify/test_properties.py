@@ -42,7 +42,7 @@ def door() -> Any:
 def test_blocking() -> None:
     made = model([door()], guards={})
     assert refuted(made, "non-blocking") == (
-        "`door` in `jammed` can't get back to a marked state",
+        "`door` in `jammed` cannot get back to a marked state",
         ["door.c_trigger", "door.u_error"],
         [],
         [],
@@ -62,13 +62,13 @@ def test_blocking_together() -> None:
         guards={},
     )
     explanation, *_ = refuted(made, "non-blocking")
-    assert explanation == "the marked states of all components can't be reached together any more"
+    assert explanation == "the marked states of all components cannot be reached together any more"
 
 
 def test_a_requirement_on_what_can_not_be_prevented() -> None:
     made = model([door()], [disables("u_error", "door.open")], guards={})
     assert refuted(made, "controllability") == (
-        "error from `door` can't be prevented, but a requirement forbids it here",
+        "error from `door` cannot be prevented, but a requirement forbids it here",
         ["door.c_trigger"],
         [],
         [],
@@ -81,7 +81,7 @@ def test_a_guard_on_what_can_not_be_prevented() -> None:
     reference = sct.LocationReference(location=made.plants[0].locations[0])
     made.supervisor.guards.append(sct.EventGuard(event=event, requirement=reference, everEnabled=True))
     assert refuted(made, "controllability") == (
-        "error from `door` can't be prevented, but its guard forbids it here",
+        "error from `door` cannot be prevented, but its guard forbids it here",
         ["door.c_trigger"],
         [],
         [],
@@ -193,7 +193,7 @@ def test_a_cancel_that_is_due_can_happen() -> None:
     found = verdict(due, "cancel when due")
     assert (found.outcome, found.evidence) == (Outcome.PROVED, "4 states, 1 action that requirements cancel")
     assert refuted(driving(requirement="false", synthesis="true"), "cancel when due") == (
-        "a requirement on the start of `drive` does not hold, and its cancel can't happen",
+        "a requirement on the start of `drive` does not hold, and its cancel cannot happen",
         ["drive.c_trigger", "way.u_error"],
         [],
         [],
@@ -226,7 +226,7 @@ def test_a_livelock() -> None:
     )
     assert refuted(made, "bounded response")[0] == "silent events need not come to rest: see finite response"
     assert refuted(made, "non-blocking in the control loop") == (
-        "`lamp` in `on` can't get back to a marked state",
+        "`lamp` in `on` cannot get back to a marked state",
         ["lamp.c_trigger"],
         [],
         [],
@@ -433,7 +433,7 @@ def test_what_waits_for_silent_events_may_wait_for_ever() -> None:
     made = model([plant("arm", arm, controllable=["c_trigger", "c_tau1"], uncontrollable=["u_response"])], guards={})
     assert verdict(made, "non-blocking").outcome is Outcome.PROVED
     assert refuted(made, "non-blocking in the control loop") == (
-        "`arm` in `out` can't get back to a marked state",
+        "`arm` in `out` cannot get back to a marked state",
         ["arm.c_trigger"],
         [],
         [],

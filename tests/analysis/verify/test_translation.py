@@ -298,7 +298,7 @@ def test_what_cannot_be_generated_is_skipped() -> None:
     made.plants[2].variables[0].type.maximum = 2**31 - 2
     verdicts = validate(Models(supervised(made)), Configuration())
     assert verdicts[-1].outcome is Outcome.SKIPPED
-    assert "this can't be said in CIF" in verdicts[-1].explanation
+    assert "this cannot be said in CIF" in verdicts[-1].explanation
 
 
 IN_MODEL = "can happen in the model and not in the generated CIF"

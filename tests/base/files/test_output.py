@@ -295,7 +295,7 @@ def test_inputs_are_not_written_over(tmp_path: Path) -> None:
         with pytest.raises(OutputError, match=r"link\.rscd was read by this call, as .*model\.rscd"):
             write_file(tmp_path / "link.rscd", "2")
         write({tmp_path: {"model.rscd": "robot R {}"}})
-        with pytest.raises(OSError, match="can't be the log"):
+        with pytest.raises(OSError, match="cannot be the log"):
             open_log(tmp_path / "link.rscd")
     assert tree(tmp_path) == before
     write_file(tmp_path / "link.rscd", "2")

@@ -202,7 +202,7 @@ def test_the_written_specification_imports_its_own_from_where_it_is(specificatio
     assert 'import "../../motor.cif";' in written.read_text()
     checked = CliRunner().invoke(main, ["check", str(written)])
     # All that it says is in reach: supervisors are what our synthesis does not take.
-    assert "can't be read" not in checked.output
+    assert "cannot be read" not in checked.output
     assert "synthesis does not take supervisor automata" in checked.output
 
 

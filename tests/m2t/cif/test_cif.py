@@ -305,7 +305,7 @@ def test_what_cannot_be_said_is_an_error_at_its_place(given: sct.SupervisoryCont
         return
     [finding] = found
     assert (finding.file, finding.span, finding.rule) == ("robot.rscd", Span(7, 5, 8, 9), "cif")
-    assert (finding.severity, finding.message) == (Severity.ERROR, f"this can't be said in CIF: {message}")
+    assert (finding.severity, finding.message) == (Severity.ERROR, f"this cannot be said in CIF: {message}")
 
 
 def test_what_cannot_be_said_in_a_guard_stands_at_its_event() -> None:
@@ -325,7 +325,7 @@ def test_what_cannot_be_said_in_a_guard_stands_at_its_event() -> None:
 def test_expressions_of_too_large_a_number_draw_nothing_further() -> None:
     given = expression("a + 3 > 3", a="-2..2147483646")
     assert [precondition.message for precondition in cif.preconditions(Models(given), Configuration())] == [
-        "this can't be said in CIF: its range does not fit 32 bits"
+        "this cannot be said in CIF: its range does not fit 32 bits"
     ]
 
 

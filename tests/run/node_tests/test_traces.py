@@ -209,7 +209,7 @@ def test_what_can_not_be_played_is_said(case: Case) -> None:
     line = case.trace[number - 1]
     del line["message"]
     line["data"]["value"] = "foggy"
-    with pytest.raises(TraceError, match=f"line {number} can't be played: no message is known .* as foggy"):
+    with pytest.raises(TraceError, match=f"line {number} cannot be played: no message is known .* as foggy"):
         case.play()
 
 
@@ -241,7 +241,7 @@ def test_an_error_has_its_reason_and_its_result(
 def test_a_reason_that_no_server_brings_about(case: Case, reason: str) -> None:
     failed = {"direction": "in", "event": "action_go.u_error", "data": {"value": {"code": 0}, "reason": reason}}
     case.traces = [[case.trace[0], case.trace[0] | failed]]
-    with pytest.raises(TraceError, match=f"line 2 can't be played: no test server lets /go fail because {reason}"):
+    with pytest.raises(TraceError, match=f"line 2 cannot be played: no test server lets /go fail because {reason}"):
         case.play()
 
 
@@ -256,7 +256,7 @@ def test_a_call_fails_for_its_reason(case: Case, reason: str) -> None:
     if reason == "timeout":
         case.play()
         return
-    fault = f"line {before + 2} can't be played: no test server lets /lift fail because {reason}"
+    fault = f"line {before + 2} cannot be played: no test server lets /lift fail because {reason}"
     with pytest.raises(TraceError, match=fault):
         case.play()
 

@@ -133,7 +133,7 @@ def test_a_pause_follows_a_failure() -> None:
 def test_a_late_answer_after_a_lost_goal_changes_nothing() -> None:
     text = 'scenario "one"\n  error from go because lost\n  response from go\n  expect Base.unknown\n'
     ((line, message, _),) = findings(text)
-    assert (line, "can't come now" in message) == (3, True)
+    assert (line, "cannot come now" in message) == (3, True)
 
 
 @pytest.mark.parametrize(
@@ -141,12 +141,12 @@ def test_a_late_answer_after_a_lost_goal_changes_nothing() -> None:
     [
         (
             "error from go because failed",
-            "the error from `Base.go` can't have the reason `failed`",
+            "the error from `Base.go` cannot have the reason `failed`",
             "`aborted`, `canceled`, `lost`",
         ),
         (
             "error from lift because lost",
-            "the error from `Base.lift` can't have the reason `lost`",
+            "the error from `Base.lift` cannot have the reason `lost`",
             "`failed`, `timeout`, `unavailable` and `unreadable`",
         ),
         (
@@ -188,7 +188,7 @@ def test_steps_that_cannot_be(step: str, message: str, hint: str) -> None:
 @pytest.mark.parametrize(
     ("steps", "message"),
     [
-        ("feedback from go\n  error from go because rejected", "the goal has been accepted: it can't fail with `rej"),
+        ("feedback from go\n  error from go because rejected", "the goal has been accepted: it cannot fail with `rej"),
         ("feedback from go\n  wait 10 s\n  error from go because unavailable", "the goal has been accepted"),
         ("feedback from go\n  wait 10 s\n  error from go because timeout", "the goal has been accepted"),
         # It was accepted after the time for that was over.
@@ -236,7 +236,7 @@ def test_a_second_goal_is_accepted_anew() -> None:
             "",
         ),
         ("canceled from go", "the controller has not canceled this goal", "write `error from go because canceled`"),
-        ("error from lift", "the error from `Base.lift` can't come now: nothing that it ends is under way", ""),
+        ("error from lift", "the error from `Base.lift` cannot come now: nothing that it ends is under way", ""),
         ("refuse cancel of go", "`go` is not being canceled", ""),
         (
             "stop with true\n  error from go because canceled",

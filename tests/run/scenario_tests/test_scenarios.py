@@ -210,7 +210,7 @@ def test_what_can_not_come() -> None:
     text = f'scenario "one"\n{failing}scenario "two"\n  expect Dock.docked\n'
     told = findings(text)
     assert [line for line, _, _ in told] == [3, 6]
-    assert told[0][2].endswith("can't come now: nothing that it ends is under way")
+    assert told[0][2].endswith("cannot come now: nothing that it ends is under way")
 
 
 def test_all_faults_are_told_in_one_run() -> None:

@@ -106,10 +106,10 @@ def test_nothing_is_written_over(run: Run, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("call", "said"),
     [
-        (["../up"], "can't name a robot"),
-        (["4wd"], "can't name a robot"),
-        (["Porter", "--command", "Drive"], "can't name a message or service"),
-        (["Porter", "--sensor", "a__b"], "can't name a message or service"),
+        (["../up"], "cannot name a robot"),
+        (["4wd"], "cannot name a robot"),
+        (["Porter", "--command", "Drive"], "cannot name a message or service"),
+        (["Porter", "--sensor", "a__b"], "cannot name a message or service"),
         (["Porter", "--command", "goto"], "is a word of the language"),
         (["Porter", "--command", "clear"], "`clear` names two things"),
         (["Porter", "--sensor", "a_1", "--sensor", "a1"], "is too like another name"),

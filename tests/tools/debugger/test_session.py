@@ -96,9 +96,9 @@ def test_a_script_step_by_step(program: Program, yard: Path) -> None:
     stopped = session.go("next")
     assert stopped["reason"] == "exception"
     told = session.do("exceptionInfo", threadId=1)["description"]
-    assert told == "request to `Cart.go` can't happen: the robot is not ready for it"
+    assert told == "request to `Cart.go` cannot happen: the robot is not ready for it"
     assert session.go()["description"] == (
-        "request to `Gate.open` can't happen: forbidden by requirement open needs Cart.standing and Gate.carts < 2"
+        "request to `Gate.open` cannot happen: forbidden by requirement open needs Cart.standing and Gate.carts < 2"
     )
     session.do("continue", threadId=1)
     assert session.event("exited") == {"exitCode": 0}
@@ -212,13 +212,13 @@ def test_what_is_seen(session: Client, yard: Path) -> None:
         "component_Gate.u_after1",
         "message_go.c_trigger",
     ]
-    blocked = session.scope("Can't happen")
+    blocked = session.scope("Cannot happen")
     assert blocked["message_stop.c_trigger"]["value"] == "the robot is not ready for it"
     # As `explain` tells it: the part of the requirement that fails, and what would help.
     session.console("go")
     session.console("wait 2.5")
     session.console("stop")
-    reason = session.scope("Can't happen")[GO]
+    reason = session.scope("Cannot happen")[GO]
     assert reason["value"] == "forbidden by requirement SR1: go needs Gate.ajar"
     why = session.children(reason)
     (requirement,) = [reason for name, reason in why.items() if name.endswith(f":{line('requirement SR1')}:3")]
@@ -239,12 +239,12 @@ def test_synthesis_as_the_reason(session: Client, tmp_path: Path) -> None:
     (tmp_path / "porter.rscd").write_text(text.partition("```")[0])
     session.launch("porter.rscd")
     session.console("open")
-    reason = session.scope("Can't happen")["message_enter.c_trigger"]
+    reason = session.scope("Cannot happen")["message_enter.c_trigger"]
     assert reason["value"].startswith("forbidden by synthesis, which asks for component_Door.held; otherwise, after")
     why = session.children(reason)
-    assert "`Base` can't get back to a marked state" in why["otherwise"]["value"]
+    assert "`Base` cannot get back to a marked state" in why["otherwise"]["value"]
     assert why["would help"]["value"] == "`Door` goes from `ajar` to `held` by request to `Door.hold`"
-    assert "The request to `Base.enter` can't happen here: no requirement forbids it" in session.console("why enter")
+    assert "The request to `Base.enter` cannot happen here: no requirement forbids it" in session.console("why enter")
 
 
 def test_the_debug_console(session: Client, yard: Path) -> None:
@@ -262,8 +262,8 @@ def test_the_debug_console(session: Client, yard: Path) -> None:
     assert session.do("evaluate", expression="Cart", context="hover")["result"] == "standing"
     assert "is no component" in session.refused("evaluate", expression="open", context="hover")
     refusals = {
-        "open": "request to `Gate.open` can't happen: the robot is not ready for it",
-        "seen {": "the data can't be read: not JSON",
+        "open": "request to `Gate.open` cannot happen: the robot is not ready for it",
+        "seen {": "the data cannot be read: not JSON",
         'seen "many"': 'value is "many", expected an integer',
         "opne": "there is no event `opne`; did you mean `open`?",
         "wait long": "`wait` needs a number of seconds",
@@ -300,7 +300,7 @@ def test_a_script_in_the_words_of_scenarios(session: Client, tmp_path: Path) -> 
     told = [session.go("next")["description"] for _ in steps]
     assert told == [
         "request to `Base.go`",
-        "refusal to cancel `Base.go` can't happen: its goal is not being canceled",
+        "refusal to cancel `Base.go` cannot happen: its goal is not being canceled",
         "response from `Button.stop`",
         "cancel of `Base.go`",
         "refusal to cancel `Base.go`",
@@ -315,7 +315,7 @@ def test_the_debug_console_takes_steps_of_scenarios(session: Client) -> None:
     session.launch(CRANE)
     session.console("request to go")
     refusals = {
-        "refuse cancel of go": "refusal to cancel `Base.go` can't happen: its goal is not being canceled",
+        "refuse cancel of go": "refusal to cancel `Base.go` cannot happen: its goal is not being canceled",
         "error from go because failed": 'the reason is "failed", expected one of aborted, canceled, lost',
         "error from og": "there is no event `og.error`",
         "error from": "there is no event `error`",
@@ -334,7 +334,7 @@ def test_a_step_into_a_chosen_event(session: Client, yard: Path) -> None:
     assert list(targets) == ["message_seen.u_response", "message_open.c_trigger"]
     stopped = session.go("stepIn", targetId=targets["message_open.c_trigger"])
     assert stopped["description"] == "request to `Gate.open`"
-    assert "can't happen here" in session.refused("stepIn", targetId=targets["message_open.c_trigger"])
+    assert "cannot happen here" in session.refused("stepIn", targetId=targets["message_open.c_trigger"])
     assert session.refused("stepIn", targetId=99) == "there is no such target"
 
 

@@ -91,7 +91,7 @@ def test_a_name_that_another_one_would_take_is_refused(project: Project, tmp_pat
 def test_what_can_not_be_read_is_no_basis(project: Project, tmp_path: Path) -> None:
     text = ROBOT.replace("drive with 0.5", "drive wth Door.open")
     project.put((tmp_path / "cart.rscd").as_uri(), 2, text)
-    with pytest.raises(JsonRpcException, match=r"mend .*cart\.rscd first: `drive` stands in what can't be read"):
+    with pytest.raises(JsonRpcException, match=r"mend .*cart\.rscd first: `drive` stands in what cannot be read"):
         renamed(project, text, "drive needs", "go")
 
 

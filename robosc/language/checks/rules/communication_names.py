@@ -53,7 +53,7 @@ def _describe(port: PortInstance) -> str:
 def _new_name(first: PortInstance, second: PortInstance, base: rsc.Base) -> Hint:
     own = [port for port in (second, first) if port.instance.unit is base]
     if not own:
-        return "import only one of these components: names that come from libraries can't be changed here"
+        return "import only one of these components: names that come from libraries cannot be changed here"
     name = own[0].communication.name
     new = f"{name}_2" if first.instance is second.instance else f"{name}_{own[0].instance.name.lower()}"
     renamed = own[0].communication

@@ -65,7 +65,7 @@ def indistinct_commands(base: rsc.Base) -> Iterator[Finding]:
             yield Finding(
                 _place(second),
                 f"{_described(first)} and {_described(second)} go to the topic `{_name(second)}` and {why}: the robot"
-                " can't tell them apart",
+                " cannot tell them apart",
                 f"provide other data with `{written(second.communication.name)}`, or use one message for both",
                 related=first.communication,
             )

@@ -199,7 +199,7 @@ def _build(package: _Package, packages: Mapping[str, _Package], out: Path, work:
     try:
         _generate(package, packages, out, work)
     except Exception as error:
-        raise BuildError(f"the generators of ROS 2 can't make modules of {name}: {error}") from error
+        raise BuildError(f"the generators of ROS 2 cannot make modules of {name}: {error}") from error
     generated = [work / generator for generator in ("rosidl_generator_c", "rosidl_typesupport_c", *SUPPORTS)]
     folders = [*generated, out, sysconfig.get_path("include"), numpy.get_include()]
     folders += [*sorted((PREFIX / "include").iterdir()), PREFIX / "include"]
