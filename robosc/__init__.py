@@ -213,7 +213,7 @@ def generate(
     if known[target].needs_graph and models.rosgraph is None:
         raise ValueError(f"{target} needs the ROS graph")
     if into is not None and not known[target].can_be_included:
-        raise ValueError(f"{target} is no code that could become part of {into}")
+        raise ValueError(f"{target} is not code that could become part of {into}")
     configuration = configuration or Configuration()
     made = known[target]
     with together():

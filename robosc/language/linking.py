@@ -244,7 +244,7 @@ class Linker:
         if found is not None and found.parameters:
             element.definition = found
         elif found is not None:
-            message = f"component `{name.text}` is no template: it has no parameters"
+            message = f"component `{name.text}` is not a template: it has no parameters"
             self._report(name, message, _OWN_TEXT, rule="argument")
         elif not self._file.may_declare(name.text, Declared.COMPONENT, imported=False):
             templates = [component.name for component in components.values() if component.parameters]

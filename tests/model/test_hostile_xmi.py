@@ -38,13 +38,13 @@ CHANGES = {
         ROBOT,
         r'(<communicationTypes [^>]*component="//@definitions)\.7"',
         r'\1.4"',
-        "'move' is no communication of 'LineDetector'",
+        "'move' is not a communication of 'LineDetector'",
     ),
     "state of another component": (
         ROBOT,
         r'(component="//@definitions)\.5" (item="//@definitions.5/)',
         r'\1.4" \2',
-        "is no state or variable of 'LineDetector'",
+        "is not a state or variable of 'LineDetector'",
     ),
     "target in another component": (
         ROBOT,
@@ -56,19 +56,19 @@ CHANGES = {
         "Warehouse.robosc.xmi",
         r'property="//@definitions.4/@properties.0"',
         'property="//@definitions.5/@properties.0"',
-        "'x' is no property of object Scan",
+        "'x' is not a property of object Scan",
     ),
     "property of an array": (
         ROBOT,
         r'(<segments xsi:type="robosc:PropertySegment" [^>]*/>)',
         r"\1\1",
-        "'ranges' is no property of array",
+        "'ranges' is not a property of array",
     ),
     "component of another library": (
         ROBOT,
         r'(<library [^>]*href=")EmergencyStopLibrary',
         r"\1TurtlebotLibrary",
-        "is no component of TurtlebotLibrary",
+        "is not a component of TurtlebotLibrary",
     ),
     "component from itself": (
         "EmergencyStopLibrary.robosc.xmi",
@@ -154,7 +154,7 @@ OF_TEMPLATES = {
     "no template": (
         r'(InstantiatedComponent" [^>]*definition="//@definitions)\.0"',
         r'\1.2"',
-        "'Y' is no template",
+        "'Y' is not a template",
     ),
     "template without text": (
         r'name="X">',

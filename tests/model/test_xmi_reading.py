@@ -167,16 +167,16 @@ def test_all_findings_come_at_once(write: Any) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "1:1: this is no well-formed XML: no element found"),
-        ("robot R {}", "1:1: this is no well-formed XML: syntax error"),
-        (HEAD + PLANT, "10:1: this is no well-formed XML: no element found"),
-        (HEAD + "<plants name=p/>" + TAIL, "3:14: this is no well-formed XML: not well-formed (invalid token)"),
-        (HEAD + "<plants></plant>" + TAIL, "3:11: this is no well-formed XML: mismatched tag"),
-        (HEAD + "<x:plants/>" + TAIL, "3:1: this is no well-formed XML: unbound prefix"),
-        (HEAD.encode() + b"<!-- \xff -->", "3:6: this is no text in UTF-8"),
-        ("ü".encode("utf-16"), "1:1: this is no text in UTF-8"),
-        (bytes(range(128)), "1:1: this is no well-formed XML: not well-formed (invalid token)"),
-        (HEAD + "<!-- ü --> \0", "3:12: this is no well-formed XML: not well-formed (invalid token)"),
+        ("", "1:1: this is not well-formed XML: no element found"),
+        ("robot R {}", "1:1: this is not well-formed XML: syntax error"),
+        (HEAD + PLANT, "10:1: this is not well-formed XML: no element found"),
+        (HEAD + "<plants name=p/>" + TAIL, "3:14: this is not well-formed XML: not well-formed (invalid token)"),
+        (HEAD + "<plants></plant>" + TAIL, "3:11: this is not well-formed XML: mismatched tag"),
+        (HEAD + "<x:plants/>" + TAIL, "3:1: this is not well-formed XML: unbound prefix"),
+        (HEAD.encode() + b"<!-- \xff -->", "3:6: this is not text in UTF-8"),
+        ("ü".encode("utf-16"), "1:1: this is not text in UTF-8"),
+        (bytes(range(128)), "1:1: this is not well-formed XML: not well-formed (invalid token)"),
+        (HEAD + "<!-- ü --> \0", "3:12: this is not well-formed XML: not well-formed (invalid token)"),
     ],
 )
 def test_no_xml(write: Any, text: str | bytes, message: str) -> None:

@@ -98,7 +98,7 @@ def test_another_synthesizer_finds_as_many_states(installed: Path) -> None:
 def test_a_synthesizer_that_is_not_installed() -> None:
     done = CliRunner().invoke(main, ["synthesize", str(LINE_FOLLOWER), "--synthesizer", "none_such"])
     assert done.exit_code == 2
-    assert "'none_such' is no synthesizer that is installed" in done.stderr
+    assert "'none_such' is not a synthesizer that is installed" in done.stderr
 
 
 @pytest.fixture
@@ -129,8 +129,8 @@ TARGETS = {
     "x = (": "SyntaxError",
     "def generate(models, configuration):\n    return {}\n": "`robosc_broken` has no function `preconditions`",
     f"{TARGET}return {{}}['x']\n": "KeyError: 'x'",
-    f"{TARGET}return {{'../out': ''}}\n": "it gives '../out', which is no relative path with a text",
-    f"{TARGET}return {{'file': b''}}\n": "it gives 'file', which is no relative path with a text",
+    f"{TARGET}return {{'../out': ''}}\n": "it gives '../out', which is not a relative path with a text",
+    f"{TARGET}return {{'file': b''}}\n": "it gives 'file', which is not a relative path with a text",
 }
 
 

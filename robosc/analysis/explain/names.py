@@ -159,7 +159,9 @@ def _pairs(model: sct.SupervisoryControlModel, given: str) -> list[tuple[str, An
     for pair in given.split(","):
         name, equals, chosen = pair.partition("=")
         if not equals:
-            raise NamingError(f"`{pair.strip()}` is no part of a state", "write `Component=state,Component.variable=3`")
+            raise NamingError(
+                f"`{pair.strip()}` is not part of a state", "write `Component=state,Component.variable=3`"
+            )
         pairs.append((name.strip(), chosen.strip()))
     return pairs
 

@@ -52,7 +52,7 @@ def read(text: str) -> Specification:
     """Return the specification of a text. Raises CifError."""
     strange = next((place for place, character in enumerate(text) if not character.isascii()), None)
     if strange is not None:
-        raise CifError(f"{_place(text, strange)}: {text[strange]!a} is no ASCII")
+        raise CifError(f"{_place(text, strange)}: {text[strange]!a} is not ASCII")
     try:
         return _Reading(_grammar().model_from_str(text), text).specification()
     except textx.TextXSyntaxError as fault:
@@ -200,7 +200,7 @@ class _Reading:
                 return ex.IntegerType(minimum=low, maximum=high)
         enumeration = self._find(read.enumeration, automaton)
         if not isinstance(enumeration, ex.Enumeration):
-            self._fail(read, f"'{read.enumeration.text}' is no enumeration")
+            self._fail(read, f"'{read.enumeration.text}' is not an enumeration")
         return ex.EnumerationType(enumeration=enumeration)
 
     def _number(self, digits: str, read: Any) -> int:
@@ -264,16 +264,16 @@ class _Reading:
         self._annotated(read)
         target = self._find(read.target, automaton) if read.target else location
         if not isinstance(target, sct.Location) or target.eContainer() is not automaton:
-            self._fail(read.target, f"'{read.target.text}' is no location of '{automaton.name}'")
+            self._fail(read.target, f"'{read.target.text}' is not a location of '{automaton.name}'")
         edge = sct.Edge(event=self._event(read.event, automaton), target=target)
         if read.guard:
             edge.guard = self._condition(read.guard, automaton)
         for update in read.updates:
             variable = self._find(update.variable, automaton)
             if not isinstance(variable, sct.DiscreteVariable):
-                self._fail(update, f"'{update.variable.text}' is no variable")
+                self._fail(update, f"'{update.variable.text}' is not a variable")
             if variable.eContainer() is not automaton:
-                self._fail(update, f"'{update.variable.text}' is no variable of '{automaton.name}'")
+                self._fail(update, f"'{update.variable.text}' is not a variable of '{automaton.name}'")
             if any(variable is other.variable for other in edge.updates):
                 self._fail(update, f"'{update.variable.text}' is assigned twice")
             value, kind = self._expression(update.value, automaton, assigned=True)
@@ -306,7 +306,7 @@ class _Reading:
     def _event(self, read: Any, automaton: sct.Plant | None) -> sct.Event:
         event = self._find(read, automaton)
         if not isinstance(event, sct.Event):
-            self._fail(read, f"'{read.text}' is no event")
+            self._fail(read, f"'{read.text}' is not an event")
         return event
 
     def _find(self, read: Any, automaton: sct.Plant | None) -> Any:
@@ -357,7 +357,7 @@ class _Reading:
     def _reference(self, read: Any, automaton: sct.Plant | None, *, constant: bool) -> tuple[ex.Expression, types.Type]:
         element = self._find(read.name, automaton)
         if constant and not isinstance(element, ex.EnumerationLiteral):
-            self._fail(read, f"'{read.name.text}' is no constant")
+            self._fail(read, f"'{read.name.text}' is not a constant")
         match element:
             case sct.DiscreteVariable():
                 return sct.VariableReference(variable=element), self._types[element]

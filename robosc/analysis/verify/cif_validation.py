@@ -182,7 +182,7 @@ class _Comparison:
         assert counterpart.initial is not None
         value = arithmetic.value_of(theirs.vector(counterpart.initial))
         if value is None:
-            raise CifError(f"the initial value of '{counterpart.name}' is no constant")
+            raise CifError(f"the initial value of '{counterpart.name}' is not a constant")
         return value - smallest(counterpart)
 
     def _differences(self, system: GuardedSystem, theirs: Encoding) -> Iterator[_Difference]:

@@ -155,7 +155,7 @@ def _inside(folder: Path, name: str) -> Path:
     relative = PurePosixPath(name)
     path = folder / relative
     if relative.is_absolute() or not relative.parts or ".." in relative.parts or "\\" in name:
-        raise OutputError(f"{name} is no path inside of the output folder")
+        raise OutputError(f"{name} is not a path inside of the output folder")
     if not path.parent.resolve().is_relative_to(folder):
         raise OutputError(f"{path} leads out of {folder}: there is a link on the way")
     return path
@@ -223,7 +223,7 @@ def _replace(changed: Mapping[Path, Mapping[Path, bytes]], made: ExitStack, sign
         for _, path in moves:
             _make(path.parent, made)
             if not path.parent.is_dir():
-                raise OutputError(f"{path.parent} is no folder: {path.name} cannot be written below it")
+                raise OutputError(f"{path.parent} is not a folder: {path.name} cannot be written below it")
         signals.check()
         made.pop_all()
         for staged, path in moves:

@@ -40,7 +40,7 @@ def recorded_texts(path: str) -> Iterator[RecordedText]:
     """
     found = Path(path)
     if found.is_dir() and not (found / "metadata.yaml").is_file():
-        raise RecordingError(f"{path} is a folder without a metadata.yaml: it is no recording")
+        raise RecordingError(f"{path} is a folder without a metadata.yaml: it is not a recording")
     # rosbags opens folders by itself.
     with nullcontext() if found.is_dir() else opened(path) as file, bounded(found):
         try:

@@ -142,7 +142,7 @@ class _Comparison:
                 others = {field: fitting for field, fitting in others.items() if field not in taken}
                 fitting = _type_for(fields[close[0]]) if close and isinstance(owner.type, rsc.BasicDataType) else None
                 text = f"{written(close[0])}: {fitting}" if fitting is not None else None
-                message = f"`{owner.name}` is no field of {name}: {_listed(fields)}"
+                message = f"`{owner.name}` is not a field of {name}: {_listed(fields)}"
                 yield Fault(
                     owner,
                     message,

@@ -143,7 +143,7 @@ class ExpressionReader:
     def _binary(self, top: _Open, left: Typed, right: Typed) -> Typed:
         for operand in (left, right):
             if isinstance(operand.type, sct.Plant):
-                raise CifFaultError(operand.read, "type", "an automaton is no value", "name one of its locations")
+                raise CifFaultError(operand.read, "type", "an automaton is not a value", "name one of its locations")
         kind = _checked(top.read, combined, top.word, left.type, right.type)
         if top.word == "mod":
             arguments = [left.expression, right.expression]

@@ -190,7 +190,7 @@ class Specification:
             inside = self.resolved(found)
             if not isinstance(inside, Scope):
                 raise CifFaultError(
-                    read, "unresolved-reference", f"`{whole}` is no group and no automaton: nothing is in it"
+                    read, "unresolved-reference", f"`{whole}` is neither a group nor an automaton: nothing is in it"
                 )
             if part not in inside.names:
                 message, repair = f"there is no `{part}` in `{inside.path}`", _meant(name, position, inside.names)
@@ -314,7 +314,7 @@ class Specification:
     def _instantiate(self, read: Any, around: Scope, scope: Scope) -> None:
         found = self.find(read.definition, around)
         if not isinstance(found, Declared) or found.kind not in ("GroupDefinition", "AutomatonDefinition"):
-            raise CifFaultError(read.definition, "type", f"`{read.definition.text}` is no definition")
+            raise CifFaultError(read.definition, "type", f"`{read.definition.text}` is not a definition")
         definition = found.read
         inside: Scope | None = around
         while inside is not None:

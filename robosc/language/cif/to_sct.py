@@ -233,7 +233,7 @@ class _Transformation:
     def _event(self, name: Any, scope: Scope) -> sct.Event:
         found = self._names.find(name, scope)
         if not isinstance(found, Declared) or found.kind != "Events":
-            raise CifFaultError(name, "type", f"`{name.text}` is no event")
+            raise CifFaultError(name, "type", f"`{name.text}` is not an event")
         if not found.outer.control:
             hint = f"declare `{found.name}` as `controllable` or as `uncontrollable`"
             raise construct(name, "events that are neither controllable nor uncontrollable", hint)
@@ -285,7 +285,7 @@ class _Transformation:
             raise construct(read, "updates of tuples and lists", "write a variable for each element")
         found = self._names.find(read.variable, scope)
         if not isinstance(found, Declared) or found.kind != "Variables":
-            raise CifFaultError(read, "type", f"`{read.variable.text}` is no discrete variable")
+            raise CifFaultError(read, "type", f"`{read.variable.text}` is not a discrete variable")
         if found.made is None:
             raise found.fault
         if found.made.eContainer() is not scope.plant:

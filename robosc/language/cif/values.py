@@ -58,7 +58,7 @@ class Values:
         """Return the value of an expression in a scope. Raises CifFaultError."""
         made = self._nested(read, scope)
         if isinstance(made.type, sct.Plant):
-            raise CifFaultError(read, "type", "an automaton is no value", "name one of its locations")
+            raise CifFaultError(read, "type", "an automaton is not a value", "name one of its locations")
         return made
 
     def whole(self, read: Any, scope: Scope) -> Typed:
@@ -81,7 +81,7 @@ class Values:
         made = self.whole(read, scope)
         value = constant_value(made.expression)
         if value is None:
-            raise CifFaultError(read, "type", "this is no constant")
+            raise CifFaultError(read, "type", "this is not a constant")
         return value, range(value, value + 1) if isinstance(made.type, range) else made.type
 
     def _nested(self, read: Any, scope: Scope) -> Typed:
@@ -140,7 +140,7 @@ class Values:
                 return Typed(read, sct.LocationReference(location=own), BOOLEAN)
         made = self._value(read, self.names.find(read.name, scope))
         if switched is not None and not isinstance(made.expression, sct.LocationReference):
-            raise CifFaultError(read, "type", f"`{read.name.text}` is no location of `{switched.name}`")
+            raise CifFaultError(read, "type", f"`{read.name.text}` is not a location of `{switched.name}`")
         return made
 
     def _value(self, read: Any, found: Any) -> Typed:
@@ -156,7 +156,7 @@ class Values:
             case Declared(kind="Variables" | "Inputs"):
                 if found.made is None:
                     # A variable that is declared later has no fault yet, but a constant cannot read it.
-                    raise found.fault or CifFaultError(read, "type", "this is no constant")
+                    raise found.fault or CifFaultError(read, "type", "this is not a constant")
                 return Typed(read, sct.VariableReference(variable=found.made), found.type)
             case Declared(kind="Literal"):
                 enumeration = self.enumeration(found.outer)
@@ -323,7 +323,7 @@ class Values:
         if isinstance(found, Declared) and found.kind == "Enumeration":
             return self.enumeration(found)
         if not isinstance(found, Declared) or found.kind != "Types":
-            raise CifFaultError(read, "type", f"`{read.type.text}` is no type")
+            raise CifFaultError(read, "type", f"`{read.type.text}` is not a type")
         kind: Type | str = self.known(found)
         return kind
 

@@ -41,7 +41,7 @@ def preconditions(models: Models, _configuration: Configuration) -> list[Diagnos
         return [_finding(models.sct, reason, hint)]
     named = (element for _, element in tree(models.sct) if isinstance(element, ex.NamedElement))
     found = [
-        _finding(element, f"'{element.name}' is no identifier", "give it a name of letters, digits and `_`")
+        _finding(element, f"'{element.name}' is not an identifier", "give it a name of letters, digits and `_`")
         for element in named
         if not _NAME.fullmatch(element.name)
     ]

@@ -80,7 +80,7 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
 def _package(graph: rosgraph.RosGraph, configuration: Configuration, name: str) -> Iterator[Diagnostic]:
     """Return errors on the name and settings of a package."""
     if not _PACKAGE.fullmatch(name):
-        yield _error(graph, f'"{name}" is no name of a ROS package', 'set "package.name" in controller-config.json')
+        yield _error(graph, f'"{name}" is not a name of a ROS package', 'set "package.name" in controller-config.json')
     if _RISKY.search(configuration.package.maintainer):
         hint = 'leave out ", \\, $ and ;'
         yield configuration.error(("package", "maintainer"), "the maintainer would break the package's build", hint)
@@ -95,9 +95,9 @@ def _names(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
     """Return errors on names that appear in code unchanged, and that ROS would reject at run time."""
     for interface in graph.interfaces:
         if not _PACKAGE.fullmatch(interface.package):
-            yield _error(interface, f'"{interface.package}" is no name of a ROS package')
+            yield _error(interface, f'"{interface.package}" is not a name of a ROS package')
         if not _TYPE.fullmatch(interface.type):
-            yield _error(interface, f'"{interface.type}" is no name of a ROS type')
+            yield _error(interface, f'"{interface.type}" is not a name of a ROS type')
     named: list[tuple[ex.Located, str, str]] = [
         *((subscription, subscription.topic, "topic") for subscription in graph.subscriptions),
         *((publisher, publisher.topic, "topic") for publisher in graph.publishers),
@@ -107,10 +107,10 @@ def _names(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
     for element, name, kind in named:
         if not _TOPIC.fullmatch(name):
             hint = "write letters, digits and underscores, with single slashes between them"
-            yield _error(element, f'"{name}" is no name of a ROS {kind}', hint)
+            yield _error(element, f'"{name}" is not a name of a ROS {kind}', hint)
     for element, name in _fields(graph):
         if not _FIELD.fullmatch(name):
-            yield _error(element, f'"{name}" is no name of a field in ROS')
+            yield _error(element, f'"{name}" is not a name of a field in ROS')
 
 
 def _parameters(graph: rosgraph.RosGraph, configuration: Configuration, kind: str, ros: int) -> Iterator[Diagnostic]:
@@ -197,7 +197,7 @@ def _unsendable(
         if message_named(graph, name) is None:
             sent = [sending.name for publisher in graph.publishers for sending in publisher.sendings]
             hint = f"messages to the robot: {', '.join(sent)}" if sent else None
-            message = f'"{setting}": {name} is no message that the node sends'
+            message = f'"{setting}": {name} is not a message that the node sends'
             yield configuration.error((setting, place_of_name), message, hint)
 
 
@@ -320,7 +320,7 @@ def _controller(configuration: Configuration) -> Iterator[Diagnostic]:
         checked += [("launch", "packageName", launch.package_name, _PACKAGE), ("launch", "file", launch.file, _FILE)]
     for form, name, value, pattern in checked:
         if value is not None and not pattern.fullmatch(value):
-            message = f'"{".".join((*key, form, name))}" is no name that a launch file could use'
+            message = f'"{".".join((*key, form, name))}" is not a name that a launch file could use'
             yield configuration.error((*key, form, name), message)
 
 

@@ -71,11 +71,13 @@ def _literal(literal: ex.IntegerLiteral | ex.DoubleLiteral, _model: Model) -> It
     if literal.value < 0:
         yield literal, "a literal has no sign; the sign is a UnaryMinus around it"
     elif isinstance(literal, ex.IntegerLiteral) and literal.value > most:
-        yield literal, f"{literal.value} is no integer of 64 bits"
+        yield literal, f"{literal.value} is not an integer of 64 bits"
 
 
 _INTERFACE = [
-    demand(lambda interface: bool(_PACKAGE.fullmatch(interface.package)), "'{0.package}' is no name of a ROS package"),
+    demand(
+        lambda interface: bool(_PACKAGE.fullmatch(interface.package)), "'{0.package}' is not a name of a ROS package"
+    ),
     _identifier("type"),
 ]
 _INDEX = demand(lambda step: step.index is None or step.index >= 0, "an index counts from 0")

@@ -36,17 +36,20 @@ def _made(made: robosc.InstantiatedComponent | robosc.ImportedComponent, _model:
     if isinstance(made, robosc.ImportedComponent):
         yield from _import(made)
     elif not made.definition.parameters:
-        yield made, f"'{made.definition.name}' is no template"
+        yield made, f"'{made.definition.name}' is not a template"
 
 
 def _import(imported: robosc.ImportedComponent) -> Iterator[Fault]:
     if imported.definition.eContainer() is not imported.library:
-        yield imported, f"'{imported.definition.name}' is no component of {imported.library.name}"
+        yield imported, f"'{imported.definition.name}' is not a component of {imported.library.name}"
         return
     own = _definitions(imported.definition)
     for remapping in imported.remappings:
         if remapping.communicationType not in own:
-            yield remapping, f"'{remapping.communicationType.name}' is no communication of {imported.definition.name}"
+            yield (
+                remapping,
+                f"'{remapping.communicationType.name}' is not a communication of {imported.definition.name}",
+            )
 
 
 def _communication(reference: robosc.CommunicationReference, _model: Model) -> Iterator[Fault]:
@@ -54,7 +57,7 @@ def _communication(reference: robosc.CommunicationReference, _model: Model) -> I
     if component is None:
         yield reference, f"it does not say whose '{reference.communicationType.name}' is meant"
     elif reference.communicationType not in _definitions(component):
-        yield reference, f"'{reference.communicationType.name}' is no communication of '{component.name}'"
+        yield reference, f"'{reference.communicationType.name}' is not a communication of '{component.name}'"
 
 
 def _running(access: robosc.Access, item: robosc.CommunicationType) -> Iterator[Fault]:
@@ -62,7 +65,7 @@ def _running(access: robosc.Access, item: robosc.CommunicationType) -> Iterator[
     if component is None:
         yield access, f"it does not say whose '{item.name}' is meant"
     elif item not in _definitions(component):
-        yield access, f"'{item.name}' is no communication of '{component.name}'"
+        yield access, f"'{item.name}' is not a communication of '{component.name}'"
     elif isinstance(item, robosc.Message):
         yield access, f"'{item.name}' is a message: only a service or an action is running"
 
@@ -76,7 +79,7 @@ def _access(access: robosc.Access, _model: Model) -> Iterator[Fault]:
             return
         behaviours = [part for part in _definitions(component) if isinstance(part, robosc.ComponentBehaviour)]
         if item.eContainer() not in [behaviour.automaton for behaviour in behaviours]:
-            yield access, f"'{item.name}' is no state or variable of '{component.name}'"
+            yield access, f"'{item.name}' is not a state or variable of '{component.name}'"
             return
     elif isinstance(item, robosc.CommunicationType):
         yield from _running(access, item)
@@ -101,7 +104,7 @@ def _property(element: robosc.ObjectPropertyValue, _model: Model) -> Iterator[Fa
 
 def _member(element: Any, of: Any) -> Iterator[Fault]:
     if of is not UNKNOWN and not (isinstance(of, ObjectType) and element.property in of.definition.properties):
-        yield element, f"'{element.property.name}' is no property of {of}"
+        yield element, f"'{element.property.name}' is not a property of {of}"
 
 
 def _owner(reference: robosc.CommunicationReference | robosc.Access) -> robosc.Component | None:
@@ -146,7 +149,7 @@ _DATA_TYPE = demand(
     lambda reference: (
         isinstance(reference, robosc.InterfaceTypeReference) or isinstance(reference.type.eContainer(), robosc.Base)
     ),
-    "'{0.type.name}' is no data type of a robot or library",
+    "'{0.type.name}' is not a data type of a robot or library",
 )
 _OWN_OBJECT = demand(
     lambda reference: reference.type is reference.definition,

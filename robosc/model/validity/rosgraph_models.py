@@ -39,7 +39,7 @@ def _interface(wanted: rosgraph.InterfaceKind) -> Check:
 def _literals(conversion: rosgraph.Conversion, _model: Model) -> Iterator[Fault]:
     for literal in dict.fromkeys([conversion.default, *(rule.literal for rule in conversion.rules)]):
         if literal.eContainer() is not conversion.enumeration:
-            yield conversion, f"'{literal.name}' is no literal of {conversion.enumeration.name}"
+            yield conversion, f"'{literal.name}' is not a literal of {conversion.enumeration.name}"
 
 
 def _inputs(reception: rosgraph.Reception, _model: Model) -> Iterator[Fault]:
@@ -124,7 +124,7 @@ def _received_shapes(graph: rosgraph.RosGraph, _model: Model) -> Iterator[Fault]
 def _received(shape: _Shape, access: rosgraph.WireAccess) -> Iterator[Fault]:
     path = _path(access)
     if access.type is not None and not path:
-        yield access, "a message is no basic value"
+        yield access, "a message is not a basic value"
     yield from shape.add(access, path, access.type)
     owner = access.eContainer()
     if isinstance(owner, rosgraph.ConversionCall):
@@ -143,15 +143,15 @@ def _path(access: rosgraph.WireAccess) -> list[str | int]:
 
 
 _BASIC_FIELD = demand(
-    lambda field: field.type is None or isinstance(field.type, _BASIC), "{0.type.eClass.name} is no type of a field"
+    lambda field: field.type is None or isinstance(field.type, _BASIC), "{0.type.eClass.name} is not a type of a field"
 )
 _FIELD = demand(
     lambda field: field.type is None or isinstance(field.type, (*_BASIC, rosgraph.ObjectType)),
-    "{0.type.eClass.name} is no type of a field",
+    "{0.type.eClass.name} is not a type of a field",
 )
 _DATA = demand(
     lambda provided: provided.location.eContainer().kind == sct.PlantKind.data,
-    "'{0.location.name}' is no location of a data plant",
+    "'{0.location.name}' is not a location of a data plant",
 )
 _ONE_PLANT = demand(
     lambda reaction: len({location.eContainer() for location in reaction.locations}) <= 1,

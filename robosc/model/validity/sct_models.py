@@ -131,7 +131,7 @@ def _part(kind: ex.EnumerationType, _model: Model) -> Iterator[Fault]:
     ends = [literal for literal in (kind.first, kind.last) if literal is not None]
     for literal in ends:
         if literal not in literals:
-            yield kind, f"'{literal.name}' is no literal of {kind.enumeration.name}"
+            yield kind, f"'{literal.name}' is not a literal of {kind.enumeration.name}"
             return
     if ends and not isinstance(kind.eContainer(), sct.Input):
         yield kind, "only an input has a part of an enumeration"
@@ -169,7 +169,7 @@ def _timer(timer: sct.Timer, model: Model) -> Iterator[Fault]:
         yield timer, "an edge that enters the location leads elsewhere"
     for message in timer.without:
         if message.kind != sct.EventKind.response or message not in model.own:
-            yield timer, f"'{message.name}' is no message of this model that a component sends"
+            yield timer, f"'{message.name}' is not a message of this model that a component sends"
 
 
 _SETTABLE = demand(

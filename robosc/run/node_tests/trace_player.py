@@ -85,27 +85,27 @@ def parse(text: str, number: int) -> Line:
     # `json` may follow any number of brackets, until the process ends.
     opened = (BRACKETS.get(found.group(), 0) for found in STRING_OR_BRACKET.finditer(text))
     if max(accumulate(opened, initial=0)) > DEEPEST:
-        raise TraceError(f"line {number} is no line of an event log: nested too deeply")
+        raise TraceError(f"line {number} is not a line of an event log: nested too deeply")
     try:
         values = json.loads(text)
         line = Line(number, **{name: values.get(name) for name in ("time", "direction", "event", "data", "message")})
     except (ValueError, AttributeError) as error:
-        raise TraceError(f"line {number} is no line of an event log: {error}") from None
+        raise TraceError(f"line {number} is not a line of an event log: {error}") from None
     if isinstance(line.time, bool) or not isinstance(line.time, (int, float)) or not abs(line.time) < LATEST:
-        raise TraceError(f"line {number} is no line of an event log: it has no time in seconds")
+        raise TraceError(f"line {number} is not a line of an event log: it has no time in seconds")
     if not isinstance(line.direction, str) or not isinstance(line.event, str):
-        raise TraceError(f"line {number} is no line of an event log: it has no direction and event")
+        raise TraceError(f"line {number} is not a line of an event log: it has no direction and event")
     if line.data is not None and not (isinstance(line.data, dict) and {"value", "reason"} & set(line.data)):
-        raise TraceError(f'line {number} is no line of an event log: "data" is to be an object with a value')
+        raise TraceError(f'line {number} is not a line of an event log: "data" is to be an object with a value')
     if line.message is not None and not isinstance(line.message, dict):
-        raise TraceError(f'line {number} is no line of an event log: "message" is to be an object')
+        raise TraceError(f'line {number} is not a line of an event log: "message" is to be an object')
     return line
 
 
 def read_trace(path: str) -> list[Line]:
     """Read the lines of a trace, up to where the node was stopped. Raises TraceError."""
     if not Path(path).is_file():  # a pipe would block
-        raise TraceError(f"{path} is no regular file")
+        raise TraceError(f"{path} is not a regular file")
     lines = []
     # Strings may hold other line separators; lines of a node end with a line feed.
     *texts, last = Path(path).read_bytes().split(b"\n")
@@ -113,7 +113,7 @@ def read_trace(path: str) -> list[Line]:
         try:
             line = parse(text.decode("utf-8"), number)
         except UnicodeDecodeError as error:
-            raise TraceError(f"line {number} is no UTF-8: {error.reason} at byte {error.start}") from None
+            raise TraceError(f"line {number} is not UTF-8: {error.reason} at byte {error.start}") from None
         if line.direction == "outside":
             break
         if line.direction not in ("in", "out", "internal"):

@@ -134,7 +134,7 @@ class EventData:
         declared = self._events[event]
         unknown = sorted(set(data) - {"value", "where", "reason"})
         if unknown:
-            raise DataError(f'"{unknown[0]}" is no data of an event: write {{"value": ...}}')
+            raise DataError(f'"{unknown[0]}" is not data of an event: write {{"value": ...}}')
         reason, computed = reason_of(declared, data), _computed(declared, data.get("where", {}))
         self._is_new = not brings_data(declared, reason)
         if self._node is not None:

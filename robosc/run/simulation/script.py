@@ -168,7 +168,7 @@ class _Line:
             return None
         if step is None:
             hint = "write `response from scan with clear` or `error from lift because timeout`"
-            self._fault(self._start, "this is no step of a scenario", hint, len(word))
+            self._fault(self._start, "this is not a step of a scenario", hint, len(word))
             return None
         event, data = step
         return Step(self._number, event, data) if event == REFUSE or self._known(event, self._start) else None
@@ -188,7 +188,7 @@ class _Line:
             return True
         if name in self._names.others:
             looped = "tick" in self._names.events
-            message = f"`{name}` is no line of a script {'with' if looped else 'without'} the control loop"
+            message = f"`{name}` is not a line of a script {'with' if looped else 'without'} the control loop"
             hint = "the control loop decides itself when it happens, at `tick`" if looped else "it needs `--loop`"
             self._fault(column, message, hint, len(name))
             return False

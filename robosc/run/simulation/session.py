@@ -127,7 +127,7 @@ class Session:
     def _run(self, rest: str) -> str:
         number = _number(rest or "1")
         if number is None:
-            return f"{rest[:20]} is no number of events up to {MOST_AT_ONCE}"
+            return f"{rest[:20]} is not a number of events up to {MOST_AT_ONCE}"
         lines = []
         for _ in range(number):
             happened = self._simulation.random_step(self._random)

@@ -71,17 +71,17 @@ class Tracker:
     def report(self, report: Any) -> Iterator[Told]:
         """Yield the events of a report; the engine is in the state after each. Raises ReportError."""
         if not isinstance(report, dict):
-            raise ReportError("it is no object")
+            raise ReportError("it is not an object")
         ends = self._ends(report)
         events = report.get("transitions")
         if not (isinstance(events, list) and all(isinstance(event, str) for event in events)):
-            raise ReportError("`transitions` is no list of events")
+            raise ReportError("`transitions` is not a list of events")
         unknown = next((event for event in events if event not in self.engine.events), None)
         if unknown is not None:
             raise ReportError(f"the model has no event `{unknown}`")
         time = report.get("time")
         if isinstance(time, bool) or not isinstance(time, (int, float)) or not abs(time) < 2**52:
-            raise ReportError("`time` is no number of seconds")
+            raise ReportError("`time` is not a number of seconds")
         variables = {
             f"{name}.{variable}": value
             for name in self._components

@@ -87,7 +87,7 @@ class _Checked(NamedTuple):
 def _mend(model: str, paths: Paths) -> None:
     """Apply the edits of findings to a text, repeatedly, unless they make it worse."""
     if not model.endswith(".rscd"):
-        raise CallError(f"{model} is no .rscd file: only a text can be mended")
+        raise CallError(f"{model} is not a .rscd file: only a text can be mended")
     interfaces = RosTypes(paths.interfaces)
 
     def checked(content: str) -> _Checked:

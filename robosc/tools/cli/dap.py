@@ -52,7 +52,7 @@ def command(port: int | None, once: bool) -> None:
             raise click.UsageError("--once needs --port")
         fault = serve_stdio(lambda connection: Adapter(connection, _load))
         if fault is not None:
-            raise CallError(f"this is no Debug Adapter Protocol: {fault}")
+            raise CallError(f"this is not the Debug Adapter Protocol: {fault}")
         return
     serve_port(
         port,

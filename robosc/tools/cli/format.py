@@ -63,7 +63,7 @@ def _files(model: str) -> Iterator[str]:
     if model == "-":
         yield _STDIN
     elif model.endswith(".xmi"):
-        raise CallError(f"{model} is no .rscd file: only a text has a layout")
+        raise CallError(f"{model} is not a .rscd file: only a text has a layout")
     elif not Path(model).is_dir():
         yield model
     else:

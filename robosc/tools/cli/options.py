@@ -97,7 +97,7 @@ def _keep(context: click.Context, _parameter: click.Parameter, name: str | None)
         known = extensions("robosc.synthesizers")
         if name not in known:
             others = ", ".join(known) or "no package with one"
-            raise click.BadParameter(f"{name!r} is no synthesizer that is installed; there is {others}")
+            raise click.BadParameter(f"{name!r} is not a synthesizer that is installed; there is {others}")
         context.meta[_SYNTHESIZER] = known[name]
 
 

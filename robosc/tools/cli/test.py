@@ -96,7 +96,7 @@ def command(
     Exit status: 0 all scenarios passed, 1 a scenario failed, or errors, 2 a wrong call, 3 no supervisor exists.
     """
     if not model.endswith(".rscd"):
-        raise CallError(f"{model} is no text: scenarios speak of a robot in a .rscd file")
+        raise CallError(f"{model} is not a text file: scenarios speak of a robot in a .rscd file")
     if node is not None and not live:
         raise click.UsageError("--node needs --ros2")
     with Report(form, aside=form != "text") as report:

@@ -106,7 +106,7 @@ class Adapter:
             request = None
             if message.get("type") == "request" and _is_integer(sequence):
                 request = sequence, command if isinstance(command, str) else ""
-            self.malformed("a message is no request with `seq` and `command`", request)
+            self.malformed("a message is not a request with `seq` and `command`", request)
             return
         arguments = message.get("arguments")
         answer = {"request_seq": sequence, "command": command}
@@ -397,7 +397,7 @@ class Adapter:
             asked = next((child.path for child in children if child.name == asked and child.path), asked)
         name = self._debugged.views.state_name(asked)
         if name is None:
-            return {"dataId": None, "description": f"{asked} is no part of the state that changes"}
+            return {"dataId": None, "description": f"{asked} is not part of the state that changes"}
         return {"dataId": name, "description": name, "accessTypes": ["write"], "canPersist": True}
 
     def _set_data_breakpoints(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -487,7 +487,7 @@ class Adapter:
         if arguments.get("context") not in ("repl", None):
             value = run.views.value(text)
             if value is None:
-                raise RequestError(f"`{text}` is no component, variable or state")
+                raise RequestError(f"`{text}` is not a component, variable or state")
             return {"result": value, "variablesReference": 0}, None
         word, _, rest = text.partition(" ")
         if text in ("", "help", "?"):

@@ -84,11 +84,11 @@ class Connection:
         except asyncio.IncompleteReadError:
             raise FramingError("the last message is cut off") from None
         except UnicodeDecodeError:
-            raise MessageError("a message is no UTF-8", data.decode("utf-8", "replace")) from None
+            raise MessageError("a message is not UTF-8", data.decode("utf-8", "replace")) from None
         except JsonError as error:
-            raise MessageError(f"a message is no JSON: {error}", data.decode()) from None
+            raise MessageError(f"a message is not JSON: {error}", data.decode()) from None
         if not isinstance(message, dict):
-            raise MessageError("a message is no object")
+            raise MessageError("a message is not an object")
         return message
 
     async def _length(self) -> int | None:

@@ -158,7 +158,7 @@ class Stops:
         self._by_value.clear()
         told = []
         for name in names:
-            told.append(self._answer([], f"{name} is no part of the state that changes"))
+            told.append(self._answer([], f"{name} is not part of the state that changes"))
             if name in self._replay.engine.state:
                 self._by_value[name] = told[-1]["id"]
                 told[-1] |= {"verified": True, "message": f"{name} changes"}

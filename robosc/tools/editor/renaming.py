@@ -48,7 +48,7 @@ def rename(snapshot: Snapshot, analysis: Analysis, params: types.RenameParams) -
         return None
     _require_own(snapshot, analysis, name)
     if not is_name(new):
-        raise _refused(f"`{new}` is no name: it has letters from a to z and A to Z, digits and `_`")
+        raise _refused(f"`{new}` is not a name: it has letters from a to z and A to Z, digits and `_`")
     return rename_everywhere(snapshot, analysis, Renaming(name, new))
 
 

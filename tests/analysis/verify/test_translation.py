@@ -434,10 +434,10 @@ def test_changed_cif_is_refuted(pattern: str, replacement: str, trace: list[str]
             "there is no 'idle'",
         ),
         (r"goto rest;", "goto nowhere;", "there is no 'nowhere'"),
-        (r"goto rest;", "goto strokes;", "'strokes' is no location of 'component_Pump'"),
+        (r"goto rest;", "goto strokes;", "'strokes' is not a location of 'component_Pump'"),
         (r"strokes != 3", "c_tau1 != 3", "'c_tau1' has no value"),
-        (r"^    edge c_tau2;", "    edge strokes;", "'strokes' is no event"),
-        (r"do level := 3", "do idle := 3", "'idle' is no variable"),
+        (r"^    edge c_tau2;", "    edge strokes;", "'strokes' is not an event"),
+        (r"do level := 3", "do idle := 3", "'idle' is not a variable"),
         (
             r"^    edge c_tau2;",
             "    edge c_tau2; edge c_tau2;",

@@ -92,8 +92,8 @@ def test_a_message_may_have_a_rule_in_its_comments(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("path", "text", "message"),
     [
-        ("a__msg__A__msg", "int8 x\nint8[2][2] y\n", r"A\.msg: `int8\[2\]\[2\] y` is no field$"),
-        ("a__msg__A__msg", "int8 x\n---\n", r"A\.msg: `---` is no field$"),
+        ("a__msg__A__msg", "int8 x\nint8[2][2] y\n", r"A\.msg: `int8\[2\]\[2\] y` is not a field$"),
+        ("a__msg__A__msg", "int8 x\n---\n", r"A\.msg: `---` is not a field$"),
         ("a__srv__A__srv", "int8 x\n", r"A\.srv: it has 1 sections, expected 2 with `---` between them$"),
         ("a__action__A__action", "---\n---\n---\n", r"A\.action: it has 4 sections, expected 3"),
     ],

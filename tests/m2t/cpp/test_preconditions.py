@@ -67,19 +67,19 @@ def test_nothing_against_a_good_model(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [
-        ({"package": "NavMsgs"}, 'cart.rscd:2: "NavMsgs" is no name of a ROS package'),
-        ({"package": "nav__msgs"}, 'cart.rscd:2: "nav__msgs" is no name of a ROS package'),
-        ({"type": "odometry"}, 'cart.rscd:2: "odometry" is no name of a ROS type'),
-        ({"topic": "/base/"}, 'cart.rscd:6: "/base/" is no name of a ROS topic'),
-        ({"topic": "/base odometry"}, 'cart.rscd:6: "/base odometry" is no name of a ROS topic'),
-        ({"topic": "/base//odometry"}, 'cart.rscd:6: "/base//odometry" is no name of a ROS topic'),
-        ({"topic": "/base/1"}, 'cart.rscd:6: "/base/1" is no name of a ROS topic'),
-        ({"topic": '/b\\n\\"); exit(1); (\\"'}, 'cart.rscd:6: "/b\n"); exit(1); ("" is no name of a ROS topic'),
-        ({"field": "_x"}, 'cart.rscd:11: "_x" is no name of a field in ROS'),
-        ({"robot": "_Cart"}, 'cart.rscd:1: "_cart_controller" is no name of a ROS package'),
+        ({"package": "NavMsgs"}, 'cart.rscd:2: "NavMsgs" is not a name of a ROS package'),
+        ({"package": "nav__msgs"}, 'cart.rscd:2: "nav__msgs" is not a name of a ROS package'),
+        ({"type": "odometry"}, 'cart.rscd:2: "odometry" is not a name of a ROS type'),
+        ({"topic": "/base/"}, 'cart.rscd:6: "/base/" is not a name of a ROS topic'),
+        ({"topic": "/base odometry"}, 'cart.rscd:6: "/base odometry" is not a name of a ROS topic'),
+        ({"topic": "/base//odometry"}, 'cart.rscd:6: "/base//odometry" is not a name of a ROS topic'),
+        ({"topic": "/base/1"}, 'cart.rscd:6: "/base/1" is not a name of a ROS topic'),
+        ({"topic": '/b\\n\\"); exit(1); (\\"'}, 'cart.rscd:6: "/b\n"); exit(1); ("" is not a name of a ROS topic'),
+        ({"field": "_x"}, 'cart.rscd:11: "_x" is not a name of a field in ROS'),
+        ({"robot": "_Cart"}, 'cart.rscd:1: "_cart_controller" is not a name of a ROS package'),
         (
             {"more": 'service reset with identifier: "re-set", request: none, response: none'},
-            'cart.rscd:7: "re-set" is no name of a ROS service',
+            'cart.rscd:7: "re-set" is not a name of a ROS service',
         ),
         (
             {"more": 'incoming message tell with identifier: "base/odometry", type: boolean'},
@@ -102,11 +102,11 @@ def test_names_and_kinds(tmp_path: Path, changes: dict[str, str], expected: str)
     [
         (
             '{\n\n "onShutdown": ["where"]}',
-            'controller-config.json:3: "onShutdown": where is no message that the node sends',
+            'controller-config.json:3: "onShutdown": where is not a message that the node sends',
         ),
         (
             '{\n "onWithheld": ["where"]}',
-            'controller-config.json:2: "onWithheld": where is no message that the node sends',
+            'controller-config.json:2: "onWithheld": where is not a message that the node sends',
         ),
         (
             '{\n "waitFor": ["where"]}',

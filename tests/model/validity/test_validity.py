@@ -403,11 +403,11 @@ def graph() -> rosgraph.RosGraph:
 
 GRAPHS: list[tuple[str, Any, str]] = [
     ("interfaces[0].kind", rosgraph.InterfaceKind.service, "'String' is a service, but a message is wanted"),
-    ("interfaces[0].package", "a/b", "'a/b' is no name of a ROS package"),
+    ("interfaces[0].package", "a/b", "'a/b' is not a name of a ROS package"),
     ("interfaces[0].type", "a b", "'type' is to be an identifier, which 'a b' is not"),
     ("variables[0].initial", ex.IntegerLiteral(value=1), "this is of integer, but string is wanted"),
     ("conversions[0].rules[0].condition", ex.StringLiteral(value=""), "this is of string, but boolean is wanted"),
-    ("conversions[0].default", ex.EnumerationLiteral(name="blue"), "'blue' is no literal of E"),
+    ("conversions[0].default", ex.EnumerationLiteral(name="blue"), "'blue' is not a literal of E"),
     (
         "subscriptions[0].receptions[0].inputs[0].value.type",
         ex.DoubleType(),
@@ -452,7 +452,7 @@ def test_rosgraph_references() -> None:
     given.reactions[0].assignments.clear()
     given.publishers[0].sendings[0].alternatives[0].fields[0].path.append("a.b")
     assert sorted(messages(given)) == [
-        "'one' is no location of a data plant",
+        "'one' is not a location of a data plant",
         "'path' is to be an identifier, which 'a.b' is not",
         "'u' does not carry the input 'i'",
         "the event 'u' is another model's",
@@ -469,7 +469,7 @@ def test_rosgraph_references() -> None:
             "an access reads either an item or the value of the event",
         ),
         (robosc.IndexSegment(index=-1), "an index counts from 0"),
-        (robosc.Interface(name="i", type="T", package="a b"), "'a b' is no name of a ROS package"),
+        (robosc.Interface(name="i", type="T", package="a b"), "'a b' is not a name of a ROS package"),
         (robosc.State(name="s t"), "'name' is to be an identifier, which 's t' is not"),
         (ex.DoubleLiteral(value=-1.0), "a literal has no sign; the sign is a UnaryMinus around it"),
     ],

@@ -174,7 +174,7 @@ def test_a_late_answer_after_a_lost_goal_changes_nothing() -> None:
         ('error from lift with {"heights": [true]}', "value.heights[0] is true, expected a number", ""),
         ('stop with "false"', 'value is "false", expected a boolean', ""),
         ("stop with 0.5", "value is 0.5, expected a boolean", ""),
-        ("stop with null", "`null` is no data", "leave out `with null`"),
+        ("stop with null", "`null` is not data", "leave out `with null`"),
     ],
 )
 def test_steps_that_cannot_be(step: str, message: str, hint: str) -> None:

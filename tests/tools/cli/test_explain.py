@@ -183,7 +183,7 @@ def test_what_no_node_of_it_tells(run: Run, state: str, complaint: str) -> None:
             "the state has two values for `component_Gauge`",
         ),
         ("--event refill --state wet=3", "`wet` cannot be `3`; it is one of false, true"),
-        ("--event refill --state full", "`full` is no part of a state; write `Component=state,Component.variable=3`"),
+        ("--event refill --state full", "`full` is not part of a state; write `Component=state,Component.variable=3`"),
         ("--event refill --state {", "the state cannot be read; not JSON: "),
         (f"--event refill --state {{{'[' * 100_000}", "the state cannot be read; nested too deeply"),
         ("--event refill --why-empty", "give one of --event, --why-empty and --why-never"),

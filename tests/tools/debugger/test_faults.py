@@ -112,7 +112,7 @@ def test_a_stream_that_is_no_protocol_ends_the_session(tmp_path: Path) -> None:
             check=False,
         )
     assert (done.returncode, done.stdout) == (2, b"")
-    assert done.stderr == b"Error: this is no Debug Adapter Protocol: a header has no Content-Length\n"
+    assert done.stderr == b"Error: this is not the Debug Adapter Protocol: a header has no Content-Length\n"
 
 
 def test_malformed_requests_are_answered(program: Program) -> None:

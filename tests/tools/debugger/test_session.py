@@ -260,7 +260,7 @@ def test_the_debug_console(session: Client, yard: Path) -> None:
         "false",
     ]
     assert session.do("evaluate", expression="Cart", context="hover")["result"] == "standing"
-    assert "is no component" in session.refused("evaluate", expression="open", context="hover")
+    assert "is not a component" in session.refused("evaluate", expression="open", context="hover")
     refusals = {
         "open": "request to `Gate.open` cannot happen: the robot is not ready for it",
         "seen {": "the data cannot be read: not JSON",

@@ -62,8 +62,8 @@ def test_a_keyword_gets_its_mark(project: Project) -> None:
     [
         ("open {", "closed", "this would change what cart.rscd means"),
         ("Door {", "Base", "this would change what cart.rscd means"),
-        ("open {", "2nd", "`2nd` is no name"),
-        ("open {", "on foot", "`on foot` is no name"),
+        ("open {", "2nd", "`2nd` is not a name"),
+        ("open {", "on foot", "`on foot` is not a name"),
     ],
 )
 def test_what_would_break_the_model_is_refused(project: Project, marker: str, new: str, why: str) -> None:

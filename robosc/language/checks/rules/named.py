@@ -322,7 +322,7 @@ def unused_template(base: rsc.Base) -> Iterator[Finding]:
             if component.parameters and isinstance(component.type, rsc.LocalComponent) and component not in made:
                 yield Finding(
                     component,
-                    f"nothing is made of the template `{component.name}`, so that it is no part of the robot",
+                    f"nothing is made of the template `{component.name}`, so that it is not part of the robot",
                     Removal(f"write `component ... is {component.name}(...)`, or leave the template out", component),
                     relies_on=base,
                 )
@@ -374,7 +374,7 @@ def _unreadable(meaning: Meaning) -> Iterator[Finding]:
             waiting += inside
         elif unreadable and not isinstance(part, rsc.Access) and (meaning.made is None or is_unreadable(part) is None):
             yield meaning.finding(
-                part, "this rounds what is no number, and so has no value", "write another expression"
+                part, "this rounds what is not a number, and so has no value", "write another expression"
             )
 
 
