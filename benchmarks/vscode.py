@@ -265,7 +265,7 @@ def completion(editor: Editor) -> None:
 def hover(editor: Editor) -> None:
     """Hover over a message: its declaration with the comment above, and the supervisor's condition."""
     editor.go("drive needs", 2)
-    editor.shows(".codelens-decoration", "forbids something in")
+    editor.shows(".codelens-decoration", "restricts the robot in")
     editor.press("Control+k", "Control+i")
     editor.shows(".monaco-hover", "The supervisor allows")
     shown = editor.page.locator(".monaco-hover", has_text="The supervisor allows").inner_text()
@@ -297,7 +297,7 @@ def renaming(editor: Editor) -> None:
 
 def layout(editor: Editor) -> None:
     """Format the whole text as `robosc format` does."""
-    editor.shows(".codelens-decoration", "forbids something in")
+    editor.shows(".codelens-decoration", "restricts the robot in")
     editor.go("      initial marked state light")
     editor.type("   ")
     editor.go("Load.light", len("Load.light"))

@@ -71,6 +71,6 @@ def way_out(counterexample: BlockingCounterexample) -> str:
         loosen = f"loosen the {'requirement' if len(counterexample.violated) == 1 else 'requirements'}"
         if all(isinstance(requirement, sct.Requirement) for requirement in counterexample.violated):
             return loosen
-        return f"{loosen}: say what each command `needs`, or add a command that undoes the event"
+        return f"{loosen}: add a `needs` requirement for each command, or a command that undoes the event"
     stuck = [f"`{name(plant)}`" for plant in counterexample.unmarked if plant.kind == sct.PlantKind.behaviour]
     return f"give {listed(stuck) or 'the components'} a way from there to a marked state"

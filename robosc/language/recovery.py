@@ -104,8 +104,8 @@ class _Recovery:
             self._regions.mended = True
             token = tokens[brace.index]
             if brace.surplus:
-                why = "what follows belongs inside" if brace.text == "}" else "one stands before it"
-                self._report(brace.index, f"this `{brace.text}` is one too many: {why}", Repair(_LEAVE_OUT, ""))
+                why = "the next lines belong inside" if brace.text == "}" else "there is one before it"
+                self._report(brace.index, f"unexpected `{brace.text}`: {why}", Repair(_LEAVE_OUT, ""))
                 self._blank(token.start, token.end)
                 continue
             # If several braces are missing at the end, only the innermost is reported.
@@ -312,7 +312,7 @@ def _by_cause(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
 def _without_consequences(findings: Sequence[Diagnostic]) -> list[Diagnostic]:
     """Drop edits that delete a surplus brace behind another error, as this error may be its cause."""
     first = findings[0].span.line if findings else 0
-    hint = f"mend the error in line {first} first"
+    hint = f"correct the error in line {first} first"
     return [
         replace(finding, hint=hint, edits=()) if index and finding.hint == _LEAVE_OUT else finding
         for index, finding in enumerate(findings)

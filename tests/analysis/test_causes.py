@@ -100,13 +100,13 @@ def test_the_cause_comes_first() -> None:
         "therefore, `Feed` is never in `there`",
     ]
     assert all(finding.message.startswith("therefore, ") for finding in others)
-    assert {finding.hint for finding in others} == {"mend the cause in line 29 first"}
+    assert {finding.hint for finding in others} == {"correct the cause in line 29 first"}
 
 
 def test_the_hint_says_what_to_write_and_to_run() -> None:
     cause, *_ = findings(TURNS)
     assert cause.hint == (
-        "loosen the requirement: say what each command `needs`, or add a command that undoes the event, or leave it "
+        "loosen the requirement: add a `needs` requirement for each command, or a command that undoes the event, or leave it "
         "out; `robosc explain --why-never Spindle.lower` tells more"
     )
 

@@ -123,7 +123,7 @@ def test_what_could_happen_only_beyond_names_the_requirement(tmp_path: Path) -> 
     (toot,) = [finding for finding in supervise(made).findings if "`Horn.toot` can never" in finding.message]
     assert toot.rule == "never-enabled"
     assert toot.message == (
-        "therefore, `Horn.toot` can never be sent: the supervisor lets the robot reach no state in which it could be "
+        "therefore, `Horn.toot` can never be sent: the supervised robot reaches no state in which it could be "
         "sent: after request to `Base.drive`, response from `Stop.pressed` cannot be prevented, and then `requirement "
         "SR1: never Stop.stopped and Base.driving` is violated"
     )
@@ -171,7 +171,7 @@ def test_an_empty_supervisor_names_the_requirement_and_the_shortest_way(
         re.sub(r" \(line \d+\)", "", found.message) == f"the supervisor is empty: {message.format(f'`{requirement}`')}"
     )
     told = explored(made, lambda system: Renderer(made, lambda _: "").answer(emptiness(system)))
-    assert f"It would help to loosen, or to leave out, one of these:\n  : {requirement} (4 states without it)" in told
+    assert f"Loosen or remove one of these:\n  : {requirement} (4 states without it)" in told
 
 
 def test_a_way_to_a_marked_state_through_a_violation(tmp_path: Path) -> None:

@@ -228,8 +228,8 @@ GUIDE = """component Guide {
 }"""
 
 
-WHEREVER = "wherever it could be, `requirement {}` (line 15) forbids it, for example "
-OUT_OF_REACH = "the supervisor lets the robot reach no state in which it could be sent: "
+WHEREVER = "in every state where it could be, `requirement {}` (line 15) forbids it, for example "
+OUT_OF_REACH = "the supervised robot reaches no state in which it could be sent: "
 
 
 @pytest.mark.parametrize(

@@ -149,8 +149,8 @@ def test_a_broken_target_is_a_finding(broken, text: str, tmp_path: Path) -> None
 SYNTHESIZER = "from robosc.model import sct\n\n\ndef synthesize(model):\n    "
 SYNTHESIZERS = {
     f"{SYNTHESIZER}return None\n": ("empty-supervisor", "the supervisor is empty: `broken` finds none"),
-    f"{SYNTHESIZER}return 3\n": ("extension", "it gives a int and no supervisor"),
-    f"{SYNTHESIZER}return sct.Supervisor()\n": ("extension", "and it gives none for `"),
+    f"{SYNTHESIZER}return 3\n": ("extension", "it gives a int, not a supervisor"),
+    f"{SYNTHESIZER}return sct.Supervisor()\n": ("extension", "and it has none for `"),
     f"{SYNTHESIZER}raise ValueError('too large')\n": ("extension", "ValueError: too large"),
 }
 
@@ -202,7 +202,7 @@ def test_the_supervisor_of_another_tool_is_explained(broken) -> None:
         "The request to `Platform.move` cannot happen here: only this supervisor forbids it, neither the robot"
         " nor a requirement, nor would synthesis."
     )
-    assert "From here the robot gets to no state where it can happen." in other
+    assert "From here, the robot reaches no state where it can happen." in other
     done = CliRunner().invoke(main, ["explain", str(LINE_FOLLOWER), "--why-never", "move", "--synthesizer", "broken"])
     assert done.stdout.startswith("The request to `Platform.move` can never happen.\n\nThe nearest state where only")
     assert "leave out" not in done.stdout

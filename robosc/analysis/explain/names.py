@@ -176,7 +176,7 @@ def _reported(model: sct.SupervisoryControlModel, report: Mapping[str, Any]) -> 
         if name not in components:
             raise NamingError(f"there is no component `{name}`", _close(name, components, ""))
         if not (isinstance(entry, dict) and "state" in entry and isinstance(entry.get("variables"), dict)):
-            raise NamingError(f"the state does not tell that of `{name}`", "it needs `state` and `variables`")
+            raise NamingError(f"the state has no value for `{name}`", "it needs `state` and `variables`")
         plant = components[name]
         yield plant.name, entry["state"]
         known = {variable.name: _whole_name(variable) for variable in plant.variables}

@@ -112,7 +112,7 @@ class _Reading:
         """Raise CifError if a supervisor is in the wrong place, or a requirement automaton occurs beside one."""
         for declaration in automata:
             if supervisor is not None and declaration.kind == "requirement":
-                self._fail(declaration, "a requirement automaton stands beside a supervisor")
+                self._fail(declaration, "the specification has a requirement automaton and a supervisor")
             has_alphabet = any(type(part).__name__ == "Alphabet" for part in declaration.declarations)
             if declaration.kind == "supervisor" and has_alphabet != (declaration is supervisor):
                 self._fail(declaration, "the automaton that synthesis adds is the last one and has an alphabet")
@@ -136,7 +136,7 @@ class _Reading:
 
     def _define(self, element: Any, read: Any, scope: dict[str, Any]) -> Any:
         if element.name in scope:
-            self._fail(read, f"there are two of the name '{element.name}'")
+            self._fail(read, f"the name '{element.name}' is declared twice")
         scope[element.name] = element
         return element
 
@@ -196,7 +196,7 @@ class _Reading:
             case "Range":
                 low, high = (self._number(bound, read) for bound in (read.low, read.high))
                 if low > high:
-                    self._fail(read, f"nothing is in int[{low}..{high}]")
+                    self._fail(read, f"the range int[{low}..{high}] is empty")
                 return ex.IntegerType(minimum=low, maximum=high)
         enumeration = self._find(read.enumeration, automaton)
         if not isinstance(enumeration, ex.Enumeration):
@@ -279,7 +279,7 @@ class _Reading:
             value, kind = self._expression(update.value, automaton, assigned=True)
             if not types.overlap(self._types[variable], kind):
                 self._fail(
-                    update, f"'{variable.name}' is {self._shown(variable)} and what it is to be {types.shown(kind)}"
+                    update, f"'{variable.name}' is {self._shown(variable)} and its new value {types.shown(kind)}"
                 )
             edge.updates.append(sct.Update(variable=variable, value=value))
         return edge
@@ -316,7 +316,7 @@ class _Reading:
         found = inner.get(first) or self._outer.get(first)
         for part in others:
             if found is not None and found not in self._inner:
-                self._fail(read, f"there is nothing in '{found.name}', so no '{read.text}'")
+                self._fail(read, f"'{found.name}' has no members, so no '{read.text}'")
             found = None if found is None else self._inner[found].get(part)
         if found is None:
             self._fail(read, f"there is no '{read.text}'")

@@ -174,7 +174,7 @@ def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Ve
         where = system.where(path.states[-1], referenced(requirement.condition))
         return f"{words(requirement.event)} can happen" + (f" where `{where}`" if where else "")
 
-    evidence = f"happens in {states}, asks for `{asked}`"
+    evidence = f"happens in {states}, requires `{asked}`"
     broken = {relation: happens & ~relation.asked[requirement]}
     return _nowhere(
         requirement_name(requirement), system, evidence, broken, explanation, last=lambda relation: relation.event
@@ -192,9 +192,9 @@ def ranges(system: GuardedSystem) -> Verdict:
     def explanation(requirement: sct.Requirement, path: Path) -> str:
         at = system.where(path.states[-1], referenced(requirement.condition))
         variables = listed([f"`{own.name}`" for own in requirement.ranges])
-        return f"{words(requirement.event)} brings {variables} out of range" + (f" where `{at}`" if at else "")
+        return f"{words(requirement.event)} sets {variables} to values out of range" + (f" where `{at}`" if at else "")
 
-    evidence = f"{system.size}, {counted(len(kept), 'edge')} that could leave a range"
+    evidence = f"{system.size}, {counted(len(kept), 'edge')} that could leave their ranges"
     return _nowhere("ranges", system, evidence, leaving, explanation, last=lambda requirement: requirement.event)
 
 
@@ -204,7 +204,7 @@ def invariant_holds(system: GuardedSystem, invariant: sct.StateInvariant | sct.I
     def explanation(_: object, path: Path) -> str:
         return f"it is violated where `{system.where(path.states[-1], referenced(invariant.condition))}`"
 
-    evidence = f"{system.size}, asks for `{RobotPrinter()(invariant.condition)}`"
+    evidence = f"{system.size}, requires `{RobotPrinter()(invariant.condition)}`"
     broken = {invariant: system.controlled & ~system.encoding.holds(invariant.condition)}
     return _nowhere(requirement_name(invariant), system, evidence, broken, explanation)
 
@@ -283,7 +283,7 @@ def maximal_permissiveness(system: GuardedSystem) -> Verdict:
     }
 
     def explanation(relation: EventRelation, _path: Path) -> str:
-        return f"{words(relation.event)} is forbidden here, though nothing speaks against it"
+        return f"{words(relation.event)} is forbidden here without a reason"
 
     evidence = f"{system.size}, {counted(len(controllable), 'controllable event')}"
     return _nowhere(

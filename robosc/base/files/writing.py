@@ -157,7 +157,7 @@ def _inside(folder: Path, name: str) -> Path:
     if relative.is_absolute() or not relative.parts or ".." in relative.parts or "\\" in name:
         raise OutputError(f"{name} is not a path inside of the output folder")
     if not path.parent.resolve().is_relative_to(folder):
-        raise OutputError(f"{path} leads out of {folder}: there is a link on the way")
+        raise OutputError(f"{path} leads out of {folder}: its path has a link")
     return path
 
 
@@ -166,11 +166,11 @@ def _refuse_existing(path: Path, found: os.stat_result) -> None:
         raise OutputError(f"{path} is a folder: a file of that name cannot be written")
     if not stat.S_ISREG(found.st_mode):
         what = "a link" if stat.S_ISLNK(found.st_mode) else reading.kind(found.st_mode)
-        raise OutputError(f"{path} is {what}: nothing but a regular file is replaced")
+        raise OutputError(f"{path} is {what}: only a regular file can be replaced")
     name = reading.input_named(found)
     if name is not None:
         also = "" if Path(name) == path else f", as {name}"
-        raise OutputError(f"{path} was read by this call{also}: what is read is not written over")
+        raise OutputError(f"{path} was read by this call{also}: an input file is not overwritten")
 
 
 @contextmanager
@@ -188,7 +188,7 @@ def _locked(folder: Path, made: ExitStack, signals: _Signals) -> Iterator[None]:
             while not _lock(descriptor):
                 signals.check()
                 if time.monotonic() > until:
-                    raise OutputError(f"another run of robosc goes on writing to {folder}: try again when it has ended")
+                    raise OutputError(f"another run of robosc still writes to {folder}: try again after it")
                 time.sleep(0.02)
             if folder.exists() and os.path.samestat(os.fstat(descriptor), folder.stat()):
                 yield

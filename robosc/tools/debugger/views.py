@@ -82,7 +82,7 @@ class Views:
         if last is None:
             return self._frame("start", self._model)
         if last.event == WAIT:
-            return self._frame("time has gone by", self._model)
+            return self._frame("time has passed", self._model)
         if last.event == REFUSE:
             return self._frame(self.told(last), self._model)
         event = self.events[last.event]

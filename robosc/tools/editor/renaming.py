@@ -116,7 +116,7 @@ def _require_same(
         for file in found.reading.files.values():
             skipped = (file.text.content[start:end] for start, end in file.skipped)
             if any(re.search(rf"\b{re.escape(word)}\b", part) for part in skipped):
-                raise _refused(f"mend {file.text.file} first: `{word}` stands in what cannot be read")
+                raise _refused(f"correct {file.text.file} first: `{word}` is in an unreadable part")
     by_path = {Path(name).resolve(): changes for name, changes in edits.items()}
     after = snapshot.edited(by_path)
     for path, found in analyses.items():
@@ -124,7 +124,7 @@ def _require_same(
         own = {name: by_path[at] for name in found.reading.files if (at := Path(name).resolve()) in by_path}
         why = "" if renamed is None else objection(found, renamed, own, mended if found is analysis else ())
         if why is not None:
-            raise _refused(f"this would change what {path.name} means{why and f': {why}'}")
+            raise _refused(f"this would change the meaning of {path.name}{why and f': {why}'}")
 
 
 def _refused(why: str) -> JsonRpcException:

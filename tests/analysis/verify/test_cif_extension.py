@@ -71,14 +71,14 @@ def changed(specification: Path, pattern: str, replacement: str) -> tuple[str, l
 def test_without_a_guard_a_variable_leaves_its_range(specification: Path) -> None:
     explanation, way = changed(specification, "edge P.down when [^;]*;", "edge P.down;")
     assert (
-        explanation == "`P.down` brings `n` out of its range in the generated CIF where `P.a and P.n = 0 and R.m = 0`"
+        explanation == "`P.down` sets `n` to a value out of its range in the generated CIF where `P.a and P.n = 0 and R.m = 0`"
     )
     assert way == []
 
 
 def test_the_range_of_a_variable_of_a_requirement_counts_too(specification: Path) -> None:
     explanation, way = changed(specification, r" and R\.m \+ 1 <= 2", "")
-    assert explanation.startswith("`P.up` brings `m` out of its range in the generated CIF where ")
+    assert explanation.startswith("`P.up` sets `m` to a value out of its range in the generated CIF where ")
     assert way.count("P.up") == 2
 
 

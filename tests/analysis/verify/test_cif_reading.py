@@ -104,27 +104,27 @@ REFUSED = {
     # Names
     "two automata of one name": (
         whole(after="plant q: location: initial; end"),
-        "line 21, column 7: there are two of the name 'q'",
+        "line 21, column 7: the name 'q' is declared twice",
     ),
     "two variables of one name": (
         whole(members="  disc bool v = true;"),
-        "line 13, column 13: there are two of the name 'v'",
+        "line 13, column 13: the name 'v' is declared twice",
     ),
     "two events of one name": (
         whole(members="  controllable c_a;"),
-        "line 13, column 16: there are two of the name 'c_a'",
+        "line 13, column 16: the name 'c_a' is declared twice",
     ),
     "an event called like a location": (
         whole(members="  controllable b;"),
-        "line 19, column 12: there are two of the name 'b'",
+        "line 19, column 12: the name 'b' is declared twice",
     ),
-    "two locations of one name": (whole(second="  location a;"), "line 19, column 12: there are two of the name 'a'"),
+    "two locations of one name": (whole(second="  location a;"), "line 19, column 12: the name 'a' is declared twice"),
     "a name with and without its dollar": (
         whole(members="  disc bool $v = true;"),
-        "line 13, column 13: there are two of the name 'v'",
+        "line 13, column 13: the name 'v' is declared twice",
     ),
-    "two literals of one name": (whole("enum F = red;"), "line 2, column 10: there are two of the name 'red'"),
-    "a literal called like an automaton": (whole("enum F = q;"), "line 3, column 7: there are two of the name 'q'"),
+    "two literals of one name": (whole("enum F = red;"), "line 2, column 10: the name 'red' is declared twice"),
+    "a literal called like an automaton": (whole("enum F = q;"), "line 3, column 7: the name 'q' is declared twice"),
     "an undeclared event": (edge("c_c;"), "line 18, column 10: there is no 'c_c'"),
     "an undeclared event elsewhere": (edge("q.c_c;"), "line 18, column 10: there is no 'q.c_c'"),
     "an undeclared automaton": (edge("r.c_a;"), "line 18, column 10: there is no 'r.c_a'"),
@@ -135,11 +135,11 @@ REFUSED = {
         whole(after="requirement v disables p.c_a;"),
         "line 21, column 13: there is no 'v'",
     ),
-    "a literal of its enumeration": (guard("e = E.red"), "line 18, column 23: there is nothing in 'E', so no 'E.red'"),
-    "something in a variable": (guard("v.v"), "line 18, column 19: there is nothing in 'v', so no 'v.v'"),
+    "a literal of its enumeration": (guard("e = E.red"), "line 18, column 23: 'E' has no members, so no 'E.red'"),
+    "something in a variable": (guard("v.v"), "line 18, column 19: 'v' has no members, so no 'v.v'"),
     "an automaton that a member hides": (
         whole(members="  controllable q;"),
-        "line 17, column 10: there is nothing in 'q', so no 'q.u_r'",
+        "line 17, column 10: 'q' has no members, so no 'q.u_r'",
     ),
     "a location for an event": (edge("a;"), "line 18, column 10: 'a' is not an event"),
     "a variable for a location": (edge("c_a goto x;"), "line 18, column 19: 'x' is not a location of 'p'"),
@@ -185,7 +185,7 @@ REFUSED = {
         edge("c_a do x := if x: 1 else 2 end;"),
         "line 18, column 25: a condition is bool and this is int[0..3]",
     ),
-    "a range of nothing": (whole(members="  disc int[3..2] y = 3;"), "line 13, column 8: nothing is in int[3..2]"),
+    "a range of nothing": (whole(members="  disc int[3..2] y = 3;"), "line 13, column 8: the range int[3..2] is empty"),
     "a start outside of the range": (
         whole(members="  disc int[0..3] y = 4;"),
         "line 13, column 18: 'y' is int[0..3] and its initial value int[4..4]",
@@ -200,11 +200,11 @@ REFUSED = {
     ),
     "an assigned value outside of the range": (
         edge("c_a do x := 4;"),
-        "line 18, column 17: 'x' is int[0..3] and what it is to be int[4..4]",
+        "line 18, column 17: 'x' is int[0..3] and its new value int[4..4]",
     ),
     "an assigned value of another type": (
         edge("c_a do x := v;"),
-        "line 18, column 17: 'x' is int[0..3] and what it is to be bool",
+        "line 18, column 17: 'x' is int[0..3] and its new value bool",
     ),
     "an assigned input": (
         whole(members="  input bool i;", first="    edge c_a do i := v;"),

@@ -145,7 +145,7 @@ def test_a_guard_that_forbids_too_much() -> None:
     made = model([tank()], [needs("c_trigger", "level < 7")], guards={"c_trigger": "tank.level < 6"})
     assert verdict(made, "requirement on tank.c_trigger").outcome is Outcome.PROVED
     assert refuted(made, "maximal permissiveness") == (
-        "request to `Tank` is forbidden here, though nothing speaks against it",
+        "request to `Tank` is forbidden here without a reason",
         ["tank.u_response(i_response = 6)", "tank.c_trigger"],
         [],
         [],
@@ -219,7 +219,7 @@ def test_a_livelock() -> None:
     taus = ["c_tau1", "c_tau2", "c_tau3"]
     made = model([plant("lamp", lamp, controllable=["c_trigger", "c_cancel", *taus])], guards={})
     assert refuted(made, "finite response") == (
-        "2 silent events can happen again and again, and nothing else then happens",
+        "2 silent events can happen again and again, and no other event happens then",
         ["lamp.c_trigger", "lamp.c_tau1"],
         ["lamp.c_tau2", "lamp.c_tau3"],
         [],
@@ -238,7 +238,7 @@ def test_a_livelock() -> None:
 def test_a_silent_event_that_changes_nothing_never_rests() -> None:
     made = model([plant("lamp", {"on": [edge("c_tau1")]}, controllable=["c_tau1"])], guards={})
     assert refuted(made, "finite response") == (
-        "1 silent event can happen again and again, and nothing else then happens",
+        "1 silent event can happen again and again, and no other event happens then",
         [],
         ["lamp.c_tau1"],
         [],

@@ -269,7 +269,7 @@ def test_without_a_compiler_c_is_skipped(monkeypatch: pytest.MonkeyPatch, tmp_pa
     verdict = validate_c(made, c_of(made))
     assert (verdict.outcome, verdict.explanation) == (
         Outcome.SKIPPED,
-        "there is no C compiler (cc, gcc, clang) to try it with",
+        "no C compiler found (cc, gcc, clang)",
     )
 
 
@@ -383,7 +383,7 @@ CIF_MUTANTS = {
         r" when strokes != 3 goto rest;",
         " goto rest;",
         [],
-        f"`component_Pump.c_tau2` {IN_CIF} where `Pump.run and Pump.strokes = 3`, though nothing leads there",
+        f"`component_Pump.c_tau2` {IN_CIF} where `Pump.run and Pump.strokes = 3`, in a state that the robot never reaches",
     ),
     "the start is another": (
         r"(disc int\[0\.\.7\] level = )3;",
@@ -451,7 +451,7 @@ def test_changed_cif_is_refuted(pattern: str, replacement: str, trace: list[str]
         (
             r"^  controllable c_tau2;",
             "  controllable c_tau1;",
-            "there are two of the name 'c_tau1'",
+            "the name 'c_tau1' is declared twice",
         ),
         (r"goto rest;", "goto rest", "Expected ';'"),
     ],
@@ -541,7 +541,7 @@ CHOSEN_MUTANTS = {
         r"^requirement (\S+) needs door.shut;$",
         r"plant invariant \1 needs door.shut;",
         [],
-        "the generated CIF without supervisor is wrong: it says what a supervisor does",
+        "the generated CIF without supervisor is wrong: it has statements of a supervisor",
     ),
     "a requirement asks of another event": (
         MODEL_FILE,

@@ -84,7 +84,7 @@ def test_a_link_in_a_files_place_is_neither_replaced_nor_followed(tmp_path: Path
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "file").symlink_to(tmp_path / "victim")
     before = tree(tmp_path)
-    with pytest.raises(OutputError, match="file is a link: nothing but a regular file is replaced"):
+    with pytest.raises(OutputError, match="file is a link: only a regular file can be replaced"):
         write({tmp_path / "out": {"file": "generated", "other": "1"}})
     assert tree(tmp_path) == before
 
@@ -256,7 +256,7 @@ def test_a_folder_is_waited_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     holder = os.open(tmp_path, os.O_RDONLY)
     fcntl.flock(holder, fcntl.LOCK_EX)
     monkeypatch.setattr(output, "PATIENCE_SECONDS", 0.1)
-    with pytest.raises(OutputError, match=f"another run of robosc goes on writing to {tmp_path}"):
+    with pytest.raises(OutputError, match=f"another run of robosc still writes to {tmp_path}"):
         write({tmp_path: {"a": "2"}, tmp_path.parent: {"b": "2"}})
     assert texts(tmp_path) == {"a": "1"}
     monkeypatch.setattr(output, "PATIENCE_SECONDS", 60)

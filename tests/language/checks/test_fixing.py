@@ -251,7 +251,7 @@ def test_no_brace_goes_behind_another_error(brace: str) -> None:
     found = checked(content)
     surplus = [finding for finding in found.findings if "one too many" in finding.message]
     assert [finding.edits for finding in surplus] == [()] * len(surplus)
-    assert {finding.hint for finding in surplus} <= {"mend the error in line 3 first"}
+    assert {finding.hint for finding in surplus} <= {"correct the error in line 3 first"}
     assert Counter(fixed(content))[brace] == Counter(content)[brace]
 
 

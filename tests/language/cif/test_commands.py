@@ -82,7 +82,7 @@ def test_a_guard_too_long_to_read_is_not_written_out(tmp_path: Path, monkeypatch
     assert (guard["guard"], guard["added_by_synthesis"], guard["ever_enabled"]) == (None, None, True)
     assert guard["guard_nodes"] > 1
     said = CliRunner().invoke(main, ["synthesize", str(path)]).stdout
-    assert f"guard: too long to write out: a decision diagram of {guard['guard_nodes']} nodes" in said
+    assert f"guard: too long to print: a decision diagram of {guard['guard_nodes']} nodes" in said
 
 
 def test_inputs_of_cif_are_counted_at_any_rate(specification: str) -> None:
@@ -145,7 +145,7 @@ def test_a_guard_keeps_what_it_is_copied_to_in_its_range(tmp_path: Path) -> None
     path.write_text(_OVERFLOW)
     told = CliRunner().invoke(main, ["synthesize", str(path)]).stdout
     assert "P.up\n    guard: P.n + 1 <= 3\n" in told
-    assert "`range of n: edge up do n := n + 1` (line 1)\n    forbids something in 1 state\n" in told
+    assert "`range of n: edge up do n := n + 1` (line 1)\n    restricts the robot in 1 state\n" in told
     answer = json.loads(CliRunner().invoke(main, ["synthesize", str(path), "--json"]).stdout)
     assert [event["guard"] for event in answer["events"]] == ["P.n + 1 <= 3"]
     CliRunner().invoke(main, ["transform", str(path), "--to", "cif", "-o", str(tmp_path)])
@@ -224,7 +224,7 @@ def test_one_model_that_the_tool_fails_at_does_not_hide_the_others(
     result = CliRunner().invoke(main, ["check", specification, str(failing), str(wrong)])
     assert result.exit_code == 70
     assert "there is no `u_fial` here" in result.output
-    assert "a fault of robosc itself, please report it: KeyError" in result.output
+    assert "internal error of robosc, please report it: KeyError" in result.output
 
 
 def test_a_saved_model_is_the_same(specification: str, tmp_path: Path) -> None:

@@ -158,7 +158,7 @@ def test_what_a_node_publishes_is_understood(run: Run, tmp_path: Path) -> None:
     [
         (json.dumps(REPORT | {"robot": "Tonk"}), "the state is one of the robot `Tonk`; the model is `Tank`"),
         (ECHOED.replace("Valve", "Value"), "there is no component `Value`; did you mean `Valve`?"),
-        (json.dumps({"components": {"Valve": "open"}}), "the state does not tell that of `Valve`; it needs `state`"),
+        (json.dumps({"components": {"Valve": "open"}}), "the state has no value for `Valve`; it needs `state`"),
         (ECHOED.replace('"level": 4', '"level": null'), "`Gauge.level` cannot be `None`; it is an integer from 0 to 9"),
         (f"data: '{ECHOED[:128]}...'\n---", "the state was cut short; `ros2 topic echo --full-length` prints it whole"),
     ],

@@ -110,7 +110,7 @@ def test_nothing_is_written_where_something_is_wrong(
 def test_unknown_targets(run: Run, door: Path, targets: str) -> None:
     answer = run("transform", door, "--to", targets)
     assert answer.exit_code == 2
-    assert "is none of cif, supervisor, ros1, ros2, ros2-layer, xmi" in answer.stderr
+    assert "expected one of cif, supervisor, ros1, ros2, ros2-layer, xmi" in answer.stderr
 
 
 def test_targets_one_by_one(run: Run, door: Path) -> None:

@@ -96,7 +96,7 @@ def test_a_table_and_a_count(run: Run, door: Path) -> None:
     assert answer.stdout.endswith(
         "\nc-translation: no C compiler is here\n\n"
         "Trusted, not examined: the reading of the text itself, the ROS node around the control loop, the C compiler, "
-        "RoboSC itself; docs/verify.md says more.\n\n"
+        "RoboSC itself; see docs/verify.md.\n\n"
         "Door: 12 proved, 1 skipped\n"
     )
 

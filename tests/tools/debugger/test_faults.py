@@ -128,19 +128,19 @@ def test_malformed_requests_are_answered(program: Program) -> None:
 
 def test_requests_out_of_order(session: Client, door: Path) -> None:
     for command in ("next", "continue", "stackTrace", "configurationDone", "pause", "stepBack", "evaluate"):
-        assert session.refused(command) == "nothing is launched yet"
-    assert session.refused("attach") == "the request `attach` is not known to robosc"
+        assert session.refused(command) == "no robot is launched yet"
+    assert session.refused("attach") == "the request `attach` is unknown"
     answer = session.ask("initialize", [1])
     assert answer["message"] == "`arguments` are no object"
     session.launch(door)
     model = {"path": str(door)}
     wrong: list[tuple[str, dict[str, Any], str]] = [
         ("setBreakpoints", {}, "`source` needs a `path`"),
-        ("setBreakpoints", {"source": model, "breakpoints": [{"line": "1"}]}, "`line` has to be a number"),
-        ("setBreakpoints", {"source": model, "breakpoints": 3}, "a list of objects is wanted"),
-        ("setFunctionBreakpoints", {"breakpoints": ["open"]}, "a list of objects is wanted"),
+        ("setBreakpoints", {"source": model, "breakpoints": [{"line": "1"}]}, "`line` must be a number"),
+        ("setBreakpoints", {"source": model, "breakpoints": 3}, "expected a list of objects"),
+        ("setFunctionBreakpoints", {"breakpoints": ["open"]}, "expected a list of objects"),
         ("scopes", {"frameId": 99}, "there is no such frame"),
-        ("variables", {"variablesReference": 0}, "there is no such variable any more: the robot has gone on"),
+        ("variables", {"variablesReference": 0}, "this variable does not exist any more: the robot has continued"),
         ("exceptionInfo", {}, "the robot has stopped for another reason"),
     ]
     for command, arguments, message in wrong:

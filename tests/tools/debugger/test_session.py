@@ -118,12 +118,12 @@ def test_back_and_forth(session: Client, yard: Path) -> None:
     assert told == ["step"] * 6
     assert session.frames()[0]["name"] == "request to `Gate.open`"
     assert session.go("stepBack")["description"] == "one step back"
-    assert session.go("stepBack")["description"] == "this is where the robot began"
+    assert session.go("stepBack")["description"] == "this is the start of the robot"
     assert session.go()["description"] == "the script is at its end"
     session.do("setFunctionBreakpoints", breakpoints=[{"name": "go"}])
     assert session.go("reverseContinue")["description"] == "request to `Cart.go`"
     assert session.frames()[-1]["name"] == "next: line 4 of yard.script"
-    assert session.go("reverseContinue")["description"] == "this is where the robot began"
+    assert session.go("reverseContinue")["description"] == "this is the start of the robot"
 
 
 def test_breakpoints_by_line(session: Client, yard: Path) -> None:
@@ -395,7 +395,7 @@ def test_a_run_at_random_is_the_same_for_the_same_seed(session: Client, yard: Pa
 def test_a_run_that_nothing_stops_is_paused(session: Client, yard: Path) -> None:
     session.launch(yard, most=1_000_000_000)
     session.do("continue", threadId=1)
-    assert session.refused("stackTrace", threadId=1) == "the robot is running: pause it first"
+    assert session.refused("stackTrace", threadId=1) == "the robot runs: pause it first"
     assert session.do("threads")["threads"] == [{"id": 1, "name": "Yard"}]
     assert session.do("setFunctionBreakpoints", breakpoints=[]) == {"breakpoints": []}
     session.do("pause", threadId=1)
@@ -413,8 +413,8 @@ def test_nothing_can_happen(session: Client, tmp_path: Path) -> None:
     )
     session.launch("once.rscd")
     stopped = session.go()
-    assert (stopped["reason"], stopped["description"]) == ("exception", "nothing can happen any more")
-    assert session.go("next")["description"] == "nothing can happen any more"
+    assert (stopped["reason"], stopped["description"]) == ("exception", "no event can happen any more")
+    assert session.go("next")["description"] == "no event can happen any more"
 
 
 def test_a_model_from_cif(session: Client, tmp_path: Path) -> None:

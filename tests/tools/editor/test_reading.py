@@ -452,7 +452,7 @@ async def test_a_library_elsewhere_in_the_project_is_offered(client: Editor, fol
     (action,) = await client.text_document_code_action_async(
         _about(uri, types.CodeActionParams, range=finding.range, context=types.CodeActionContext([finding]))
     )
-    assert action.title == f"look for libraries in {folder / 'shared'}, too"
+    assert action.title == f"also search libraries in {folder / 'shared'}, too"
     # The client takes a code action with a command for a command.
     command = types.ExecuteCommandParams(ADD_LIBRARY_FOLDER, [(folder / "shared").as_uri()])
     await client.workspace_execute_command_async(command)

@@ -60,8 +60,8 @@ def test_a_keyword_gets_its_mark(project: Project) -> None:
 @pytest.mark.parametrize(
     ("marker", "new", "why"),
     [
-        ("open {", "closed", "this would change what cart.rscd means"),
-        ("Door {", "Base", "this would change what cart.rscd means"),
+        ("open {", "closed", "this would change the meaning of cart.rscd means"),
+        ("Door {", "Base", "this would change the meaning of cart.rscd means"),
         ("open {", "2nd", "`2nd` is not a name"),
         ("open {", "on foot", "`on foot` is not a name"),
     ],
@@ -91,7 +91,7 @@ def test_a_name_that_another_one_would_take_is_refused(project: Project, tmp_pat
 def test_what_can_not_be_read_is_no_basis(project: Project, tmp_path: Path) -> None:
     text = ROBOT.replace("drive with 0.5", "drive wth Door.open")
     project.put((tmp_path / "cart.rscd").as_uri(), 2, text)
-    with pytest.raises(JsonRpcException, match=r"mend .*cart\.rscd first: `drive` stands in what cannot be read"):
+    with pytest.raises(JsonRpcException, match=r"mend .*cart\.rscd first: `drive` is in an unreadable part"):
         renamed(project, text, "drive needs", "go")
 
 
