@@ -129,7 +129,10 @@ class _Findings:
         subject = f"this transition of `{name(plant)}`" if silent else f"`{name(plant)}`"
         done = "taken" if silent else _DONE.get(plant.kind, "sent")
         if observed.forbidden is Forbidden.BY_REQUIREMENTS:
-            why, hint = f"in every state where it could be, {forbid(observed.requirements, 'it')}", "loosen its requirements"
+            why, hint = (
+                f"in every state where it could be, {forbid(observed.requirements, 'it')}",
+                "loosen its requirements",
+            )
             if observed.trace is not None:
                 way = f"after {in_words(observed.trace, self._model)}" if observed.trace else "at the start"
                 why += f", for example {way}"

@@ -195,7 +195,7 @@ class Builder:
             if code not in _ESCAPES:
                 start = node.position + 1 + found.start()
                 hint = Repair("write `\\\\` for a backslash", f"\\\\{code}")
-                self._fault(node, f"`\\{code}` means nothing in a string", hint, start)
+                self._fault(node, f"`\\{code}` is not an escape sequence", hint, start)
             return _ESCAPES.get(code, code)
 
         text = _ESCAPE.sub(replace, node.value[1:-1])

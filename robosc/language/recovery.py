@@ -123,7 +123,7 @@ class _Recovery:
         tokens = self._tokens
         if root.after < len(tokens) and tokens[root.after].kind is not Kind.OPEN_COMMENT:
             token = tokens[root.after]
-            hint = "a file holds one robot or one library" if token.is_keyword("robot", "library") else None
+            hint = "a file has one robot or one library" if token.is_keyword("robot", "library") else None
             self._report(root.after, f"found {found(token)}, expected the end of the file", hint)
             self._skip(root.after, len(tokens))
 
@@ -138,7 +138,7 @@ class _Recovery:
             self._report(*complex_, "use variables or functions for its parts")
             self._skip_block(block)
         elif self._is_library and block.level is DEFINITIONS and self._starts(block, "requirement", "provide"):
-            message = f"a library holds no {self._tokens[block.first].text} statements"
+            message = f"a library has no {self._tokens[block.first].text} statements"
             self._report(block.first, message, "write it in the robot that imports the library")
             self._skip_block(block)
         else:
@@ -302,7 +302,7 @@ def _by_cause(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
         word = finding.edits[0].text if finding.edits else ""
         if word.startswith("^") and firsts.setdefault(word, len(found)) < len(found):
             first = found[firsts[word]]
-            other = Related(finding.file, finding.span, f"here `{word}` is missing, too")
+            other = Related(finding.file, finding.span, f"`{word}` is also missing here")
             found[firsts[word]] = replace(first, edits=first.edits + finding.edits, related=(*first.related, other))
         else:
             found.append(finding)

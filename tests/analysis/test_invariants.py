@@ -106,7 +106,7 @@ def test_synthesis_keeps_away_from_where_something_uncontrollable_leads_to_a_vio
     )
     assert never.hint == (
         "loosen the requirement (what the action `needs` cancels it; `never` and `always` do not let it start), or "
-        "leave it out; `robosc explain --why-never Base.drive` tells more"
+        "remove it; `robosc explain --why-never Base.drive` explains why"
     )
 
 
@@ -132,9 +132,7 @@ def test_what_could_happen_only_beyond_names_the_requirement(tmp_path: Path) -> 
 def test_a_state_that_is_out_of_reach_says_what_keeps_it_out(tmp_path: Path) -> None:
     made = sct_of(tmp_path, STOP, BASE, "requirement SR1: never Stop.stopped and Base.driving")
     unreachable = next(finding for finding in supervise(made).findings if finding.rule == "unreachable-state")
-    assert unreachable.message.startswith(
-        "therefore, `Base` is never in `driving`: in `idle` the supervisor holds back"
-    )
+    assert unreachable.message.startswith("therefore, `Base` is never in `driving`: in `idle` the supervisor prevents")
     assert unreachable.message.endswith("`requirement SR1: never Stop.stopped and Base.driving` is violated")
 
 

@@ -314,7 +314,7 @@ def test_an_action_is_not_cancelled_for_an_order(tmp_path: Path) -> None:
             "requirement at most 1001 place since grip",
             "integer-range: `at most` counts to 1001, expected a number from 1 to 1,000",
         ),
-        ("requirement at most 1.5 place since grip", "type: the number behind `at most` must be integer, found double"),
+        ("requirement at most 1.5 place since grip", "type: the number after `at most` must be integer, found double"),
         (
             "requirement { } after grip",
             "requirement-target: the requirement restricts nothing, expected at least one event in the braces",
@@ -349,7 +349,7 @@ def test_an_action_is_not_cancelled_for_an_order(tmp_path: Path) -> None:
         ),
         (
             "requirement T: automaton { initial state a { on grip if 1 } }",
-            "type: the condition behind `if` must be boolean, found integer",
+            "type: the condition after `if` must be boolean, found integer",
         ),
     ],
 )

@@ -93,10 +93,15 @@ FAULTS = [
         '"/move", type: LaserScan',
         '"/move", send: change, type: LaserScan',
         "send",
-        "`send: change` stands behind the type",
+        "write `send: change` after the type",
     ),
     ('identifier: "/move", type: LaserScan', 'type: LaserScan, identifier: "/move"', "identifier", "before all else"),
-    ("links laser\n    service", "links laser, send: change\n    service", ",", "`links` stands behind all else"),
+    (
+        "links laser\n    service",
+        "links laser, send: change\n    service",
+        ",",
+        "write `links` after all other clauses",
+    ),
     ("links laser\n    service", ", send: once links laser\n    service", "once", "write `send: change`, or leave"),
     ("links laser\n\n    behaviour", "link laser\n\n    behaviour", "link", "did you mean `links`?"),
     ("behaviour {", "behavior {", "behavior", "did you mean `behaviour`?"),
@@ -125,7 +130,7 @@ FAULTS = [
     ("and Scanner.driving", "-> Scanner.driving", "->", "write `=>`"),
     ("and Scanner.driving", "and state", "state", "write `^state`"),
     ("disables reset", "disable reset", "disable", "did you mean `disables`?"),
-    ("{ count: 3 }", "count: 3 }", ":", "the properties of an object stand in braces"),
+    ("{ count: 3 }", "count: 3 }", ":", "write the properties of an object in braces"),
     ("{ count: 3 }", "{ count: 3, }", "}", "leave out the comma before it"),
     ("count: 3", "count = 3", "=", "write `:`"),
     ("count: 3", "count: 3.", ".", "digits on both sides"),
@@ -217,7 +222,7 @@ def test_a_library_holds_no_statements(tmp_path: Path, statement: str) -> None:
         f"library L {{ component C {{ incoming message m with type: none }} {statement} interface i use T of p }}",
     )
     assert underlined(found) == [("syntax", statement.split(maxsplit=1)[0]), ("syntax", "of")]
-    assert found.findings[0].message == f"a library holds no {statement.split(maxsplit=1)[0]} statements"
+    assert found.findings[0].message == f"a library has no {statement.split(maxsplit=1)[0]} statements"
 
 
 @pytest.mark.parametrize("text", ["", " \n", "// nothing\n", "/* nothing */"])

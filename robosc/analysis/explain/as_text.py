@@ -67,7 +67,8 @@ class Renderer:
         if told.allowed:
             yield f"The {event} can happen here{'' if told.event.controllable else ', and nothing prevents it'}."
         elif told.by is None:
-            yield f"Neither the robot nor a requirement forbids the {event} here, but the robot never reaches this state."
+            allows = f"Neither the robot nor a requirement forbids the {event} here"
+            yield f"{allows}, but the robot never reaches this state."
         else:
             yield f"The {event} cannot happen here: {_because(told)}."
         yield from self._situation(told.situation)
@@ -168,9 +169,7 @@ class Renderer:
             yield from self._refused(told.beyond.refusal)
         elif told.conflict:
             all_of = "This allows it in" if len(told.conflict) == 1 else "Together, these allow it in"
-            yield from self._section(
-                f"{all_of} no state that the robot can reach:", self._notes(told.conflict)
-            )
+            yield from self._section(f"{all_of} no state that the robot can reach:", self._notes(told.conflict))
         if not nearest.needless:
             yield from self._loosened(told.loosenings)
 

@@ -46,7 +46,9 @@ def finite_response(system: GuardedSystem) -> Verdict:
     evidence = f"{system.size}, {counted(len(system.internal), 'silent event')}"
     if found.divergent.satisfiable():
         stem, cycle = _lasso(system, found.divergent)
-        explanation = f"{counted(len(cycle), 'silent event')} can happen again and again, and no other event happens then"
+        explanation = (
+            f"{counted(len(cycle), 'silent event')} can happen again and again, and no other event happens then"
+        )
         return Verdict(FINITE, Outcome.REFUTED, evidence, explanation, stem, cycle)
     if found.bound is None:
         return Verdict(FINITE, Outcome.SKIPPED, evidence, _GIVEN_UP)

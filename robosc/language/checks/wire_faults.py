@@ -136,7 +136,7 @@ class _Comparison:
                 yield from self._property(owner, fields[owner.name], name)
             else:
                 close = get_close_matches(owner.name, fields, n=1)
-                hint = f"did you mean `{close[0]}`?" if close else "write a field that it has, or leave this one out"
+                hint = f"did you mean `{close[0]}`?" if close else "write an existing field, or leave this one out"
                 others = {field: fitting for field in fields if (fitting := _type_for(fields[field])) is not None}
                 taken = {other.name for other in definition.properties}
                 others = {field: fitting for field, fitting in others.items() if field not in taken}

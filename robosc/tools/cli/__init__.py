@@ -173,7 +173,7 @@ def _cmake_dir(context: click.Context, _parameter: click.Parameter, asked: bool)
         context.exit()
 
 
-_EPILOG = """`robosc COMMAND --help` describes a command. The documentation begins at docs/index.md in RoboSC's repository.
+_EPILOG = """`robosc COMMAND --help` describes a command. The documentation begins at docs/index.md in the repository.
 
 Shell completion: add `eval "$(_ROBOSC_COMPLETE=bash_source robosc)"` to ~/.bashrc. docs/cli.md has the lines for zsh
 and fish.

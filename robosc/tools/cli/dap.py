@@ -31,7 +31,9 @@ class _Kept(Report):
 
 
 @click.command("dap")
-@click.option("--port", type=click.IntRange(0, 65535), help="Listen on this TCP port of this machine; 0 selects a free port.")
+@click.option(
+    "--port", type=click.IntRange(0, 65535), help="Listen on this TCP port of this machine; 0 selects a free port."
+)
 @click.option("--once", is_flag=True, help="With --port: exit after the first client.")
 @synthesizer
 def command(port: int | None, once: bool) -> None:

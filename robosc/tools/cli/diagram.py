@@ -41,7 +41,12 @@ _KINDS = ("behaviour", "ros-graph", "plants")
     show_default=True,
     help="The output format; dot only for models, plantuml only for metamodels.",
 )
-@click.option("-o", "--output", type=click.Path(dir_okay=False), help="Write the diagram to this file instead of the standard output.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(dir_okay=False),
+    help="Write the diagram to this file instead of the standard output.",
+)
 @paths
 def command(
     model: str | None,

@@ -14,8 +14,7 @@ from robosc.tools.cli.options import Paths, paths
     "--port",
     type=click.IntRange(0, 65535),
     metavar="PORT",
-    help="Listen on this TCP port (0: a free port, which is printed) instead of the standard"
-    " input and output.",
+    help="Listen on this TCP port (0: a free port, which is printed) instead of the standard input and output.",
 )
 @paths
 def command(port: int | None, paths: Paths) -> None:

@@ -29,7 +29,9 @@ _NONE = "-"
 @click.command("new")
 @click.argument("name")
 @click.option("--ros", type=click.Choice(["1", "2"]), help="The ROS version in README.md.  [default: 2]")
-@click.option("--sensor", "sensors", multiple=True, metavar="MESSAGE", help="Message that allows or forbids driving; repeatable.")
+@click.option(
+    "--sensor", "sensors", multiple=True, metavar="MESSAGE", help="Message that allows or forbids driving; repeatable."
+)
 @click.option("--command", "command", metavar="MESSAGE", help="Command to send while all sensors allow it.")
 @click.option("--stop", metavar="MESSAGE", help="Command to send otherwise; `-` for none.")
 @click.option("--service", metavar="SERVICE", help="Service to call first, until it succeeds.")

@@ -32,11 +32,18 @@ if TYPE_CHECKING:
 
 @click.command("simulate")
 @model
-@click.option("--script", type=click.Path(allow_dash=True), help="Play the script FILE (-: standard input); print JSON Lines.")
+@click.option(
+    "--script", type=click.Path(allow_dash=True), help="Play the script FILE (-: standard input); print JSON Lines."
+)
 @click.option("--loop", is_flag=True, help="Run the control loop: lines are incoming events, `tick`, `begin`, `end`.")
 @click.option("--random", "number", type=click.IntRange(0), metavar="N", help="Perform N random events; print them.")
 @click.option("--seed", type=int, default=0, show_default=True, help="The seed of random numbers.")
-@click.option("--config", "chosen", type=FILE, help="With --loop: the configuration file.  [default: controller-config.json near the model]")
+@click.option(
+    "--config",
+    "chosen",
+    type=FILE,
+    help="With --loop: the configuration file.  [default: controller-config.json near the model]",
+)
 @parameters
 @synthesizer
 @paths

@@ -55,7 +55,13 @@ if TYPE_CHECKING:
 @click.command("test")
 @model
 @click.argument("scenarios", nargs=-1, required=True, type=FILE, metavar="FILE...")
-@click.option("--engine", type=click.Choice(["python", "c"]), default="python", show_default=True, help="The control loop that plays.")
+@click.option(
+    "--engine",
+    type=click.Choice(["python", "c"]),
+    default="python",
+    show_default=True,
+    help="The control loop that plays.",
+)
 @over_ros("Also play with a ROS 2 node.")
 @click.option(
     "--node",

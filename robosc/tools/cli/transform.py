@@ -42,7 +42,9 @@ def _targets(_context: click.Context, _parameter: click.Parameter, values: Seque
 
 def _into(_context: click.Context, _parameter: click.Parameter, name: str | None) -> str | None:
     if name is not None and not _INCLUDING.fullmatch(name):
-        raise click.BadParameter(f"{name!r} is not a name of a package or a target of CMake: use letters, digits, _, - and .")
+        raise click.BadParameter(
+            f"{name!r} is not a name of a package or a target of CMake: use letters, digits, _, - and ."
+        )
     return name
 
 

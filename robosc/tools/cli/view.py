@@ -32,14 +32,24 @@ if TYPE_CHECKING:
 @over_ros("Show a running ROS 2 robot.")
 @click.option("--node", help="The node to show, such as /robot/line_follower_controller.  [default: its usual name]")
 @click.option("--log", type=click.Path(), help="Show an event log, a script, or a recording (bag, MCAP).")
-@click.option("--trace", "refuted", metavar="PROPERTY", help="Show the counterexample of this property of `verify`; `any` selects the first.")
+@click.option(
+    "--trace",
+    "refuted",
+    metavar="PROPERTY",
+    help="Show the counterexample of this property of `verify`; `any` selects the first.",
+)
 @click.option("--seed", type=int, default=0, show_default=True, help="The seed of random events.")
 @click.option("--export", "folder", type=click.Path(), help="Write the page to FOLDER. It opens without a server.")
 @click.option("--open", "opens", is_flag=True, help="Open a browser.")
 @click.option(
     "--port", type=click.IntRange(0, 65535), default=0, help="Listen on this TCP port.  [default: a free port]"
 )
-@click.option("--address", default="127.0.0.1", show_default=True, help="Listen on this address. Addresses of other machines need a token.")
+@click.option(
+    "--address",
+    default="127.0.0.1",
+    show_default=True,
+    help="Listen on this address. Addresses of other machines need a token.",
+)
 @parameters
 @synthesizer
 @paths

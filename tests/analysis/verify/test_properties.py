@@ -123,7 +123,7 @@ def test_a_requirement_that_the_supervisor_forgot() -> None:
     requirement = needs("c_trigger", "level < 7", text="requirement drain needs Tank.level < 7")
     made = model([tank()], [requirement], guards={"c_trigger": "tank.level <= 7"})
     name = "requirement drain needs Tank.level < 7"
-    assert verdict(made, name).evidence == "happens in 8 states, asks for `Tank.level < 7`"
+    assert verdict(made, name).evidence == "happens in 8 states, requires `Tank.level < 7`"
     assert refuted(made, name) == (
         "request to `Tank` can happen where `Tank.level = 7`",
         ["tank.u_response(i_response = 7)", "tank.c_trigger"],
@@ -137,7 +137,7 @@ def test_what_a_requirement_became_is_told() -> None:
     requirement = disables("c_trigger", "level < 7 or tank.any", text="requirement drain needs Tank.level < 7")
     made = model([tank()], [requirement], guards={"c_trigger": "false"})
     assert verdict(made, "requirement drain needs Tank.level < 7").evidence == (
-        "happens in 0 states, asks for `!(Tank.level < 7 or Tank.any)`"
+        "happens in 0 states, requires `!(Tank.level < 7 or Tank.any)`"
     )
 
 
@@ -286,7 +286,7 @@ def test_a_bound_that_is_too_low() -> None:
     made = model([timer()], guards={})
     made.supervisor.settlingBound = 2
     assert refuted(made, "bounded response") == (
-        "the supervisor says that at most 2 silent events happen in a row",
+        "according to the supervisor, at most 2 silent events happen in a row",
         ["timer.u_response(i_response = 3)"],
         ["timer.c_tau1"] * 3,
         [],
@@ -492,6 +492,6 @@ def test_counting_is_given_up_at_some_point() -> None:
         for name in ("finite response", "bounded response"):
             found = verdict(made, name)
             assert (found.outcome, found.trace) == (Outcome.SKIPPED, ())
-            assert "was given up" in found.explanation
+            assert "too many steps" in found.explanation
     with patch("robosc.synthesis.COMPLETION_EFFORT", 100):
         assert synthesize(made).supervisor.settlingBound is None

@@ -175,7 +175,7 @@ LOOP: dict[str, Fault] = {
     ),
     "messages to one topic do not exclude each other": (
         *(_ROLES, "_by_source(self.triggers) if len(events) > 1", "_by_source(self.triggers) if False", "Pairs"),
-        "request to `First.left`, request to `First.right` exclude each other in a round by the text, and not so in",
+        "request to `First.left`, request to `First.right` exclude each other in a round by the text, and not in th",
     ),
     "a service starts again in a tick": (
         *(_ROLES, "(sct.PlantKind.service, sct.PlantKind.action)", "()", "Pairs"),

@@ -362,7 +362,7 @@ def at(content: str, old: str, new: str) -> Edit:
         ("state moving", "state idle", "line 6: "),
         ("robot", "/* robot */ robot", "a comment would change"),
         ("go with", 'go with identifier: "go", ', None),
-        ("message go", "message went", "`go` would stand for something else"),
+        ("message go", "message went", "`go` would refer to something else"),
         ("    incoming", "    /* incoming */ incoming", "a comment would change"),
     ],
 )

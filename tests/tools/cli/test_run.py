@@ -23,7 +23,7 @@ def run(*arguments: str | Path, blocked: str = "") -> subprocess.CompletedProces
 def test_a_node_of_ros_1_is_generated() -> None:
     done = run(MODEL, "--ros1")
     assert done.returncode == 2
-    assert "for ROS 1 generate one with `transform --to ros1`" in done.stderr
+    assert "for ROS 1, generate a node with `transform --to ros1`" in done.stderr
 
 
 @pytest.mark.slow

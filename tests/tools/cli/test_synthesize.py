@@ -268,7 +268,7 @@ def test_errors_come_first(run: Run, broken: Path) -> None:
 def test_a_library_has_no_supervisor(run: Run, library: Path) -> None:
     answer = run("synthesize", library)
     assert answer.exit_code == 2
-    assert "holds a library" in answer.stderr
+    assert "has a library" in answer.stderr
 
 
 def test_warnings_of_synthesis_leave_the_status_alone(run: Run, courier: Path) -> None:

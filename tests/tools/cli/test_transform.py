@@ -300,7 +300,7 @@ def test_what_a_package_includes(run: Run, door: Path, tmp_path: Path) -> None:
     [
         (["--to", "cif", "--into", "x"], "--into is for one of supervisor, ros1, ros2"),
         (["--to", "ros1,ros2", "--into", "x"], "--into is for one of supervisor, ros1, ros2"),
-        (["--to", "ros1", "--into", "x)"], "names neither a package nor a target"),
+        (["--to", "ros1", "--into", "x)"], "is not a name of a package or a target"),
     ],
 )
 def test_what_nothing_can_include(run: Run, door: Path, arguments: list[str], said: str) -> None:

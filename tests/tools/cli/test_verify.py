@@ -82,7 +82,7 @@ def test_a_table_and_a_count(run: Run, door: Path) -> None:
         ["non-blocking", "proved", "2 states, 2 of them marked"],
         ["controllability", "proved", "2 states, 0 uncontrollable events"],
         ["input-enabledness", "proved", "2 states, 0 events"],
-        ["requirement open needs Leaf.closed (line 17)", "proved", "happens in 1 state, asks for `Leaf.closed`"],
+        ["requirement open needs Leaf.closed (line 17)", "proved", "happens in 1 state, requires `Leaf.closed`"],
         ["no dead events", "proved", "2 states, 2 events"],
         ["maximal permissiveness", "proved", "2 states, 2 controllable events"],
         ["finite response", "proved", "2 states, 0 silent events"],

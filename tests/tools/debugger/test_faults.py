@@ -122,7 +122,7 @@ def test_malformed_requests_are_answered(program: Program) -> None:
         assert answer is not None
         assert (answer["type"], answer["request_seq"], answer["command"]) == ("response", number, command)
         assert not answer["success"]
-        assert answer["message"].startswith("a message is no ")
+        assert answer["message"].startswith("a message is not ")
     program.do("disconnect")
 
 
@@ -175,7 +175,7 @@ def test_what_can_not_be_launched(program: Program, tmp_path: Path) -> None:
         ({"program": "door.rscd", "counterexample": "nonblocking"}, "did you mean `non-blocking`?"),
         ({"program": "broken.rscd"}, "broken.rscd:17:"),
         ({"program": "stuck.rscd"}, "the supervisor is empty"),
-        ({"program": "library.rscd"}, "holds a library"),
+        ({"program": "library.rscd"}, "has a library"),
     ]
     for arguments, message in wrong:
         assert message in session.refused("launch", **arguments)

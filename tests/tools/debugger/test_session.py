@@ -229,7 +229,7 @@ def test_what_is_seen(session: Client, yard: Path) -> None:
     assert why["shortest way"]["value"] == "request to `Gate.open`"
     # What was seen before the robot went on is gone.
     session.go("stepBack")
-    assert "the robot has gone on" in session.refused("variables", variablesReference=reason["variablesReference"])
+    assert "the robot has continued" in session.refused("variables", variablesReference=reason["variablesReference"])
 
 
 def test_synthesis_as_the_reason(session: Client, tmp_path: Path) -> None:
@@ -240,7 +240,7 @@ def test_synthesis_as_the_reason(session: Client, tmp_path: Path) -> None:
     session.launch("porter.rscd")
     session.console("open")
     reason = session.scope("Cannot happen")["message_enter.c_trigger"]
-    assert reason["value"].startswith("forbidden by synthesis, which asks for component_Door.held; otherwise, after")
+    assert reason["value"].startswith("forbidden by synthesis, which requires component_Door.held; otherwise, after")
     why = session.children(reason)
     assert "`Base` cannot get back to a marked state" in why["otherwise"]["value"]
     assert why["would help"]["value"] == "`Door` goes from `ajar` to `held` by request to `Door.hold`"

@@ -26,7 +26,7 @@ def enum_default(base: rsc.Base) -> Iterator[Finding]:
         if not defaults:
             yield Finding(
                 enum,
-                f"enum `{enum.name}` has no default rule, expected one for data that no other rule matches",
+                f"enum `{enum.name}` has no default rule, expected one for data that matches no other rule",
                 Insertion(
                     "add a last rule, such as `default -> other`",
                     " default -> other",
