@@ -106,8 +106,8 @@ def test_the_cause_comes_first() -> None:
 def test_the_hint_says_what_to_write_and_to_run() -> None:
     cause, *_ = findings(TURNS)
     assert cause.hint == (
-        "loosen the requirement: add a `needs` requirement for each command, or a command that undoes the event, or remove "
-        "it; `robosc explain --why-never Spindle.lower` explains why"
+        "loosen the requirement: add a `needs` requirement for each command, or a command that undoes the event, "
+        "or remove it; `robosc explain --why-never Spindle.lower` explains why"
     )
 
 

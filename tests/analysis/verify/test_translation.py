@@ -383,8 +383,8 @@ CIF_MUTANTS = {
         r" when strokes != 3 goto rest;",
         " goto rest;",
         [],
-        f"`component_Pump.c_tau2` {IN_CIF} where `Pump.run and Pump.strokes = 3`, in a state that the robot never"
-        " reaches",
+        f"`component_Pump.c_tau2` {IN_CIF} where `Pump.run and Pump.strokes = 3`, in a state that the robot"
+        + " never reaches",
     ),
     "the start is another": (
         r"(disc int\[0\.\.7\] level = )3;",
