@@ -78,19 +78,19 @@ CHANGES = {
             ' href="EmergencyStopLibrary.robosc.xmi#/"/><definition href="#//@definitions.3"/></type></definitions>'
             "</robosc:Library>"
         ),
-        "'C' is made of itself",
+        "'C' contains itself",
     ),
     "doubled step": (
         GRAPH,
         r'(\s*<steps [^>]*name="ranges"/>)',
         r"\1\1",
-        "'ranges' is read or written as an array here, but as an object elsewhere",
+        "'ranges' has the type an array here, but an object elsewhere",
     ),
     "field in a number": (
         "Warehouse.rosgraph.xmi",
         r"(<path>pose</path>)\s*<path>x</path>",
         r"\1",
-        "'pose' is read or written as an object here, but as DoubleType elsewhere",
+        "'pose' has the type an object here, but DoubleType elsewhere",
     ),
 }
 
@@ -149,7 +149,7 @@ OF_TEMPLATES = {
     "component of itself": (
         r'(InstantiatedComponent" [^>]*definition="//@definitions)\.0"',
         r'\1.1"',
-        "'X' is made of itself",
+        "'X' contains itself",
     ),
     "no template": (
         r'(InstantiatedComponent" [^>]*definition="//@definitions)\.0"',
@@ -159,12 +159,12 @@ OF_TEMPLATES = {
     "template without text": (
         r'name="X">',
         r'name="X"><parameters name="m"><type xsi:type="robosc:IntegerDataType"/></parameters>',
-        "the template 'X' has no text of its own",
+        "the template 'X' has no content of its own",
     ),
     "template in place of a component": (
         r'(<left [^>]*component="//@definitions)\.1"',
         r'\1.0"',
-        "it does not say whose 'v' is meant",
+        "the component of 'v' is missing",
     ),
 }
 

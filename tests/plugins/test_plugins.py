@@ -129,8 +129,8 @@ TARGETS = {
     "x = (": "SyntaxError",
     "def generate(models, configuration):\n    return {}\n": "`robosc_broken` has no function `preconditions`",
     f"{TARGET}return {{}}['x']\n": "KeyError: 'x'",
-    f"{TARGET}return {{'../out': ''}}\n": "it gives '../out', which is not a relative path with a text",
-    f"{TARGET}return {{'file': b''}}\n": "it gives 'file', which is not a relative path with a text",
+    f"{TARGET}return {{'../out': ''}}\n": "it returns '../out', which is not a relative path with a text",
+    f"{TARGET}return {{'file': b''}}\n": "it returns 'file', which is not a relative path with a text",
 }
 
 

@@ -254,7 +254,10 @@ def test_a_node_that_does_something_else_is_told_at_the_line(run_ros2: Runner, t
     model.write_text(text.replace(" and EmergencyStop.in_service", "").replace(" or EmergencyStop.stopped", ""))
     status, said = played(run_ros2, run_ros2.ros.python, tmp_path, STOPS, "--node", shlex.join(run_ros2.command(model)))
     assert (status, "1 scenario, 1 failed" in said) == (1, True), said
-    assert "own.scenarios:7:3: error: the node does something else: the trace says out message_halt.c_trigger" in said
+    assert (
+        "own.scenarios:7:3: error: the node deviates from the scenario: the trace has out message_halt.c_trigger"
+        in said
+    )
 
 
 @pytest.mark.parametrize(

@@ -59,7 +59,7 @@ def step_in_words(text: str) -> StepInWords | None:
         return None
     data = data_in_words(text, step.start("data")) if step["data"] else None
     if step["message"] and not isinstance(data, dict):
-        raise StepError("a message is an object with fields", 0, 'write `with message {"ranges": [1.0]}`')
+        raise StepError("a message must be an object with fields", 0, 'write `with message {"ranges": [1.0]}`')
     return StepInWords(event_in_words(step), not step["kind"], step["reason"], data, bool(step["message"]))
 
 

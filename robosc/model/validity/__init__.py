@@ -54,7 +54,7 @@ def _identifier(feature: str) -> Check:
         value = getattr(element, feature)
         for text in [value] if isinstance(value, str) else value:
             if not _IDENTIFIER.fullmatch(text):
-                yield element, f"'{feature}' is to be an identifier, which '{text}' is not"
+                yield element, f"'{feature}' must be an identifier, found '{text}'"
 
     return check
 
@@ -63,7 +63,7 @@ def _shown(element: Any, _model: Model) -> Iterator[Fault]:
     for feature in _SHOWN:
         text = getattr(element, feature, None)
         if text is not None and visible(text) != text:
-            yield element, f"'{feature}' is to be one line without hidden characters"
+            yield element, f"'{feature}' must be one line without hidden characters"
 
 
 def _literal(literal: ex.IntegerLiteral | ex.DoubleLiteral, _model: Model) -> Iterator[Fault]:
@@ -114,7 +114,7 @@ _ARGUMENTS: Checks = {
     ex.FunctionCall: [
         demand(
             lambda call: len(call.arguments) == getattr(operator_of(call), "parameters", None),
-            "'{0.function}' has another number of arguments",
+            "'{0.function}' has a wrong number of arguments",
         )
     ]
 }

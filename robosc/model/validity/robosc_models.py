@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 def _made(made: robosc.InstantiatedComponent | robosc.ImportedComponent, _model: Model) -> Iterator[Fault]:
     user = around(made, robosc.Component)
     if user is not None and user.parameters:
-        yield made, f"the template '{user.name}' has no text of its own"
+        yield made, f"the template '{user.name}' has no content of its own"
         return
     seen, component = {user}, made.definition
     while isinstance(component.type, robosc.InstantiatedComponent | robosc.ImportedComponent):
         if component in seen:
-            yield made, f"'{component.name}' is made of itself"
+            yield made, f"'{component.name}' contains itself"
             return
         seen.add(component)
         component = component.type.definition
@@ -55,7 +55,7 @@ def _import(imported: robosc.ImportedComponent) -> Iterator[Fault]:
 def _communication(reference: robosc.CommunicationReference, _model: Model) -> Iterator[Fault]:
     component = _owner(reference)
     if component is None:
-        yield reference, f"it does not say whose '{reference.communicationType.name}' is meant"
+        yield reference, f"the component of '{reference.communicationType.name}' is missing"
     elif reference.communicationType not in _definitions(component):
         yield reference, f"'{reference.communicationType.name}' is not a communication of '{component.name}'"
 
@@ -63,7 +63,7 @@ def _communication(reference: robosc.CommunicationReference, _model: Model) -> I
 def _running(access: robosc.Access, item: robosc.CommunicationType) -> Iterator[Fault]:
     component = _owner(access)
     if component is None:
-        yield access, f"it does not say whose '{item.name}' is meant"
+        yield access, f"the component of '{item.name}' is missing"
     elif item not in _definitions(component):
         yield access, f"'{item.name}' is not a communication of '{component.name}'"
     elif isinstance(item, robosc.Message):
@@ -75,7 +75,7 @@ def _access(access: robosc.Access, _model: Model) -> Iterator[Fault]:
     if isinstance(item, (robosc.State, robosc.Variable)):
         component = _owner(access)
         if component is None:
-            yield access, f"it does not say whose '{item.name}' is meant"
+            yield access, f"the component of '{item.name}' is missing"
             return
         behaviours = [part for part in _definitions(component) if isinstance(part, robosc.ComponentBehaviour)]
         if item.eContainer() not in [behaviour.automaton for behaviour in behaviours]:
@@ -153,7 +153,7 @@ _DATA_TYPE = demand(
 )
 _OWN_OBJECT = demand(
     lambda reference: reference.type is reference.definition,
-    "it is to name the object that stands for {0.package}/{0.rosType}",
+    "it must name the object for {0.package}/{0.rosType}",
 )
 
 #: The other checks follow imports. They are skipped if an import is broken.

@@ -99,7 +99,7 @@ def spoken(model: sct.SupervisoryControlModel, text: str) -> tuple[str, dict[str
     if step.is_refusal:
         return REFUSE, {"of": plant_of(event).name}
     if step.data is not None and not brings_data(event, step.reason):
-        raise StepError(f"an error with the reason `{step.reason}` brings no data", 0, "leave out `with …`")
+        raise StepError(f"an error with the reason `{step.reason}` has no data", 0, "leave out `with …`")
     data = {} if step.data is None else {"value": step.data}
     return event_name(event), data if step.reason is None else {**data, "reason": step.reason}
 
@@ -134,7 +134,7 @@ class _Line:
                 self._fault(self._start, 'expected an object like {"event": "...", "data": {"value": ...}}')
                 return None
             for key in (key for key in _OF_DATA if key in logged):
-                self._fault(self._place(f'"{key}"'), f"`{key}` is part of the data", 'write it inside of `"data"`')
+                self._fault(self._place(f'"{key}"'), f"`{key}` is part of the data", 'write it inside `"data"`')
             known = self._known(name, self._place(json.dumps(name)[1:-1], name, '"event"'))
             return (
                 self._wait(str(data.get("seconds", "")))
@@ -189,7 +189,7 @@ class _Line:
         if name in self._names.others:
             looped = "tick" in self._names.events
             message = f"`{name}` is not a line of a script {'with' if looped else 'without'} the control loop"
-            hint = "the control loop decides itself when it happens, at `tick`" if looped else "it needs `--loop`"
+            hint = "the control loop itself decides at `tick` when it happens" if looped else "it needs `--loop`"
             self._fault(column, message, hint, len(name))
             return False
         close = get_close_matches(name, sorted(self._names.events), n=1)

@@ -98,18 +98,18 @@ class Tracker:
         """Return the states and variables of the components in a report."""
         robot, told = report.get("robot"), report.get("components")
         if robot != self.engine.model.name:
-            raise ReportError(f"the report is one of the robot `{robot}`, the model is `{self.engine.model.name}`")
+            raise ReportError(f"the report is of the robot `{robot}`, the model is `{self.engine.model.name}`")
         ends: dict[sct.Plant | sct.DiscreteVariable, Value] = {}
         for name, plant in self._components.items():
             try:
                 ends[plant] = told[name]["state"]  # type: ignore[index]
                 ends |= {variable: told[name]["variables"][variable.name] for variable in plant.variables}  # type: ignore[index]
             except (KeyError, TypeError):
-                raise ReportError(f"the report does not tell the state of `{name}`") from None
+                raise ReportError(f"the report has no state of `{name}`") from None
         try:
             self.engine.state_with(ends)
         except ValueError as error:
-            raise ReportError(f"the report tells a state that the model does not have: {error}") from None
+            raise ReportError(f"the report has a state that the model does not have: {error}") from None
         return ends
 
     def _followed(

@@ -108,5 +108,5 @@ def test_and_a_simulation(porter: rosgraph.RosGraph) -> None:
     session = Session(Simulation(porter.model, porter), seed=0)
     session.do("message_open.c_trigger")
     assert session.do("message_enter.c_trigger") == (
-        f"message_enter.c_trigger: forbidden by synthesis, which asks for component_Door.held; otherwise, {WHY}"
+        f"message_enter.c_trigger: forbidden by synthesis, which requires component_Door.held; otherwise, {WHY}"
     )

@@ -298,11 +298,12 @@ def test_what_cannot_be_generated_is_skipped() -> None:
     made.plants[2].variables[0].type.maximum = 2**31 - 2
     verdicts = validate(Models(supervised(made)), Configuration())
     assert verdicts[-1].outcome is Outcome.SKIPPED
-    assert "this cannot be said in CIF" in verdicts[-1].explanation
+    assert "CIF cannot express this" in verdicts[-1].explanation
 
 
 IN_MODEL = "can happen in the model and not in the generated CIF"
 IN_CIF = "can happen in the generated CIF and not in the model"
+NEVER_REACHED = "in a state that the robot never reaches"
 CIF_MUTANTS = {
     "a requirement is weaker": (
         r"level < 6",
@@ -383,8 +384,7 @@ CIF_MUTANTS = {
         r" when strokes != 3 goto rest;",
         " goto rest;",
         [],
-        f"`component_Pump.c_tau2` {IN_CIF} where `Pump.run and Pump.strokes = 3`, in a state that the robot"
-        + " never reaches",
+        f"`component_Pump.c_tau2` {IN_CIF} where `Pump.run and Pump.strokes = 3`, {NEVER_REACHED}",
     ),
     "the start is another": (
         r"(disc int\[0\.\.7\] level = )3;",

@@ -252,5 +252,5 @@ def test_a_folder_that_is_too_large_is_searched_in_part(tmp_path: Path, monkeypa
     assert types.distributions[0].fields("p39", "Found", Section.MESSAGE) is None
     message, hint, _ = types.why_unknown("p39", "Found", Section.MESSAGE)
     assert message == "the package `p39` is unknown"
-    assert hint.endswith("give a folder nearer to the package with --interface-path")
+    assert hint.endswith("use --interface-path with a folder nearer to the package")
     assert "give the folder of its package" in RosTypes([tmp_path / "p39"]).why_unknown("q", "X", Section.MESSAGE)[1]

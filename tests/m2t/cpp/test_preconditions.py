@@ -114,7 +114,7 @@ def test_names_and_kinds(tmp_path: Path, changes: dict[str, str], expected: str)
         ),
         (
             '{"package": {\n "maintainer": "A\\") execute_process(COMMAND id) (\\""}}',
-            "controller-config.json:2: the maintainer would break the package's build",
+            "controller-config.json:2: the maintainer has characters that break the build of the package",
         ),
     ],
 )
@@ -171,7 +171,7 @@ def test_what_goes_out_in_spite_of_requirements_is_listed(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("settings", "expected"),
     [
-        ("{}", '1: "onShutdown" is not set: when the node ends, the robot goes on as it was told last'),
+        ("{}", '1: "onShutdown" is not set: when the node ends, the robot continues with its last command'),
         ('{"onShutdown": []}', None),
         (
             '{"onShutdown": [],\n "watchdogStops": true}',
@@ -207,7 +207,7 @@ DOUBLES = """incoming message drive with type: double
 def test_what_may_be_no_number_has_something_in_its_place(tmp_path: Path, provided: str, outside: bool) -> None:
     said = (
         "cart.rscd:18: drive is not sent where its data is no finite number, nor is anything"
-        " else: the robot goes on as it was told last"
+        " else: the robot continues with its last command"
     )
     more = DOUBLES % provided
     assert found(tmp_path, '{"onShutdown": []}', Severity.WARNING, more=more) == ([said] if outside else [])
@@ -249,7 +249,7 @@ def test_what_is_handed_on_may_hold_what_is_not_finite(
 ) -> None:
     more = KEPT % (kind, provided)
     warnings = found(tmp_path, '{"onShutdown": []}', Severity.WARNING, more=more)
-    end = " finite number, nor is anything else: the robot goes on as it was told last"
+    end = " finite number, nor is anything else: the robot continues with its last command"
     assert warnings == ([f"cart.rscd:20: drive is not sent where its {what}{end}"] if what else [])
     assert found(tmp_path, '{"onShutdown": [], "onWithheld": []}', Severity.WARNING, more=more) == []
 

@@ -365,7 +365,7 @@ def test_a_node_that_forgets_is_noticed(case: Case) -> None:
     for location in lidar.locations:
         for edge in edges_from(location):
             edge.updates.clear()
-    with pytest.raises(TraceError, match=r"does not do what the trace says|but the node did"):
+    with pytest.raises(TraceError, match=r"does not follow the trace|but the node did"):
         case.play()
 
 

@@ -155,8 +155,8 @@ def test_a_late_answer_after_a_lost_goal_changes_nothing() -> None:
             "leave out `because lost`",
         ),
         ("stop because lost", "only the error of a service or an action has a reason", "leave out `because lost`"),
-        ('error from go because lost with {"code": 3}', "an error with the reason `lost` brings no data", "leave out"),
-        ("error from lift because timeout with 3", "an error with the reason `timeout` brings no data", "leave out"),
+        ('error from go because lost with {"code": 3}', "an error with the reason `lost` has no data", "leave out"),
+        ("error from lift because timeout with 3", "an error with the reason `timeout` has no data", "leave out"),
         ("refuse cancel of lift", "there is no event `lift.canceled`", ""),
         ("error from go because", "this is neither a step nor an expectation", ""),
         ('error from go with {"code": "x"}', 'value.code is "x", expected an integer', ""),
@@ -227,16 +227,16 @@ def test_a_second_goal_is_accepted_anew() -> None:
     [
         (
             'stop with true\n  canceled from go with {"code": 3}\n  error from lift with {"heights": [0.0, 1.0]}',
-            "the node can read this data: it is that of the response from `Base.lift`",
+            "the node can read this data: write it at the response from `Base.lift`",
             "",
         ),
         (
             'error from go because unreadable with {"path": [1.0]}',
-            "the node can read this data: it is that of the response from `Base.go`",
+            "the node can read this data: write it at the response from `Base.go`",
             "",
         ),
         ("canceled from go", "the controller has not canceled this goal", "write `error from go because canceled`"),
-        ("error from lift", "the error from `Base.lift` cannot come now: nothing that it ends is under way", ""),
+        ("error from lift", "the error from `Base.lift` cannot come now: it ends no running call or goal", ""),
         ("refuse cancel of go", "`go` is not being canceled", ""),
         (
             "stop with true\n  error from go because canceled",

@@ -119,10 +119,10 @@ def test_a_reason_that_an_event_cannot_have(line: str, possible: tuple[str, ...]
         ("error from go because", "this is not a step of a scenario"),
         ("error of go", "this is not a step of a scenario"),
         ("refuse cancel of lift", "there is no event `lift.canceled`"),
-        ("error from go with message 3", "a message is an object with fields"),
+        ("error from go with message 3", "a message must be an object with fields"),
         ("go", "there is no event `go`"),
-        ('error from go because lost with {"rest": 2.0}', "an error with the reason `lost` brings no data"),
-        ('error from lift because timeout with {"heights": []}', "an error with the reason `timeout` brings no data"),
+        ('error from go because lost with {"rest": 2.0}', "an error with the reason `lost` has no data"),
+        ('error from lift because timeout with {"heights": []}', "an error with the reason `timeout` has no data"),
         ('{"event": "action_go.u_error", "reason": "lost"}', "`reason` is part of the data"),
         ('{"event": "action_go.u_error", "data": {"reason": "lost"}, "value": {"rest": 2.0}}', "`value` is part of"),
     ],
@@ -159,7 +159,7 @@ def test_a_literal_of_an_error_that_brings_no_data(tmp_path: Path) -> None:
         done = CliRunner().invoke(main, ["simulate", str(model), "--script", "-"], input=lines, catch_exceptions=False)
         assert done.exit_code == (state is None), done.stderr
         if state is None:
-            assert 'brings no data, but value.mode is "positive"' in done.stderr
+            assert 'has no data, found value.mode is "positive"' in done.stderr
         else:
             assert json.loads(done.stdout.splitlines()[-1])["state"]["component_Base"] == state
 

@@ -111,5 +111,5 @@ def test_help_has_more_than_one_name(session, word) -> None:
 def test_what_is_no_command_is_said_with_what_is(session) -> None:
     assert session.do("hlep") == "there is no command and no event `hlep` (h for help)"
     assert session.do("message_drain.trigger") == (
-        "there is no command and no event `message_drain.trigger`, did you mean `message_drain.c_trigger`? (h for help)"
+        "unknown command or event `message_drain.trigger`, did you mean `message_drain.c_trigger`? (h for help)"
     )

@@ -171,7 +171,7 @@ def test_what_can_not_be_launched(program: Program, tmp_path: Path) -> None:
         ({"program": "door.rscd", "script": "x", "counterexample": True}, "exclude each other"),
         ({"program": "door.rscd", "script": "missing.script"}, "missing.script: No such file or directory"),
         ({"program": "door.rscd", "script": "bad.script"}, "bad.script: not JSON"),
-        ({"program": "door.rscd", "counterexample": True}, "nothing is refuted: there is no counterexample"),
+        ({"program": "door.rscd", "counterexample": True}, "no property is refuted, so there is no counterexample"),
         ({"program": "door.rscd", "counterexample": "nonblocking"}, "did you mean `non-blocking`?"),
         ({"program": "broken.rscd"}, "broken.rscd:17:"),
         ({"program": "stuck.rscd"}, "the supervisor is empty"),
