@@ -322,7 +322,7 @@ def test_the_supervisor_in_c_goes_step_by_step(specification: str, tmp_path: Pat
 def test_what_needs_ros_or_a_control_loop_does_not_take_it(command: list[str], specification: str) -> None:
     result = CliRunner().invoke(main, [command[0], specification, *command[1:]])
     assert result.exit_code == 2
-    assert "is CIF, which stands for no ROS and no control loop" in result.output
+    assert "is CIF, which has no ROS graph and no control loop" in result.output
 
 
 @pytest.mark.parametrize("command", [["simulate", "--random", "1"], ["verify"], ["transform", "--to", "supervisor"]])

@@ -333,7 +333,7 @@ def test_no_request_is_a_fault_of_the_adapter(asked: list[tuple[str, Any]]) -> N
     asyncio.run(session())
     answers = [message for message in heard.sent if message["type"] == "response"]
     assert [answer["request_seq"] for answer in answers] == list(range(1, len(asked) + 3))
-    assert [answer["message"] for answer in answers if "a fault of robosc itself" in answer.get("message", "")] == []
+    assert [answer["message"] for answer in answers if "internal error of robosc" in answer.get("message", "")] == []
 
 
 def test_the_page_tells_of_all_there_is() -> None:
