@@ -126,7 +126,7 @@ def _read(reference: sct.InputReference, _model: Model) -> Iterator[Fault]:
 
 
 def _part(kind: ex.EnumerationType, _model: Model) -> Iterator[Fault]:
-    """Check that only an input can have a part of an enumeration, from a literal to the same or a later one."""
+    """Check that only an input has a part of an enumeration, from a literal to the same or a later one."""
     literals = list(kind.enumeration.literals)
     ends = [literal for literal in (kind.first, kind.last) if literal is not None]
     for literal in ends:

@@ -238,7 +238,7 @@ class EventData:
             set_part = self._defaults.set_part(event, data["value"], partial(self._new_literal, event))
             parts = [set_part, *parts] if set_part else parts
         if parts:
-            raise DataError(f"an error with the reason `{reason}` has no data, found {parts[0]}", "leave it out")
+            raise DataError(f"an error with the reason `{reason}` has no data, but {parts[0]}", "leave it out")
 
     def _new_literal(self, event: str, conversion: rosgraph.Conversion, path: tuple[str, ...]) -> str:
         """Return the literal that a conversion makes of the data at a path in a new message."""

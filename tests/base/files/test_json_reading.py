@@ -121,9 +121,9 @@ LINE = {"time": 1.0, "direction": "in", "event": "e"}
         (LINE | {"time": float("inf")}, "it has no time"),
         (LINE | {"event": ["e"]}, "it has no direction and event"),
         (LINE | {"direction": {}}, "it has no direction and event"),
-        (LINE | {"data": 3}, '"data" is to be an object with a value'),
-        (LINE | {"data": {}}, '"data" is to be an object with a value'),
-        (LINE | {"message": [3]}, '"message" is to be an object'),
+        (LINE | {"data": 3}, '"data" must be an object with a value'),
+        (LINE | {"data": {}}, '"data" must be an object with a value'),
+        (LINE | {"message": [3]}, '"message" must be an object'),
     ],
     ids=lambda given: str(given)[:80],
 )

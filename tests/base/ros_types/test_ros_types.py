@@ -253,4 +253,4 @@ def test_a_folder_that_is_too_large_is_searched_in_part(tmp_path: Path, monkeypa
     message, hint, _ = types.why_unknown("p39", "Found", Section.MESSAGE)
     assert message == "the package `p39` is unknown"
     assert hint.endswith("use --interface-path with a folder nearer to the package")
-    assert "give the folder of its package" in RosTypes([tmp_path / "p39"]).why_unknown("q", "X", Section.MESSAGE)[1]
+    assert "add the folder of its package" in RosTypes([tmp_path / "p39"]).why_unknown("q", "X", Section.MESSAGE)[1]

@@ -281,20 +281,20 @@ DOORS = """robot R {
 @pytest.mark.parametrize(
     ("old", "new", "keyword"),
     [
-        ("action fold", "actionfold", "behind `action`"),
-        ("component Door", "componentDoor", "behind `component`"),
-        ("datatype enum", "datatypeenum", "behind `datatype`"),
-        ("initial marked", "initialmarked", "behind `initial`"),
-        ("request to togo", "requesttotogo", "behind `request`"),
-        ("goto idle", "gotos", "behind `goto`"),
-        ("feedback: none", "feedback0.5 none", "behind `feedback`"),
+        ("action fold", "actionfold", "after `action`"),
+        ("component Door", "componentDoor", "after `component`"),
+        ("datatype enum", "datatypeenum", "after `datatype`"),
+        ("initial marked", "initialmarked", "after `initial`"),
+        ("request to togo", "requesttotogo", "after `request`"),
+        ("goto idle", "gotos", "after `goto`"),
+        ("feedback: none", "feedback0.5 none", "after `feedback`"),
         ("type: none\n    behaviour", "type: none nonebehaviour", "before `behaviour`"),
     ],
 )
 def test_no_keyword_takes_the_place_of_a_longer_word(old: str, new: str, keyword: str) -> None:
     content = DOORS.replace(old, new)
     assert content != DOORS
-    assert f"is a blank missing {keyword}?" in {finding.hint for finding in checked(content).findings}
+    assert f"is a space missing {keyword}?" in {finding.hint for finding in checked(content).findings}
     assert fixed(content) == content
 
 

@@ -198,7 +198,7 @@ def test_steps_that_cannot_be(step: str, message: str, hint: str) -> None:
         ("stop with true\n  refuse cancel of go\n  error from go because timeout", "the goal has been accepted"),
         ("stop with true\n  error from go because rejected", None),
         ("stop with true\n  error from go because timeout", None),
-        ("stop with true\n  error from go because unavailable", "a goal that is canceled before a server is there"),
+        ("stop with true\n  error from go because unavailable", "a goal that is canceled without a server"),
         ("feedback from go\n  error from go because aborted", None),
         ("feedback from go\n  error from go because lost", None),
     ],

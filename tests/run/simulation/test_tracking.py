@@ -117,7 +117,7 @@ JSON = st.recursive(
         ({"transitions": None}, "`transitions` is not a list"),
         ({"time": "now"}, "`time`"),
         ({"time": float("inf")}, "`time`"),
-        ({"components": {}}, "does not tell the state of `LineDetector`"),
+        ({"components": {}}, "has no state of `LineDetector`"),
         ({"components": {**GATE["components"], "Lidar": {"state": "none", "variables": {}}}}, "Lidar"),
     ],
 )

@@ -110,9 +110,9 @@ def test_nothing_is_written_over(run: Run, tmp_path: Path) -> None:
         (["4wd"], "cannot name a robot"),
         (["Porter", "--command", "Drive"], "cannot name a message or service"),
         (["Porter", "--sensor", "a__b"], "cannot name a message or service"),
-        (["Porter", "--command", "goto"], "is a word of the language"),
-        (["Porter", "--command", "clear"], "`clear` names two things"),
-        (["Porter", "--sensor", "a_1", "--sensor", "a1"], "is too like another name"),
+        (["Porter", "--command", "goto"], "is a keyword"),
+        (["Porter", "--command", "clear"], "`clear` is used twice"),
+        (["Porter", "--sensor", "a_1", "--sensor", "a1"], "is too similar to another name"),
     ],
 )
 def test_names_that_will_not_do(run: Run, tmp_path: Path, call: list[str], said: str) -> None:

@@ -82,13 +82,12 @@ class Layer : public GuardedNode<rclcpp::Node> {
             "File for the event log, with a line of JSON for each event; empty: none.")) {
     const auto service_timeout =
         std::chrono::milliseconds(parameter(*this, "service_timeout_ms", 2000, 1, 86400000,
-        "A call fails after this time without an answer, in milliseconds."));
+        "A call fails after this time without an answer."));
     const auto action_timeout =
         std::chrono::milliseconds(parameter(*this, "action_timeout_ms", 2000, 1, 86400000,
-        "A goal fails after this time without acceptance, in milliseconds."));
+        "A goal fails after this time without acceptance."));
     const auto period =
-        std::chrono::milliseconds(parameter(*this, "period_ms", 100, 1, 86400000,
-        "Period of reports of the state."));
+        std::chrono::milliseconds(parameter(*this, "period_ms", 100, 1, 86400000, "Period of reports of the state."));
 
     blocked_report_.open(*this, "~/blocked");
     state_report_.open(*this, "~/state");

@@ -112,8 +112,7 @@ class Controller : public ControllerNode {
         parameter<bool>(private_, "react_immediately", settings.react_immediately,
         "Whether incoming data may start events at once, before the next tick.");
     const auto period =
-        std::chrono::milliseconds(parameter(private_, "period_ms", 100, 1, 86400000,
-        "Period of ticks in milliseconds."));
+        std::chrono::milliseconds(parameter(private_, "period_ms", 100, 1, 86400000, "Period of ticks."));
 
     target_publisher_ = advertise<geometry_msgs::PoseStamped>("target");
     sum_publisher_ = advertise<std_msgs::UInt8>("sum");
@@ -141,7 +140,8 @@ class Controller : public ControllerNode {
     watchdog_stops_ =
         parameter<bool>(private_, "watchdog_stops", false,
         "Whether a silent topic holds commands back and cancels actions. It sends nothing: the robot continues with its last command.");
-    scan_watchdog_.emplace(parameter(private_, "watchdog_ms/scan", 0, 0, 86400000, "Longest silence of /scan; 0: no limit."),
+    scan_watchdog_.emplace(parameter(private_, "watchdog_ms/scan", 0, 0, 86400000,
+        "Longest silence of /scan; 0: no limit."),
         [this](const auto& watchdog) { on_silence("/scan", watchdog); }, node_);
     scan_subscription_ = subscribe<sensor_msgs::LaserScan>("/scan", [this](const auto& message) { on_scan(message); });
     scan_watchdog_->start();
@@ -150,7 +150,8 @@ class Controller : public ControllerNode {
         [this](const auto& watchdog) { on_silence("count", watchdog); }, node_);
     count_subscription_ = subscribe<std_msgs::Int16>("count", [this](const auto& message) { on_count(message); });
     count_watchdog_->start();
-    word_watchdog_.emplace(parameter(private_, "watchdog_ms/word", 0, 0, 86400000, "Longest silence of word; 0: no limit."),
+    word_watchdog_.emplace(parameter(private_, "watchdog_ms/word", 0, 0, 86400000,
+        "Longest silence of word; 0: no limit."),
         [this](const auto& watchdog) { on_silence("word", watchdog); }, node_);
     word_subscription_ = subscribe<std_msgs::String>("word", [this](const auto& message) { on_word(message); });
     word_watchdog_->start();

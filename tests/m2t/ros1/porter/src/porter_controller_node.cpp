@@ -96,17 +96,16 @@ class Controller : public ControllerNode {
         parameter<bool>(private_, "react_immediately", settings.react_immediately,
         "Whether incoming data may start events at once, before the next tick.");
     const auto period =
-        std::chrono::milliseconds(parameter(private_, "period_ms", 100, 1, 86400000,
-        "Period of ticks in milliseconds."));
+        std::chrono::milliseconds(parameter(private_, "period_ms", 100, 1, 86400000, "Period of ticks."));
     const auto service_timeout =
         std::chrono::milliseconds(parameter(private_, "service_timeout_ms", 3000, 1, 86400000,
-        "A call fails after this time without an answer, in milliseconds."));
+        "A call fails after this time without an answer."));
     const auto action_timeout =
         std::chrono::milliseconds(parameter(private_, "action_timeout_ms", 2000, 1, 86400000,
-        "A goal fails after this time without acceptance, in milliseconds."));
+        "A goal fails after this time without acceptance."));
     const auto retry =
         std::chrono::milliseconds(parameter(private_, "retry_ms", 500, 1, 86400000,
-        "Time from the failure of a service or action to its reset, in milliseconds."));
+        "Time from the failure of a service or action to its reset."));
 
     cmd_vel_publisher_ = advertise<geometry_msgs::Twist>("cmd_vel");
     state_report_.open(private_, "state");

@@ -484,8 +484,7 @@ class Controller : public ControllerNode<rclcpp::Node> {
     settings.react_immediately =
         parameter<bool>(*this, "react_immediately", settings.react_immediately,
         "Whether incoming data may start events at once, before the next tick.");
-    const auto period =
-        std::chrono::milliseconds(parameter(*this, "period_ms", 100, 1, 86400000, "Period of ticks in milliseconds."));
+    const auto period = std::chrono::milliseconds(parameter(*this, "period_ms", 100, 1, 86400000, "Period of ticks."));
 
     courier_hooks hooks = {};
     hooks.context = this;
@@ -514,19 +513,22 @@ class Controller : public ControllerNode<rclcpp::Node> {
     watchdog_stops_ =
         parameter<bool>(*this, "watchdog_stops", false,
         "Whether a silent topic holds commands back and cancels actions. It sends nothing: the robot continues with its last command.");
-    scan_watchdog_.emplace(parameter(*this, "watchdog_ms.scan", 0, 0, 86400000, "Longest silence of /scan; 0: no limit."),
-        [this](const auto& watchdog) { on_silence("/scan", watchdog); }, *this, guard_);
+    scan_watchdog_.emplace(parameter(*this, "watchdog_ms.scan", 0, 0, 86400000,
+        "Longest silence of /scan; 0: no limit."), [this](const auto& watchdog) { on_silence("/scan", watchdog); },
+        *this, guard_);
     scan_subscription_ = subscribe<sensor_msgs::msg::LaserScan>(
         "/scan", rclcpp::SensorDataQoS().keep_last(20).reliable(), rclcpp::SensorDataQoS().keep_last(20).reliable()
             .transient_local(),
         [this](const auto& message) { on_scan(message); });
-    count_watchdog_.emplace(parameter(*this, "watchdog_ms.count", 0, 0, 86400000, "Longest silence of count; 0: no limit."),
-        [this](const auto& watchdog) { on_silence("count", watchdog); }, *this, guard_);
+    count_watchdog_.emplace(parameter(*this, "watchdog_ms.count", 0, 0, 86400000,
+        "Longest silence of count; 0: no limit."), [this](const auto& watchdog) { on_silence("count", watchdog); },
+        *this, guard_);
     count_subscription_ = subscribe<std_msgs::msg::Int16>(
         "count", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
         [this](const auto& message) { on_count(message); });
-    word_watchdog_.emplace(parameter(*this, "watchdog_ms.word", 0, 0, 86400000, "Longest silence of word; 0: no limit."),
-        [this](const auto& watchdog) { on_silence("word", watchdog); }, *this, guard_);
+    word_watchdog_.emplace(parameter(*this, "watchdog_ms.word", 0, 0, 86400000,
+        "Longest silence of word; 0: no limit."), [this](const auto& watchdog) { on_silence("word", watchdog); }, *this,
+        guard_);
     word_subscription_ = subscribe<std_msgs::msg::String>(
         "word", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
         [this](const auto& message) { on_word(message); });

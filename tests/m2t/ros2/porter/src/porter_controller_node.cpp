@@ -568,17 +568,16 @@ class Controller : public ControllerNode<rclcpp::Node> {
     settings.react_immediately =
         parameter<bool>(*this, "react_immediately", settings.react_immediately,
         "Whether incoming data may start events at once, before the next tick.");
-    const auto period =
-        std::chrono::milliseconds(parameter(*this, "period_ms", 100, 1, 86400000, "Period of ticks in milliseconds."));
+    const auto period = std::chrono::milliseconds(parameter(*this, "period_ms", 100, 1, 86400000, "Period of ticks."));
     const auto service_timeout =
         std::chrono::milliseconds(parameter(*this, "service_timeout_ms", 3000, 1, 86400000,
-        "A call fails after this time without an answer, in milliseconds."));
+        "A call fails after this time without an answer."));
     const auto action_timeout =
         std::chrono::milliseconds(parameter(*this, "action_timeout_ms", 2000, 1, 86400000,
-        "A goal fails after this time without acceptance, in milliseconds."));
+        "A goal fails after this time without acceptance."));
     const auto retry =
         std::chrono::milliseconds(parameter(*this, "retry_ms", 500, 1, 86400000,
-        "Time from the failure of a service or action to its reset, in milliseconds."));
+        "Time from the failure of a service or action to its reset."));
 
     porter_hooks hooks = {};
     hooks.context = this;
@@ -625,13 +624,15 @@ class Controller : public ControllerNode<rclcpp::Node> {
     watchdog_stops_ =
         parameter<bool>(*this, "watchdog_stops", true,
         "Whether a silent topic holds commands back, cancels actions and sends halt.");
-    order_watchdog_.emplace(parameter(*this, "watchdog_ms.order", 0, 0, 86400000, "Longest silence of order; 0: no limit."),
-        [this](const auto& watchdog) { on_silence("order", watchdog); }, *this, guard_);
+    order_watchdog_.emplace(parameter(*this, "watchdog_ms.order", 0, 0, 86400000,
+        "Longest silence of order; 0: no limit."), [this](const auto& watchdog) { on_silence("order", watchdog); },
+        *this, guard_);
     order_subscription_ = subscribe<std_msgs::msg::Float32>(
         "order", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
         [this](const auto& message) { on_order(message); });
-    stop_watchdog_.emplace(parameter(*this, "watchdog_ms.stop", 400, 0, 86400000, "Longest silence of /stop; 0: no limit."),
-        [this](const auto& watchdog) { on_silence("/stop", watchdog); }, *this, guard_);
+    stop_watchdog_.emplace(parameter(*this, "watchdog_ms.stop", 400, 0, 86400000,
+        "Longest silence of /stop; 0: no limit."), [this](const auto& watchdog) { on_silence("/stop", watchdog); },
+        *this, guard_);
     stop_subscription_ = subscribe<std_msgs::msg::Empty>(
         "/stop", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
         [this](const auto& message) { on_stop(message); });
