@@ -296,8 +296,8 @@ BROKEN: list[tuple[Callable[[Any], None], list[str]]] = [
         _older_action,
         [
             (
-                "the action 'Base.drive' ends where it is canceled, as in older models; make this model anew from its"
-                " text: `robosc transform MODEL.rscd --to xmi`"
+                "the action 'Base.drive' ends where it is canceled, as in older models; generate this model"
+                " again from its text: `robosc transform MODEL.rscd --to xmi`"
             )
         ],
     ),

@@ -159,7 +159,7 @@ def test_a_literal_of_an_error_that_brings_no_data(tmp_path: Path) -> None:
         done = CliRunner().invoke(main, ["simulate", str(model), "--script", "-"], input=lines, catch_exceptions=False)
         assert done.exit_code == (state is None), done.stderr
         if state is None:
-            assert 'has no data, found value.mode is "positive"' in done.stderr
+            assert 'has no data, but value.mode is "positive"' in done.stderr
         else:
             assert json.loads(done.stdout.splitlines()[-1])["state"]["component_Base"] == state
 
