@@ -65,7 +65,7 @@ def test_packages_are_built_in_their_order(run_ros2: Runner, packages: Path, tmp
     ("field", "said"),
     [
         ("int3 number", "zeta_msgs/srv/Ask.srv: "),
-        ("beta_msgs/Mark mark", "beta_msgs, which is neither installed nor given"),
+        ("beta_msgs/Mark mark", "beta_msgs, which is neither installed nor in the call"),
         ("alpha_msgs/Track track", "of each other: alpha_msgs, zeta_msgs"),
     ],
 )

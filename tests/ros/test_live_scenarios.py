@@ -263,7 +263,7 @@ def test_a_node_that_does_something_else_is_told_at_the_line(run_ros2: Runner, t
 @pytest.mark.parametrize(
     ("command", "told"),
     [
-        ("false", "the node has ended before the scenario did"),
+        ("false", "the node ended before the scenario"),
         ("none-such-program", "`none-such-program` does not start: No such file"),
     ],
 )
