@@ -265,7 +265,7 @@ def completion(editor: Editor) -> None:
 def hover(editor: Editor) -> None:
     """Hover over a message: its declaration with the comment above, and the supervisor's condition."""
     editor.go("drive needs", 2)
-    editor.shows(".codelens-decoration", "forbids something in")
+    editor.shows(".codelens-decoration", "restricts the robot in")
     editor.press("Control+k", "Control+i")
     editor.shows(".monaco-hover", "The supervisor allows")
     shown = editor.page.locator(".monaco-hover", has_text="The supervisor allows").inner_text()
@@ -297,7 +297,7 @@ def renaming(editor: Editor) -> None:
 
 def layout(editor: Editor) -> None:
     """Format the whole text as `robosc format` does."""
-    editor.shows(".codelens-decoration", "forbids something in")
+    editor.shows(".codelens-decoration", "restricts the robot in")
     editor.go("      initial marked state light")
     editor.type("   ")
     editor.go("Load.light", len("Load.light"))
@@ -324,7 +324,7 @@ def debugging(editor: Editor) -> None:
     editor.shows(".debug-variables .monaco-list-row", "heavy")
     forbidden = editor.page.locator(".debug-variables .monaco-list-row", has_text="message_drive.c_trigger")
     editor.page.locator(".pane-header", has_text="Watch").click()
-    editor.page.locator(".debug-variables .monaco-list-row", has_text="Can't happen").click()
+    editor.page.locator(".debug-variables .monaco-list-row", has_text="Cannot happen").click()
     expect(forbidden.first).to_be_visible(timeout=_LONGEST)
     assert "forbidden by requirement Passage" in forbidden.first.inner_text(), forbidden.first.inner_text()
     forbidden.first.locator(".monaco-tl-twistie").click()
@@ -377,9 +377,9 @@ def diagram(editor: Editor) -> None:
 
 
 def explaining(editor: Editor) -> None:
-    """Explain the event at the cursor: why it can't happen, and what would change that."""
+    """Explain the event at the cursor: why it cannot happen, and what would change that."""
     editor.go("drive needs", 2)
-    editor.command("RoboSC: Explain Why an Event Can't Happen", asks=True)
+    editor.command("RoboSC: Explain Why an Event Cannot Happen", asks=True)
     expect(editor.shows(".quick-input-widget input:visible")).to_have_value("drive", timeout=_LONGEST)
     editor.press("Enter")
     editor.shows(".output-view .view-line, .panel .view-line", "Passage")

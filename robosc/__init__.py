@@ -109,7 +109,7 @@ def load(
             raise ModelError(reading.findings)
         base = reading.base
     if not isinstance(base, robosc.Robot):
-        raise ValueError(f"{path} holds a {type(base).__name__}, not a Robot")  # noqa: TRY004  # the file is wrong
+        raise ValueError(f"{path} has a {type(base).__name__}, not a Robot")  # noqa: TRY004  # the file is wrong
     return base
 
 
@@ -207,13 +207,13 @@ def generate(
 
     known = targets()
     if target not in known:
-        raise ValueError(f"there is no target {target!r}, but {', '.join(known)}")
+        raise ValueError(f"unknown target {target!r}, expected one of {', '.join(known)}")
     if models.sct.supervisor is None:
-        raise ValueError("the sct model has no supervisor yet: synthesize gives it one")
+        raise ValueError("the sct model has no supervisor yet: call synthesize first")
     if known[target].needs_graph and models.rosgraph is None:
         raise ValueError(f"{target} needs the ROS graph")
     if into is not None and not known[target].can_be_included:
-        raise ValueError(f"{target} is no code that could become part of {into}")
+        raise ValueError(f"{target} is not code that can be part of {into}")
     configuration = configuration or Configuration()
     made = known[target]
     with together():

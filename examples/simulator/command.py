@@ -108,7 +108,7 @@ def _over_ros(simulation, options, until):
             from .ros2 import Ros2 as Ros
         connection = Ros(simulation)
     except (ImportError, UnknownTypeError) as error:
-        raise NoControllerError(f"ROS {options.ros} can't be used: {error}") from None
+        raise NoControllerError(f"ROS {options.ros} cannot be used: {error}") from None
     try:
         play(simulation, connection, options.speed, until)
     finally:

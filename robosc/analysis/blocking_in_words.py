@@ -19,14 +19,14 @@ def blocking(reason: Reason) -> str:
             return f"{problem} from the start"
         if reason.event.controllable:
             return f"the shortest way to a marked state needs {words(reason.event)}, after which {problem}"
-        return f"{words(reason.event)} can't be prevented, and after it {problem}"
+        return f"{words(reason.event)} cannot be prevented, and after it {problem}"
     problem = "no marked state can be reached"
     if reason.event is None:
         problem += " at all"
     elif reason.event.controllable:
         problem += f": the shortest way to one needs {words(reason.event)} where {forbid(reason.requirements, 'it')}"
     else:
-        problem = f"{words(reason.event)} can't be prevented, and after it {problem}"
+        problem = f"{words(reason.event)} cannot be prevented, and after it {problem}"
     named = [_stuck(plant, reason) for plant in reason.unmarked[:NAMED]]
     if len(reason.unmarked) > NAMED:
         named.append(f"{len(reason.unmarked) - NAMED} more")
@@ -44,10 +44,10 @@ def _stuck(plant: sct.Plant, reason: Reason) -> str:
 def counterexample_in_words(counterexample: BlockingCounterexample, model: sct.SupervisoryControlModel) -> str:
     """Return the consequence of an event that synthesis holds back, as a sentence without its full stop."""
     steps = in_words(counterexample.trace, model)
-    problem = "the marked states of all components can't be reached together any more"
+    problem = "the marked states of all components cannot be reached together any more"
     if counterexample.unmarked:
         problem = (
-            f"{listed([f'`{name(plant)}`' for plant in counterexample.unmarked])} can't get back to a marked state"
+            f"{listed([f'`{name(plant)}`' for plant in counterexample.unmarked])} cannot get back to a marked state"
         )
     if counterexample.violated:
         # Without line numbers: the sentence is part of generated code, which should change only if the robot does.
@@ -62,7 +62,7 @@ def counterexample_in_words(counterexample: BlockingCounterexample, model: sct.S
         return f"after {steps}, {problem}"
     *onwards, last = counterexample.onwards
     further = f", and further {in_words(onwards, model)}" if onwards else ""
-    return f"after {steps}{further}, {in_words([last], model)} can't be prevented, and then {problem}"
+    return f"after {steps}{further}, {in_words([last], model)} cannot be prevented, and then {problem}"
 
 
 def way_out(counterexample: BlockingCounterexample) -> str:
@@ -71,6 +71,6 @@ def way_out(counterexample: BlockingCounterexample) -> str:
         loosen = f"loosen the {'requirement' if len(counterexample.violated) == 1 else 'requirements'}"
         if all(isinstance(requirement, sct.Requirement) for requirement in counterexample.violated):
             return loosen
-        return f"{loosen}: say what each command `needs`, or add a command that undoes the event"
+        return f"{loosen}: add a `needs` requirement for each command, or a command that undoes the event"
     stuck = [f"`{name(plant)}`" for plant in counterexample.unmarked if plant.kind == sct.PlantKind.behaviour]
     return f"give {listed(stuck) or 'the components'} a way from there to a marked state"

@@ -85,4 +85,4 @@ def with_causes(findings: Mapping[Absent, Diagnostic], follows: Mapping[Absent, 
 def _following(finding: Diagnostic, cause: Diagnostic, depth: int) -> Diagnostic:
     where = f"line {cause.span.line}" if cause.file == finding.file else f"{cause.file}:{cause.span.line}"
     message = f"therefore, {finding.message}"
-    return replace(finding, message=message, hint=f"mend the cause in {where} first", follows=depth)
+    return replace(finding, message=message, hint=f"correct the cause in {where} first", follows=depth)

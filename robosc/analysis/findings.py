@@ -129,7 +129,10 @@ class _Findings:
         subject = f"this transition of `{name(plant)}`" if silent else f"`{name(plant)}`"
         done = "taken" if silent else _DONE.get(plant.kind, "sent")
         if observed.forbidden is Forbidden.BY_REQUIREMENTS:
-            why, hint = f"wherever it could be, {forbid(observed.requirements, 'it')}", "loosen what it needs"
+            why, hint = (
+                f"in every state where it could be, {forbid(observed.requirements, 'it')}",
+                "loosen its requirements",
+            )
             if observed.trace is not None:
                 way = f"after {in_words(observed.trace, self._model)}" if observed.trace else "at the start"
                 why += f", for example {way}"
@@ -139,7 +142,7 @@ class _Findings:
                 hint = hint.partition(":")[0]
                 hint += " (what the action `needs` cancels it; `never` and `always` do not let it start)"
         elif observed.kept_away:
-            why = f"the supervisor lets the robot reach no state in which it could be {done}"
+            why = f"the supervised robot reaches no state in which it could be {done}"
             hint = "allow a way to such a state"
             if observed.counterexample is not None:
                 why += f": {counterexample_in_words(observed.counterexample, self._model)}"
@@ -149,7 +152,7 @@ class _Findings:
                 why += f": the shortest way to one needs {words(observed.needed)}{after}, where "
                 why += forbid(observed.requirements, "it")
         elif silent:
-            why, hint = _guard(event), "correct its guard or what leads to its state"
+            why, hint = _guard(event), "correct its guard or the transitions to its state"
         else:
             why = _not_requested(observed)
             hint = f"write `on request to {name(plant)}` in a state that can be reached"
@@ -159,7 +162,7 @@ class _Findings:
             _blamed(at_fault, event),
             "never-enabled",
             f"{subject} can never be {done}: {why}",
-            f"{hint}, or leave it out" + ("" if silent else f"; `robosc explain --why-never {name(plant)}` tells more"),
+            f"{hint}, or remove it" + ("" if silent else f"; `robosc explain --why-never {name(plant)}` explains why"),
         )
 
     def silent_restricted(self, observed: SilentRestricted) -> Diagnostic:
@@ -170,7 +173,7 @@ class _Findings:
         return _finding(
             observed.event,
             "silent-restricted",
-            f"the supervisor has to hold back {what}, so that the model may no longer follow the robot: otherwise, "
+            f"the supervisor must prevent {what}, so the model may lose track of the robot: otherwise, "
             f"{counterexample_in_words(observed.counterexample, self._model)}",
             way_out(observed.counterexample),
         )
@@ -181,13 +184,13 @@ class _Findings:
         hint = way_out(trace)
         if ends := [requirement for requirement in told if requirement.automaton is not None]:
             hint = (
-                f"a start can be refused, a cancel can't: take the end of `{action}` out of {called(ends)}, "
+                f"a start can be refused, a cancel cannot: take the end of `{action}` out of {called(ends)}, "
                 f"or restrict the start of `{action}`"
             )
         return _finding(
             observed.event,
             "cancel-held-back",
-            f"the supervisor would have to hold back the cancel of `{action}`, and could not stop it: otherwise, "
+            f"the supervisor would have to prevent the cancel of `{action}`, which it cannot: otherwise, "
             f"{counterexample_in_words(trace, self._model)}",
             hint,
             Severity.ERROR,
@@ -196,13 +199,13 @@ class _Findings:
     @staticmethod
     def self_cancelling(observed: SelfCancelling) -> Diagnostic:
         states = [f"`{name(plant)}.{state.name}`" for plant, state in _entered(observed.event)]
-        led = f"allow {listed(states)}, where its request leads" if states else "ask for less"
+        led = f"allow {listed(states)}, where its request leads" if states else "loosen its requirements"
         return _finding(
             _blamed(observed.requirements, observed.event),
             "self-cancelling",
             f"`{name(plant_of(observed.event))}` is cancelled as soon as it has started: right after its start "
             f"{forbid(observed.requirements, 'it')}",
-            f"what an action needs must hold while it runs, too: {led}",
+            f"the requirements of an action must also hold while it runs: {led}",
             Severity.ERROR,
         )
 
@@ -211,9 +214,9 @@ class _Findings:
         return _finding(
             observed.requirement,
             "cancel-held-back",
-            f"{requirement} holds back the cancel of `{action}` where it is due, and the controller could not stop it: "
+            f"{requirement} prevents the cancel of `{action}` when it is due, and the controller could not stop it: "
             f"after {in_words(observed.trace, self._model)}",
-            f"a start can be refused, a cancel can't: take `cancel from {action.rpartition('.')[2]}` out of the"
+            f"a start can be refused, a cancel cannot: take `cancel from {action.rpartition('.')[2]}` out of the"
             f" requirement, or restrict the start of `{action}`",
             Severity.ERROR,
         )
@@ -236,7 +239,7 @@ class _Findings:
         return _finding(
             observed.data,
             "provide-gap",
-            f"`{name(plant)}` can be {done} where no condition of a `provide` for it holds, without data"
+            f"`{name(plant)}` can be {done} without data, where no condition of its `provide` statements holds"
             + _where(observed.example, [*read, *self._asking(observed.event)]),
             f"add `provide {name(plant)} with ...` without a condition, or a requirement that excludes this",
         )
@@ -274,7 +277,7 @@ class _Findings:
             state,
             "unreachable-state",
             f"`{name(plant)}` is never in `{state.name}`: {why}",
-            f"{first}, or leave the state out",
+            f"{first}, or remove the state",
         )
 
     def _hindrance(self, observed: Hindrance) -> str:
@@ -282,11 +285,11 @@ class _Findings:
         here: sct.Location = observed.edge.eContainer()
         event, own = observed.edge.event, here.eContainer()
         if observed.forbidden is None:
-            return f"a transition leads there from `{here.name}`, but it is never in that either"
+            return f"a transition leads there from `{here.name}`, but it is never in `{here.name}` either"
         if observed.forbidden is Forbidden.BY_REQUIREMENTS:
             return f"in `{here.name}` {forbid(observed.requirements, f'the {words(event)}')}"
         if observed.counterexample is not None:
-            held_back = f"in `{here.name}` the supervisor holds back the {words(event)}"
+            held_back = f"in `{here.name}` the supervisor prevents the {words(event)}"
             return f"{held_back}, since {counterexample_in_words(observed.counterexample, self._model)}"
         if own in observed.plants:
             return f"in `{here.name}` the guard of the {words(event)} never holds"
@@ -357,7 +360,7 @@ def _not_requested(observed: NeverEnabled) -> str:
     waiting = [f"`{name(plant)}`" for plant in observed.plants]
     if not waiting:
         return "the components that wait for its request never do so at the same time"
-    return f"{listed(waiting)} can't reach a state that waits for its request"
+    return f"{listed(waiting)} cannot reach a state that waits for its request"
 
 
 def _entered(event: sct.Event) -> Iterable[tuple[sct.Plant, sct.Location]]:
@@ -382,4 +385,4 @@ def _where(example: Example, relevant: Iterable[Element]) -> str:
         if domain in chosen and not (isinstance(domain, sct.Plant) and len(domain.locations) == 1)
     ]
     shown = f", for example where `{condition(said)}`" if said else ""
-    return shown if example.quiescent else f"{shown}, if only until silent transitions have run"
+    return shown if example.quiescent else f"{shown}, at least until silent transitions have run"

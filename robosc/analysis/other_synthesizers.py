@@ -29,8 +29,8 @@ def supervise_by(extension: Extension, model: sct.SupervisoryControlModel, *, me
     with extension.working():
         supervisor = module.synthesize(model)
     if supervisor is None:
-        message = f"the supervisor is empty: `{extension.name}` finds none"
-        hint = "without --synthesizer, robosc says why"
+        message = f"the supervisor is empty: `{extension.name}` finds no supervisor"
+        hint = "without --synthesizer, robosc reports the reason"
         raise ModelError([Diagnostic(*place(model), Severity.ERROR, "empty-supervisor", message, hint)])
     _check(extension, model, supervisor)
 
@@ -48,12 +48,12 @@ def supervise_by(extension: Extension, model: sct.SupervisoryControlModel, *, me
 def _check(extension: Extension, model: sct.SupervisoryControlModel, supervisor: object) -> None:
     """Check the supervisor and assign it to the model."""
     if not isinstance(supervisor, sct.Supervisor):
-        raise extension.fault(f"it gives a {type(supervisor).__name__} and no supervisor")
+        raise extension.fault(f"it returns a {type(supervisor).__name__}, not a supervisor")
     controllable = [event for plant in model.plants for event in plant.events if event.controllable]
     guards = {guard.event: guard for guard in supervisor.guards}
     if len(supervisor.guards) != len(controllable) or set(guards) != set(controllable):
         missing = next((event_name(event) for event in controllable if event not in guards), None)
-        told = f"it gives none for `{missing}`" if missing else "it gives others"
+        told = f"it has none for `{missing}`" if missing else "it has other guards"
         raise extension.fault(f"a supervisor has one guard for each controllable event, and {told}")
     supervisor.guards = [guards[event] for event in controllable]
     supervisor.settlingBound = None
@@ -62,4 +62,4 @@ def _check(extension: Extension, model: sct.SupervisoryControlModel, supervisor:
     fault = next(faults(model), None)
     if fault is not None:
         model.supervisor = None
-        raise extension.fault(f"its supervisor is none of this model: {fault[1]}")
+        raise extension.fault(f"its supervisor does not fit this model: {fault[1]}")

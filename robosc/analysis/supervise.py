@@ -56,7 +56,7 @@ class EmptySupervisorError(ModelError):
         if reason.requirements and not (reason.event and reason.event.controllable):
             message += f"; from there on {forbid(reason.requirements, 'something')}"
         way = _condition(model, reason) or "loosen a requirement, or give every component a way back to a marked state"
-        hint = f"{way}; `robosc explain --why-empty` tells more"
+        hint = f"{way}; `robosc explain --why-empty` explains why"
         super().__init__([Diagnostic(file, span, Severity.ERROR, "empty-supervisor", message, hint)])
 
 

@@ -72,7 +72,7 @@ class Extension:
 
     def fault(self, reason: str) -> ModelError:
         """Return a fault of the extension, located at its declaration in the package."""
-        hint = f"mend or remove it: `pip uninstall {self.entry.dist.name}`" if self.entry.dist else None
+        hint = f"correct or remove it: `pip uninstall {self.entry.dist.name}`" if self.entry.dist else None
         message = f"`{self.name}` of {self.package} does not work: {visible(reason)}"
         return ModelError([Diagnostic(*self._declared(), Severity.ERROR, "extension", message, hint)])
 

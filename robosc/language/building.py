@@ -195,7 +195,7 @@ class Builder:
             if code not in _ESCAPES:
                 start = node.position + 1 + found.start()
                 hint = Repair("write `\\\\` for a backslash", f"\\\\{code}")
-                self._fault(node, f"`\\{code}` means nothing in a string", hint, start)
+                self._fault(node, f"`\\{code}` is not an escape sequence", hint, start)
             return _ESCAPES.get(code, code)
 
         text = _ESCAPE.sub(replace, node.value[1:-1])
@@ -203,7 +203,7 @@ class Builder:
             # As in Java, two escapes may be the two halves of one code point. A single half is invalid.
             return text.encode("utf-16", "surrogatepass").decode("utf-16")
         except UnicodeDecodeError:
-            self._fault(node, "a code point between `\\uD800` and `\\uDFFF` is no character")
+            self._fault(node, "a code point between `\\uD800` and `\\uDFFF` is not a character")
             return ""
 
     def _fault(self, node: Node, message: str, hint: Repair | str | None = None, start: int | None = None) -> None:

@@ -176,19 +176,21 @@ def _meaning(reading: Reading, file: File, element: Any) -> Iterator[str]:  # no
             value = constant_value(element.value)
             yield "Constant" + ("." if value is None else f", `{_value_text(value)}`.")
         case rsc.Parameter():
-            yield "Parameter: set on the robot, as a ROS parameter of its node; this is its default."
+            yield "Parameter of the robot, a ROS parameter of its node. The value is its default."
         case rsc.Condition():
-            yield "Condition: stands for its expression wherever it is named."
+            yield "Condition: a name for its expression."
         case rsc.EnumDataType():
             values = dict.fromkeys(f"`{rule.value.name}`" for rule in element.rules if rule.value)
             if values:
-                yield f"Turns data of type `{type_text(element.type)}` into {enumeration(values)}."
+                yield f"Converts data of type `{type_text(element.type)}` into {enumeration(values)}."
         case rsc.EnumValue():
             rule = element.eContainer()
-            when = f"where `{_source(file, rule.condition)}`" if hasattr(rule, "condition") else "where no rule holds"
+            when = (
+                f"where `{_source(file, rule.condition)}`" if hasattr(rule, "condition") else "if no other rule holds"
+            )
             yield f"Value of enum `{rule.eContainer().name}`: {when}."
         case rsc.Component() if element.parameters:
-            yield "Template: a component is made of it by `is` or `import`."
+            yield "Template: components use it with `is` or `import`."
         case rsc.Requirement() | rsc.Property():
             yield _stated(file, element)
 
@@ -215,7 +217,7 @@ def _state(reading: Reading, file: File, state: rsc.State) -> Iterator[str]:
 def _flags(state: Any, owner: str) -> str:
     words = [word for word, is_set in (("initial", state.initial), ("marked", state.marked)) if is_set]
     told = f"{' and '.join(words).capitalize()} state" if words else "State"
-    marked = ": the supervisor makes sure that such a state can always be reached" if state.marked else ""
+    marked = ": the supervisor ensures that a marked state can always be reached" if state.marked else ""
     return f"{told} {owner}{marked}."
 
 
@@ -223,14 +225,14 @@ def _communication(file: File, communication: rsc.CommunicationType) -> Iterator
     if isinstance(communication, rsc.Message):
         incoming = communication.direction == rsc.MessageDirection.incoming
         yield (
-            "Message to the robot's nodes: the controller decides when it is sent; requirements can forbid it."
+            "Message to the robot's nodes. The controller decides when to send it; requirements can forbid it."
             if incoming
-            else "Message from the robot's nodes: it comes when it comes; no requirement can keep it back."
+            else "Message from the robot's nodes, sent at any time. No requirement can prevent it."
         )
     else:
         kind = "Service" if isinstance(communication, rsc.Service) else "Action"
         names = enumeration(f"`{row.name}`" for row in events(communication) if row.name)
-        yield f"{kind} that the controller calls: requirements can forbid the request. Its events are {names}."
+        yield f"{kind} that the controller calls. Requirements can forbid the request. Its events are {names}."
     for row, declared in carried(communication):
         if not isinstance(declared, rsc.NoneDataType):
             yield f"- data of its {row.name}: `{type_text(declared)}`"
@@ -270,19 +272,19 @@ def _stated(file: File, element: Any) -> str:
             never = element.kind == rsc.InvariantKind.never
             return f"The supervised robot is {'never' if never else 'always'} in a state in which `{condition}` holds."
         case rsc.OrderRequirement():
-            fresh = "each time anew" if element.each else "at least once"
-            return f"`{target}` happens only after `{anchor}` has happened, {fresh}."
+            fresh = f"since the last `{target}`" if element.each else "at least once"
+            return f"`{target}` happens only after `{anchor}` has happened {fresh}."
         case rsc.CountRequirement():
             bound = _source(file, element.bound)
             return f"`{target}` happens at most {bound} times until `{anchor}` happens again."
         case rsc.AutomatonRequirement():
-            return "Of the events that it names only what its present state has a transition for may happen."
+            return "An event that it names may happen only if its current state has a transition for it."
         case rsc.InvariantProperty():
             never = element.kind == rsc.InvariantKind.never
             return f"`verify` proves that `{condition}` {'never' if never else 'always'} holds, or refutes it."
     premise = _source(file, element.premise) if element.premise is not None else None
     start = "every state" if premise is None else f"every state with `{premise}`"
-    return f"`verify` proves that from {start} a state with `{condition}` can be reached, or refutes it."
+    return f"`verify` proves that from {start}, a state with `{condition}` can be reached, or refutes it."
 
 
 def _component_name(element: Any) -> str:

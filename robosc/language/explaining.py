@@ -39,12 +39,14 @@ _FOREIGN = {
 #: Hints for words of other languages, and for words of RoboSC in a wrong place.
 _CONSTANT = "write `constant name: type = value`"
 _PARAMETER = "write `parameter name: type = value` in the robot, a library or a component"
-_TIME = "write `after 3.0 s goto state` in a state, or `after 500 ms without message goto state` for its silence"
+_TIME = "write `after 3.0 s goto state` in a state, or `after 500 ms without message goto state` for a silent topic"
 _FUNCTION = "write `function name(parameter: type): type = expression`"
 _INVARIANT = "write `requirement never condition` or `requirement always condition`; `property` only verifies it"
-_ORDER = "write `requirement b after a`, or `requirement b after each a` where each `b` takes an `a` of its own"
+_ORDER = "write `requirement b after a`, or `requirement b after each a` where each `b` needs an `a` of its own"
 _COUNT = "write `requirement at most 3 b since a`"
-_TEMPLATE = "write `component name(parameter: type) { … }`, and `component other is name(argument)` for one made of it"
+_TEMPLATE = (
+    "write `component name(parameter: type) { … }`, and `component other is name(argument)` for an instance of it"
+)
 _QUANTIFIER = (
     f"write {enumeration(f'`{word}`' for word in ROBOSC_QUANTIFIERS)}, a name, `in` and an array, or the name of a "
     "template, and a colon"
@@ -209,7 +211,7 @@ def _as_name(tokens: Tokens, index: int, wanted: Collection[str]) -> Repair:
     written_so = f"^{tokens[index].text}"
     is_type = any(name == "a type" and core <= set(wanted) for name, _, core in _GROUPS)
     is_edit = not is_type or any(token.text == written_so for token in tokens)
-    return Repair(f"write `{written_so}` where a keyword is used as a name", written_so if is_edit else None)
+    return Repair(f"write `{written_so}` to use a keyword as a name", written_so if is_edit else None)
 
 
 def misread(tokens: Tokens, index: int, wanted: Collection[str]) -> int:
@@ -231,7 +233,7 @@ def _foreign(tokens: Tokens, index: int) -> Repair:
     A quotation mark is replaced together with its counterpart.
     """
     own = _FOREIGN[tokens[index].text]
-    said = f"write `{own}`" if own else "leave it out: nothing ends with a semicolon"
+    said = f"write `{own}`" if own else "leave it out: RoboSC has no semicolons"
     if own != '"':
         return Repair(said, own)
     others = _other_quotes(tokens, index)
@@ -289,9 +291,9 @@ def _without_exponent(tokens: Tokens, index: int) -> Repair:
 
 def _timed_hint(token: Token, before: Token, wanted: Sequence[str]) -> str | None:
     if Kind.NUMBER in {token.kind, before.kind} and "do" not in wanted:
-        return "write a number, a blank and a unit, `ms`, `s` or `min`: `after 3.0 s`"
+        return "write a number, a space and a unit, `ms`, `s` or `min`: `after 3.0 s`"
     if token.text == "if":
-        return "an `after` has no condition: let it go to a state with a `transition if …`"
+        return "an `after` has no condition: add a state with a `transition if …`"
     return None
 
 
@@ -303,7 +305,7 @@ def _statement_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Bl
     if starter.is_keyword("incoming", "outgoing", "service", "action"):
         return _order_hint(tokens, index, wanted)
     if starter.is_keyword("provide") and token.text == ":":
-        return "the properties of an object stand in braces"
+        return "write the properties of an object in braces"
     if starter.is_keyword("requirement", "property"):
         return _requirement_hint(token, before, wanted)
     if starter.is_keyword("component") and "is" in wanted and token.text in {"=", ":"}:
@@ -317,13 +319,13 @@ def _order_hint(tokens: Tokens, index: int, wanted: Sequence[str]) -> Repair | s
     """Return the hint for clauses of a communication in the wrong order."""
     token = tokens[index]
     if token.text == "," and tokens[index - 2].is_keyword("links"):
-        return "`links` stands behind all else"
+        return "write `links` after all other clauses"
     if token.text == "send" and "type" in wanted:
-        return "`send: change` stands behind the type"
+        return "write `send: change` after the type"
     if token.text == "identifier" and token.text not in wanted:
-        return "`identifier` stands before all else"
+        return "write `identifier` before all other clauses"
     if "change" in wanted:
-        said = "write `send: change`, or leave `send` out: it is sent with every tick then"
+        said = "write `send: change`, or leave `send` out to send in every tick"
         return Repair(said, choices=("change",) if token.kind is Kind.WORD else ())
     return None
 
@@ -332,13 +334,13 @@ def _requirement_hint(token: Token, before: Token, wanted: Sequence[str]) -> Rep
     if ":" in wanted and (before.kind is Kind.STRING or token.is_keyword("automaton")):
         return _before(token, "write `:` before it", ":")
     if before.kind is Kind.STRING:
-        return 'the text stands before the colon: `requirement name "text": …`'
+        return 'write the text before the colon: `requirement name "text": …`'
     if "needs" in wanted and token.text in {"when", "if", "requires", "while"}:
         return Repair("write `needs`", "needs")
     if before.text == "every":
         return _ORDER
     if token.text in {"on", "transition", "after", "do", "variable"}:
-        return "the automaton of a requirement has states, and they have `on … if … goto …` only"
+        return "a requirement automaton has only states with `on … if … goto …`"
     return None
 
 
@@ -372,11 +374,11 @@ def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) 
             return _construct(word)
     places = [place for level, *places in _PLACES if level.starter(token) == token.text for place in places]
     if places and index == block.first and block.level not in (DEFINITIONS, COMPONENT):
-        return f"such a definition stands in {enumeration(places)}"
+        return f"write such a definition in {enumeration(places)}"
     if not token.text.removeprefix("^").isascii():
-        return "a name is made of the letters a to z and A to Z, of digits and of `_`"
+        return "a name has only the letters a to z and A to Z, digits and `_`"
     if token.text == "if" and tokens[block.first].is_keyword("on"):
-        return "the condition of a transition stands before `do` and `goto`, as in `on … if … do … goto …`"
+        return "write the condition of a transition before `do` and `goto`, as in `on … if … do … goto …`"
     return keyword_hint(token.text, close[0]) if close else None
 
 
@@ -386,7 +388,7 @@ def keyword_hint(word: str, close: str) -> Repair | str:
     If the word begins or ends with the keyword, the hint is a missing blank.
     """
     if word.startswith(close):
-        return f"is a blank missing behind `{close}`?"
+        return f"is a space missing after `{close}`?"
     if word.endswith(close):
-        return f"is a blank missing before `{close}`?"
+        return f"is a space missing before `{close}`?"
     return Repair(f"did you mean `{close}`?", close)

@@ -51,13 +51,13 @@ _FUNCTION = (
     f"there is {enumeration(f'`{name}`' for name in sorted(FUNCTIONS))}; others are declared, such as "
     "`function half(d: double): double = d / 2`"
 )
-_OWN_TEXT = "write what it has where it is needed"
+_OWN_TEXT = "write its content directly"
 _IMPORT = "import it: "
 #: Minimum length of a name for the import hint: shorter names are parts of too many others.
 _SHORTEST = 4
-OWN_MEMBERS = "a library's component speaks of its own members only"
+OWN_MEMBERS = "a component of a library reads only its own members"
 #: Hint for conditions and functions outside the components of a library.
-_ANY_NUMBER = "a robot may have a library's component several times or not at all: write this in the component"
+_ANY_NUMBER = "a robot may import a component several times or never: write this in the component"
 
 
 def link(
@@ -124,7 +124,7 @@ class Linker:
         for element, names in self._file.references.items():
             if isinstance(element, rsc.ComponentType) and element.eContainer().parameters:
                 template = written(element.eContainer().name)
-                message = f"template `{template}` is made of `{names['definition'].text}`, expected its own text"
+                message = f"template `{template}` is an instance of `{names['definition'].text}`, expected its own text"
                 self._report(names["definition"], message, _OWN_TEXT, rule="argument")
             elif isinstance(element, rsc.ImportedComponent):
                 self._import(element, names)
@@ -244,7 +244,7 @@ class Linker:
         if found is not None and found.parameters:
             element.definition = found
         elif found is not None:
-            message = f"component `{name.text}` is no template: it has no parameters"
+            message = f"component `{name.text}` is not a template: it has no parameters"
             self._report(name, message, _OWN_TEXT, rule="argument")
         elif not self._file.may_declare(name.text, Declared.COMPONENT, imported=False):
             templates = [component.name for component in components.values() if component.parameters]
@@ -290,7 +290,7 @@ class Linker:
         elif found and not templates:
             hint = f"write the condition with `{written(name.text)}` itself"
             self._report(
-                name, f"component `{name.text}` is one component, expected a template or one of a library", hint
+                name, f"component `{name.text}` is a component, expected a template or a component of a library", hint
             )
         elif not found and not self._file.may_declare(name.text, Declared.COMPONENT):
             self._missing(name, "there is no template", [found.name for found in own.values() if found.parameters])
@@ -482,7 +482,9 @@ class Linker:
         if self._named_value(access, name) or self._enum_value(access, name):
             return
         if not self._file.may_declare(name.text, Declared.ENUM_VALUE, Declared.NAMED):
-            hint = "an enum's rules see only `value`, literals, constants, functions, its parameters and enum values"
+            hint = (
+                "the rules of an enum read only `value`, literals, constants, functions, its parameters and enum values"
+            )
             known = [*self.scope.usable(rsc.EnumValue), *self.scope.usable(rsc.NamedExpression)]
             self._missing(name, "there is no enum value", known, hint)
 
@@ -580,8 +582,8 @@ class Linker:
         if not isinstance(communication, rsc.Service | rsc.Action):
             self._report(
                 name,
-                f"`{name.text}` is a message: nothing of it is a state",
-                "let a variable remember that it was sent",
+                f"`{name.text}` is a message: it has no state",
+                "store in a variable that it was sent",
             )
         elif word is None:
             call = f"{written(name.text)}.{RUNNING_WORD}"
@@ -589,11 +591,11 @@ class Linker:
         elif word.text == RUNNING_WORD:
             other = behind[1] if len(behind) > 1 and behind[1] is not None else word
             rest = (self._point_before(other).start, other.end, "")
-            message = f"nothing stands behind `{written(name.text)}.{RUNNING_WORD}`"
+            message = f"`{written(name.text)}.{RUNNING_WORD}` has no members"
             self._report(other, message, Repair(f"leave `.{other.text}` out", elsewhere=(rest,)))
         else:
             repair = did_you_mean(word.text, [RUNNING_WORD], cutoff=0.6)
-            message = f"of `{name.text}` only `{RUNNING_WORD}` can be read, not `{word.text}`"
+            message = f"only `{RUNNING_WORD}` of `{name.text}` can be read, not `{word.text}`"
             self._report(word, message, repair or Repair(f"write `{RUNNING_WORD}`", RUNNING_WORD))
         return True
 
@@ -769,7 +771,7 @@ class Linker:
                 "an enum" if isinstance(of, EnumType) else "an array" if isinstance(of, ArrayType) else f"of type {of}"
             )
             hint = self._index_before(name) if isinstance(of, ArrayType) else None
-            self._report(name, f"there is no property `{name.text}`: what stands before it is {what}", hint)
+            self._report(name, f"there is no property `{name.text}`: its operand is {what}", hint)
             return None
         if is_made(of.definition):
             made = ros_property(of.definition, name.text, self.interfaces)

@@ -171,7 +171,7 @@ class _Reader:
             cycle = [self._files[imported] for imported in reading[reading.index(identity) :]]
             names = [file.base.name for file in cycle if file.base is not None]
             message = f"libraries import each other in a circle: {' -> '.join([*names, name.text])}"
-            self._report(file, name, message, "move what both need to a library of its own", "import-cycle")
+            self._report(file, name, message, "move the shared parts to a separate library", "import-cycle")
             return None
         return self._files[identity] if identity in self._files else self._open(found[0], str(found[0]))
 
@@ -180,7 +180,7 @@ class _Reader:
         return f"library `{name.text}` is declared by several files of one folder: {paths}", "keep one of them"
 
     def _none(self, name: Name, path: Path) -> tuple[str, Repair | str]:
-        where = "libraries are looked for beside this file, in the folders of -I and of ROBOSC_PATH"
+        where = "libraries are searched beside this file and in the folders of -I and ROBOSC_PATH"
         return f"there is no library `{name.text}`", did_you_mean(
             name.text, self._path.known(path), cutoff=0.75
         ) or where

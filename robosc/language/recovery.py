@@ -104,8 +104,8 @@ class _Recovery:
             self._regions.mended = True
             token = tokens[brace.index]
             if brace.surplus:
-                why = "what follows belongs inside" if brace.text == "}" else "one stands before it"
-                self._report(brace.index, f"this `{brace.text}` is one too many: {why}", Repair(_LEAVE_OUT, ""))
+                why = "the next lines belong inside" if brace.text == "}" else "there is one before it"
+                self._report(brace.index, f"unexpected `{brace.text}`: {why}", Repair(_LEAVE_OUT, ""))
                 self._blank(token.start, token.end)
                 continue
             # If several braces are missing at the end, only the innermost is reported.
@@ -123,7 +123,7 @@ class _Recovery:
         tokens = self._tokens
         if root.after < len(tokens) and tokens[root.after].kind is not Kind.OPEN_COMMENT:
             token = tokens[root.after]
-            hint = "a file holds one robot or one library" if token.is_keyword("robot", "library") else None
+            hint = "a file has one robot or one library" if token.is_keyword("robot", "library") else None
             self._report(root.after, f"found {found(token)}, expected the end of the file", hint)
             self._skip(root.after, len(tokens))
 
@@ -138,7 +138,7 @@ class _Recovery:
             self._report(*complex_, "use variables or functions for its parts")
             self._skip_block(block)
         elif self._is_library and block.level is DEFINITIONS and self._starts(block, "requirement", "provide"):
-            message = f"a library holds no {self._tokens[block.first].text} statements"
+            message = f"a library has no {self._tokens[block.first].text} statements"
             self._report(block.first, message, "write it in the robot that imports the library")
             self._skip_block(block)
         else:
@@ -302,7 +302,7 @@ def _by_cause(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
         word = finding.edits[0].text if finding.edits else ""
         if word.startswith("^") and firsts.setdefault(word, len(found)) < len(found):
             first = found[firsts[word]]
-            other = Related(finding.file, finding.span, f"here `{word}` is missing, too")
+            other = Related(finding.file, finding.span, f"`{word}` is also missing here")
             found[firsts[word]] = replace(first, edits=first.edits + finding.edits, related=(*first.related, other))
         else:
             found.append(finding)
@@ -312,7 +312,7 @@ def _by_cause(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
 def _without_consequences(findings: Sequence[Diagnostic]) -> list[Diagnostic]:
     """Drop edits that delete a surplus brace behind another error, as this error may be its cause."""
     first = findings[0].span.line if findings else 0
-    hint = f"mend the error in line {first} first"
+    hint = f"correct the error in line {first} first"
     return [
         replace(finding, hint=hint, edits=()) if index and finding.hint == _LEAVE_OUT else finding
         for index, finding in enumerate(findings)

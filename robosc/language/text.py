@@ -173,8 +173,8 @@ def decode(file: str, content: bytes, name: str | None = None) -> tuple[Text, li
         text = content.decode("utf-8")
     except UnicodeDecodeError as fault:
         before = Text(file, content[: fault.start].decode("utf-8"))
-        message = f"the byte 0x{content[fault.start]:02x} is no UTF-8"
-        hint = "save the file in the encoding UTF-8"
+        message = f"the byte 0x{content[fault.start]:02x} is not UTF-8"
+        hint = "save the file with the encoding UTF-8"
         findings.append(before.error("syntax", len(before.content), len(before.content), message, hint))
         # Invalid bytes become blanks, so that one fault causes only one finding.
         text = content.decode("utf-8", errors="replace").replace("\N{REPLACEMENT CHARACTER}", " ")

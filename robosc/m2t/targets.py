@@ -205,7 +205,7 @@ class _Guarded:
         for path, text in files.items():
             relative = isinstance(path, str) and not PurePosixPath(path).is_absolute() and ".." not in path.split("/")
             if not relative or not isinstance(text, str):
-                raise self.extension.fault(f"it gives {path!r}, which is no relative path with a text")
+                raise self.extension.fault(f"it returns {path!r}, which is not a relative path with a text")
         return files
 
 

@@ -142,10 +142,10 @@ def hopeless(steps: Iterable[Step]) -> ModelError:
     variables = [element for step in steps for element in step.touched if isinstance(element, sct.DiscreteVariable)]
     widest = max(variables, key=domain_size)
     message = (
-        f"the range of {widest.name}, {domain_size(widest)} values, is too wide: synthesis takes them one by one, "
-        "because of what else changes with them"
+        f"the range of {widest.name}, {domain_size(widest)} values, is too wide: synthesis handles them one by one, "
+        "because other values change with them"
     )
-    hint = "give it a smaller range"
+    hint = "use a smaller range"
     return ModelError([Diagnostic(*place(widest), Severity.ERROR, "integer-range", message, hint)])
 
 

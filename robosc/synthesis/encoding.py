@@ -125,7 +125,7 @@ class Layout:
 
 def foreign(expression: ex.Expression) -> ModelError:
     """Return the error for an expression that no SCT model contains."""
-    message = f"a {type(expression).__name__} has no place in an sct model"
+    message = f"a {type(expression).__name__} is not allowed in an sct model"
     return ModelError([Diagnostic(*place(expression), Severity.ERROR, "type", message)])
 
 

@@ -58,7 +58,7 @@ def bounded(memory: int, what: str) -> Iterator[None]:
     try:
         yield
     except _TooMuchError:
-        raise MemoryError(f"{what} needs more than {most >> 20} MiB, all things taken together") from None
+        raise MemoryError(f"{what} needs more than {most >> 20} MiB in total") from None
     finally:
         with lock:
             ended.set()

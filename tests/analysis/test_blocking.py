@@ -164,7 +164,7 @@ def tank(**arguments):
 def test_an_uncontrollable_event_is_named_with_the_inputs_that_matter():
     reason = diagnose(model([tank()])).reason
     assert blocking(reason) == (
-        "response from `Tank` can't be prevented, and after it no marked state can be reached;"
+        "response from `Tank` cannot be prevented, and after it no marked state can be reached;"
         " never in a marked state: `Tank` in `burst`"
     )
     assert [str(step) for step in reason.trace] == ["Tank.measured(x = 3)", "Tank.burst"]

@@ -100,14 +100,14 @@ def test_the_cause_comes_first() -> None:
         "therefore, `Feed` is never in `there`",
     ]
     assert all(finding.message.startswith("therefore, ") for finding in others)
-    assert {finding.hint for finding in others} == {"mend the cause in line 29 first"}
+    assert {finding.hint for finding in others} == {"correct the cause in line 29 first"}
 
 
 def test_the_hint_says_what_to_write_and_to_run() -> None:
     cause, *_ = findings(TURNS)
     assert cause.hint == (
-        "loosen the requirement: say what each command `needs`, or add a command that undoes the event, or leave it "
-        "out; `robosc explain --why-never Spindle.lower` tells more"
+        "loosen the requirement: add a `needs` requirement for each command, or a command that undoes the event, "
+        "or remove it; `robosc explain --why-never Spindle.lower` explains why"
     )
 
 
@@ -126,7 +126,7 @@ def test_a_message_that_its_component_ignores() -> None:
     assert finding.hint == (
         "`Mill` ignores it in `idle`: in the automaton of the requirement, write `if Mill.busy` after "
         "`on response from done`, and add `on response from done if !(Mill.busy)` to each state; `robosc explain "
-        "--why-empty` tells more"
+        "--why-empty` explains why"
     )
     ignored = "on response from done if !(Mill.busy)"
     mended = BUFFER.replace("from done goto full", f"from done if Mill.busy goto full {ignored}").replace(
@@ -139,5 +139,5 @@ def test_a_guard_of_a_component_is_named() -> None:
     model = robosc.to_sct(robosc.load(text=GUARDED))
     found = explored(model, emptiness)
     assert [note.details for note in found.stuck if "Mains" in note.text] == [
-        ("its transition on response from `Mains.back` asks for `Boom.parked`",)
+        ("its transition on response from `Mains.back` requires `Boom.parked`",)
     ]

@@ -101,12 +101,12 @@ def test_synthesis_keeps_away_from_where_something_uncontrollable_leads_to_a_vio
     found = supervise(made).findings
     never = next(finding for finding in found if finding.rule == "never-enabled")
     assert never.message == (
-        "`Base.drive` can never be started: after request to `Base.drive`, response from `Stop.pressed` can't be "
+        "`Base.drive` can never be started: after request to `Base.drive`, response from `Stop.pressed` cannot be "
         "prevented, and then `requirement SR1: never Stop.stopped and Base.driving` is violated"
     )
     assert never.hint == (
         "loosen the requirement (what the action `needs` cancels it; `never` and `always` do not let it start), or "
-        "leave it out; `robosc explain --why-never Base.drive` tells more"
+        "remove it; `robosc explain --why-never Base.drive` explains why"
     )
 
 
@@ -126,8 +126,8 @@ def test_what_could_happen_only_beyond_names_the_requirement(tmp_path: Path) -> 
     (toot,) = [finding for finding in supervise(made).findings if "`Horn.toot` can never" in finding.message]
     assert toot.rule == "never-enabled"
     assert toot.message == (
-        "therefore, `Horn.toot` can never be sent: the supervisor lets the robot reach no state in which it could be "
-        "sent: after request to `Base.drive`, response from `Stop.pressed` can't be prevented, and then `requirement "
+        "therefore, `Horn.toot` can never be sent: the supervised robot reaches no state in which it could be "
+        "sent: after request to `Base.drive`, response from `Stop.pressed` cannot be prevented, and then `requirement "
         "SR1: never Stop.stopped and Base.driving` is violated"
     )
 
@@ -135,9 +135,7 @@ def test_what_could_happen_only_beyond_names_the_requirement(tmp_path: Path) -> 
 def test_a_state_that_is_out_of_reach_says_what_keeps_it_out(tmp_path: Path) -> None:
     made = sct_of(tmp_path, STOP, BASE, "requirement SR1: never Stop.stopped and Base.driving")
     unreachable = next(finding for finding in supervise(made).findings if finding.rule == "unreachable-state")
-    assert unreachable.message.startswith(
-        "therefore, `Base` is never in `driving`: in `idle` the supervisor holds back"
-    )
+    assert unreachable.message.startswith("therefore, `Base` is never in `driving`: in `idle` the supervisor prevents")
     assert unreachable.message.endswith("`requirement SR1: never Stop.stopped and Base.driving` is violated")
 
 
@@ -153,7 +151,7 @@ def test_an_action_is_cancelled_for_no_invariant(tmp_path: Path) -> None:
         (
             "requirement SR1: never Stop.stopped and Base.driving",
             (
-                "response from `Stop.pressed` can't be prevented, and after it {} is violated; a shortest trace: "
+                "response from `Stop.pressed` cannot be prevented, and after it {} is violated; a shortest trace: "
                 "response from `Base.moved`, then response from `Stop.pressed`"
             ),
         ),
@@ -174,7 +172,7 @@ def test_an_empty_supervisor_names_the_requirement_and_the_shortest_way(
         re.sub(r" \(line \d+\)", "", found.message) == f"the supervisor is empty: {message.format(f'`{requirement}`')}"
     )
     told = explored(made, lambda system: Renderer(made, lambda _: "").answer(emptiness(system)))
-    assert f"It would help to loosen, or to leave out, one of these:\n  : {requirement} (4 states without it)" in told
+    assert f"Loosen or remove one of these:\n  : {requirement} (4 states without it)" in told
 
 
 def test_a_way_to_a_marked_state_through_a_violation(tmp_path: Path) -> None:

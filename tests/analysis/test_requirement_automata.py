@@ -228,8 +228,8 @@ GUIDE = """component Guide {
 }"""
 
 
-WHEREVER = "wherever it could be, `requirement {}` (line 15) forbids it, for example "
-OUT_OF_REACH = "the supervisor lets the robot reach no state in which it could be sent: "
+WHEREVER = "in every state where it could be, `requirement {}` (line 15) forbids it, for example "
+OUT_OF_REACH = "the supervised robot reaches no state in which it could be sent: "
 
 
 @pytest.mark.parametrize(
@@ -260,7 +260,7 @@ OUT_OF_REACH = "the supervisor lets the robot reach no state in which it could b
         (  # by an automaton that could not return to its marked state
             "requirement T: automaton { initial marked state a { on grip goto b } state b { } }",
             "place",
-            OUT_OF_REACH + "after request to `Arm.grip`, `T` can't get back to a marked state",
+            OUT_OF_REACH + "after request to `Arm.grip`, `T` cannot get back to a marked state",
         ),
     ],
 )
@@ -316,7 +316,7 @@ def test_an_action_is_not_cancelled_for_an_order(tmp_path: Path) -> None:
             "requirement at most 1001 place since grip",
             "integer-range: `at most` counts to 1001, expected a number from 1 to 1,000",
         ),
-        ("requirement at most 1.5 place since grip", "type: the number behind `at most` must be integer, found double"),
+        ("requirement at most 1.5 place since grip", "type: the number after `at most` must be integer, found double"),
         (
             "requirement { } after grip",
             "requirement-target: the requirement restricts nothing, expected at least one event in the braces",
@@ -351,7 +351,7 @@ def test_an_action_is_not_cancelled_for_an_order(tmp_path: Path) -> None:
         ),
         (
             "requirement T: automaton { initial state a { on grip if 1 } }",
-            "type: the condition behind `if` must be boolean, found integer",
+            "type: the condition after `if` must be boolean, found integer",
         ),
     ],
 )

@@ -24,7 +24,7 @@ MARKS = {
     "in": "the folder that it runs in, of the repository",
     "status": "the exit status that it ends with",
     "file": "where the text is written to, or what its diff changes, for the blocks that follow",
-    "fragment": "what a part of a model stands in, where that can't be told from its text",
+    "fragment": "what a part of a model stands in, where that cannot be told from its text",
 }
 _BETWEEN_MARKS = re.compile(rf"; (?=(?:{'|'.join(MARKS)}): )")
 

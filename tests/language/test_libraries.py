@@ -119,7 +119,7 @@ def test_a_library_that_is_not_there_has_a_likely_name(tmp_path: Path) -> None:
 
 def test_a_library_that_only_sounds_alike_is_not_meant(tmp_path: Path) -> None:
     found = reading(tmp_path, "robot R { component C from GripperLibrary import C }")
-    assert str(found.findings[0].hint).startswith("libraries are looked for")
+    assert str(found.findings[0].hint).startswith("libraries are searched")
 
 
 def test_a_library_with_errors_is_reported_as_itself_and_once(tmp_path: Path) -> None:

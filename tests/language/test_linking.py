@@ -227,7 +227,7 @@ def test_an_enum_sees_values_literals_and_enum_values(tmp_path: Path) -> None:
     )
     assert underlined(found) == [("unresolved-reference", "C"), ("unresolved-reference", "s")]
     assert {finding.hint for finding in found.findings} == {
-        "an enum's rules see only `value`, literals, constants, functions, its parameters and enum values"
+        "the rules of an enum read only `value`, literals, constants, functions, its parameters and enum values"
     }
 
 

@@ -105,12 +105,12 @@ def test_it_is_printed_as_it_is_written() -> None:
         ("outside Base.drve.running", ("drve", "did you mean `drive`?"), "Base.drive.running"),
         ("outside Base.drive.running.x", ("x", "leave `.x` out"), "Base.drive.running"),
         ("outside drive.running", ("drive", "write `Base.drive`"), "Base.drive.running"),
-        ("outside Base.bump.running", ("bump", "let a variable remember that it was sent"), None),
+        ("outside Base.bump.running", ("bump", "store in a variable that it was sent"), None),
         ("inside drive.runnin", ("runnin", "did you mean `running`?"), "drive.running"),
         ("inside drive.active", ("active", "write `running`"), "drive.running"),
         ("inside drve.running", ("drve", "did you mean `drive`?"), "drive.running"),
         ("inside drive", ("drive", "write `drive.running`"), "drive.running"),
-        ("inside bump.running", ("bump", "let a variable remember that it was sent"), None),
+        ("inside bump.running", ("bump", "store in a variable that it was sent"), None),
     ],
 )
 def test_what_is_nearly_running_says_so(

@@ -209,7 +209,7 @@ def test_what_is_no_utf_8_is_one_finding(tmp_path: Path, content: bytes, byte: i
     path.write_bytes(content)
     (finding,) = read(path).findings
     assert (finding.rule, finding.span) == ("syntax", place)
-    assert finding.message == f"the byte 0x{byte:02x} is no UTF-8"
+    assert finding.message == f"the byte 0x{byte:02x} is not UTF-8"
 
 
 def test_a_byte_order_mark_is_no_text(tmp_path: Path) -> None:

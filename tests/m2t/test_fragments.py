@@ -88,7 +88,7 @@ def test_types_of_the_package_itself_are_not_looked_for(target: str, porter: rob
 
 
 def test_what_is_no_code_becomes_part_of_nothing(porter: robosc.Models) -> None:
-    with pytest.raises(ValueError, match="no code"):
+    with pytest.raises(ValueError, match="is not code"):
         robosc.generate("cif", porter, into="my_robot")
 
 

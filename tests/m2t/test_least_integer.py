@@ -100,5 +100,5 @@ def test_no_saved_model_reaches_further(models: Models, tmp_path: Path) -> None:
         (tmp_path / name).write_text(
             text.replace('value="9223372036854775808"', 'value="9223372036854775809"'), encoding="utf-8"
         )
-    with pytest.raises(robosc.ModelError, match="9223372036854775809 is no integer of 64 bits"):
+    with pytest.raises(robosc.ModelError, match="9223372036854775809 is not an integer of 64 bits"):
         load(tmp_path / "R.sct.xmi")

@@ -38,13 +38,13 @@ CHANGES = {
         ROBOT,
         r'(<communicationTypes [^>]*component="//@definitions)\.7"',
         r'\1.4"',
-        "'move' is no communication of 'LineDetector'",
+        "'move' is not a communication of 'LineDetector'",
     ),
     "state of another component": (
         ROBOT,
         r'(component="//@definitions)\.5" (item="//@definitions.5/)',
         r'\1.4" \2',
-        "is no state or variable of 'LineDetector'",
+        "is not a state or variable of 'LineDetector'",
     ),
     "target in another component": (
         ROBOT,
@@ -56,19 +56,19 @@ CHANGES = {
         "Warehouse.robosc.xmi",
         r'property="//@definitions.4/@properties.0"',
         'property="//@definitions.5/@properties.0"',
-        "'x' is no property of object Scan",
+        "'x' is not a property of object Scan",
     ),
     "property of an array": (
         ROBOT,
         r'(<segments xsi:type="robosc:PropertySegment" [^>]*/>)',
         r"\1\1",
-        "'ranges' is no property of array",
+        "'ranges' is not a property of array",
     ),
     "component of another library": (
         ROBOT,
         r'(<library [^>]*href=")EmergencyStopLibrary',
         r"\1TurtlebotLibrary",
-        "is no component of TurtlebotLibrary",
+        "is not a component of TurtlebotLibrary",
     ),
     "component from itself": (
         "EmergencyStopLibrary.robosc.xmi",
@@ -78,19 +78,19 @@ CHANGES = {
             ' href="EmergencyStopLibrary.robosc.xmi#/"/><definition href="#//@definitions.3"/></type></definitions>'
             "</robosc:Library>"
         ),
-        "'C' is made of itself",
+        "'C' contains itself",
     ),
     "doubled step": (
         GRAPH,
         r'(\s*<steps [^>]*name="ranges"/>)',
         r"\1\1",
-        "'ranges' is read or written as an array here, but as an object elsewhere",
+        "'ranges' has the type an array here, but an object elsewhere",
     ),
     "field in a number": (
         "Warehouse.rosgraph.xmi",
         r"(<path>pose</path>)\s*<path>x</path>",
         r"\1",
-        "'pose' is read or written as an object here, but as DoubleType elsewhere",
+        "'pose' has the type an object here, but DoubleType elsewhere",
     ),
 }
 
@@ -149,22 +149,22 @@ OF_TEMPLATES = {
     "component of itself": (
         r'(InstantiatedComponent" [^>]*definition="//@definitions)\.0"',
         r'\1.1"',
-        "'X' is made of itself",
+        "'X' contains itself",
     ),
     "no template": (
         r'(InstantiatedComponent" [^>]*definition="//@definitions)\.0"',
         r'\1.2"',
-        "'Y' is no template",
+        "'Y' is not a template",
     ),
     "template without text": (
         r'name="X">',
         r'name="X"><parameters name="m"><type xsi:type="robosc:IntegerDataType"/></parameters>',
-        "the template 'X' has no text of its own",
+        "the template 'X' has no content of its own",
     ),
     "template in place of a component": (
         r'(<left [^>]*component="//@definitions)\.1"',
         r'\1.0"',
-        "it does not say whose 'v' is meant",
+        "the component of 'v' is missing",
     ),
 }
 

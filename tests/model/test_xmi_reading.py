@@ -93,46 +93,46 @@ def test_an_attribute_may_be_an_element(write: Any) -> None:
 
 
 DAMAGES = [
-    ('kind="message"', 'kind="massage"', ["3:18: 'kind' can't be 'massage'"]),
-    ('initial="true"', 'initial="yes"', ["6:27: 'initial' can't be 'yes'"]),
+    ('kind="message"', 'kind="massage"', ["3:18: 'kind' cannot be 'massage'"]),
+    ('initial="true"', 'initial="yes"', ["6:27: 'initial' cannot be 'yes'"]),
     ('name="p"', 'nam="p"', ["3:1: a Plant needs 'name'", "3:9: a Plant has no attribute 'nam'"]),
-    ('name="p"', 'name="p q"', ["3:1: 'name' is to be an identifier, which 'p q' is not"]),
+    ('name="p"', 'name="p q"', ["3:1: 'name' must be an identifier, found 'p q'"]),
     ('name="p"', 'name="p"\n  locations="x"', ["4:3: a Plant has no attribute 'locations'"]),
     (
         '<inputs name="i"><type xsi:type="expression:BooleanType"/></inputs>',
         "",
-        ["4:66: 'inputs' refers to '//@plants.0/@inputs.0', where nothing is"],
+        ["4:66: 'inputs' refers to '//@plants.0/@inputs.0', which does not exist"],
     ),
     (
         "expression:BooleanType",
         "expression:Bool",
-        ["5:26: there is no class 'expression:Bool'"],
+        ["5:26: unknown class 'expression:Bool'"],
     ),
     ("expression:BooleanType", "expression:Type", ["5:20: Type is abstract"]),
-    ("expression:BooleanType", "sct:Plant", ["5:20: 'type' wants a Type, which a Plant is not"]),
-    ("expression:BooleanType", "sct:PlantKind", ["5:26: there is no class 'sct:PlantKind'"]),
-    ("expression:BooleanType", "other:Type", ["5:26: there is no class 'other:Type'"]),
-    ("expression:BooleanType", "expression:DoubleType", ["5:3: DoubleType has no place in an sct model"]),
+    ("expression:BooleanType", "sct:Plant", ["5:20: 'type' expects a Type, found a Plant"]),
+    ("expression:BooleanType", "sct:PlantKind", ["5:26: unknown class 'sct:PlantKind'"]),
+    ("expression:BooleanType", "other:Type", ["5:26: unknown class 'other:Type'"]),
+    ("expression:BooleanType", "expression:DoubleType", ["5:3: DoubleType is not allowed in an sct model"]),
     (
         "expression:BooleanType",
         'expression:IntegerType" minimum="9223372036854775808" maximum="x',
-        ["5:60: 'minimum' can't be '9223372036854775808'", "5:90: 'maximum' can't be 'x'"],
+        ["5:60: 'minimum' cannot be '9223372036854775808'", "5:90: 'maximum' cannot be 'x'"],
     ),
     (
         'target="//@plants.0/@locations.0"',
         'target="//@plants.0/@events.0"',
-        ["7:42: 'target' refers to an Event, but wants a Location"],
+        ["7:42: 'target' refers to an Event, expected a Location"],
     ),
-    ('target="//@plants.0/@locations.0"', 'target="_abc"', ["7:42: 'target' refers to '_abc', where nothing is"]),
+    ('target="//@plants.0/@locations.0"', 'target="_abc"', ["7:42: 'target' refers to '_abc', which does not exist"]),
     (
         'target="//@plants.0/@locations.0"',
         'target="//@plants.0/@locations.99999999999999999999999"',
-        ["7:42: 'target' refers to '//@plants.0/@locations.99999999999999999999999', where nothing is"],
+        ["7:42: 'target' refers to '//@plants.0/@locations.99999999999999999999999', which does not exist"],
     ),
     ('target="//@plants.0/@locations.0"', 'target="/ /"', ["7:42: 'target' refers to one element"]),
     ('target="//@plants.0/@locations.0"', "", ["7:5: an Edge needs 'target'"]),
     ('.0/@inputs.0"', '.0/@inputs.0 //@plants.0/@inputs.0"', ["4:66: 'inputs' names '//@plants.0/@inputs.0' twice"]),
-    ("</locations>", "stray</locations>", ["6:3: a Location holds no text"]),
+    ("</locations>", "stray</locations>", ["6:3: a Location cannot have text"]),
     (
         "</plants>",
         "<name>q</name><name>r</name></plants>",
@@ -142,7 +142,7 @@ DAMAGES = [
     (
         "<locations",
         '<locations name="other" initial="true" marked="true"/><locations',
-        ["3:1: plant 'p' has 2 initial locations; it starts in exactly one"],
+        ["3:1: plant 'p' has 2 initial locations, expected exactly one"],
     ),
 ]
 
@@ -167,16 +167,16 @@ def test_all_findings_come_at_once(write: Any) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "1:1: this is no well-formed XML: no element found"),
-        ("robot R {}", "1:1: this is no well-formed XML: syntax error"),
-        (HEAD + PLANT, "10:1: this is no well-formed XML: no element found"),
-        (HEAD + "<plants name=p/>" + TAIL, "3:14: this is no well-formed XML: not well-formed (invalid token)"),
-        (HEAD + "<plants></plant>" + TAIL, "3:11: this is no well-formed XML: mismatched tag"),
-        (HEAD + "<x:plants/>" + TAIL, "3:1: this is no well-formed XML: unbound prefix"),
-        (HEAD.encode() + b"<!-- \xff -->", "3:6: this is no text in UTF-8"),
-        ("ü".encode("utf-16"), "1:1: this is no text in UTF-8"),
-        (bytes(range(128)), "1:1: this is no well-formed XML: not well-formed (invalid token)"),
-        (HEAD + "<!-- ü --> \0", "3:12: this is no well-formed XML: not well-formed (invalid token)"),
+        ("", "1:1: this is not well-formed XML: no element found"),
+        ("robot R {}", "1:1: this is not well-formed XML: syntax error"),
+        (HEAD + PLANT, "10:1: this is not well-formed XML: no element found"),
+        (HEAD + "<plants name=p/>" + TAIL, "3:14: this is not well-formed XML: not well-formed (invalid token)"),
+        (HEAD + "<plants></plant>" + TAIL, "3:11: this is not well-formed XML: mismatched tag"),
+        (HEAD + "<x:plants/>" + TAIL, "3:1: this is not well-formed XML: unbound prefix"),
+        (HEAD.encode() + b"<!-- \xff -->", "3:6: this is not text in UTF-8"),
+        ("ü".encode("utf-16"), "1:1: this is not text in UTF-8"),
+        (bytes(range(128)), "1:1: this is not well-formed XML: not well-formed (invalid token)"),
+        (HEAD + "<!-- ü --> \0", "3:12: this is not well-formed XML: not well-formed (invalid token)"),
     ],
 )
 def test_no_xml(write: Any, text: str | bytes, message: str) -> None:
@@ -208,9 +208,9 @@ def test_nesting_is_bounded(write: Any) -> None:
 
 
 FOREIGN = [
-    ("<sct:Plant xmlns:sct='urn:robosc:sct:1'/>", "a file can't hold a Plant by itself"),
-    ("<sct:Nothing xmlns:sct='urn:robosc:sct:1'/>", "a file can't hold a Nothing by itself"),
-    ("<e:BooleanLiteral xmlns:e='urn:robosc:expression:1'/>", "a file can't hold a BooleanLiteral by itself"),
+    ("<sct:Plant xmlns:sct='urn:robosc:sct:1'/>", "a Plant cannot be the root of a file"),
+    ("<sct:Nothing xmlns:sct='urn:robosc:sct:1'/>", "a Nothing cannot be the root of a file"),
+    ("<e:BooleanLiteral xmlns:e='urn:robosc:expression:1'/>", "a BooleanLiteral cannot be the root of a file"),
     (
         "<x:Robot xmlns:x='http://example.org/robot'/>",
         "no model of RoboSC has the namespace 'http://example.org/robot'",
@@ -220,7 +220,7 @@ FOREIGN = [
         "no model of RoboSC has the namespace 'urn:robosc:sct:2'",
     ),
     ("<html/>", "no model of RoboSC has the namespace ''"),
-    ("<xmi:XMI xmlns:xmi='http://www.omg.org/XMI'/>", "this file has several models; one is wanted"),
+    ("<xmi:XMI xmlns:xmi='http://www.omg.org/XMI'/>", "this file has several models, expected one"),
 ]
 
 
@@ -235,8 +235,8 @@ def test_a_metamodel_is_no_model(name: str) -> None:
 
 
 def test_what_cannot_be_read(tmp_path: Path) -> None:
-    assert shown(tmp_path / "none.xmi") == ["1:1: the file can't be read: No such file or directory"]
-    assert shown(tmp_path) == ["1:1: the file can't be read: Is a directory"]
+    assert shown(tmp_path / "none.xmi") == ["1:1: the file cannot be read: No such file or directory"]
+    assert shown(tmp_path) == ["1:1: the file cannot be read: Is a directory"]
 
 
 OUTSIDE = [
@@ -262,13 +262,13 @@ def test_nothing_outside_the_folder_is_read(folder: Path, texts: dict[str, str],
     path = home / "graph.xmi"
     path.write_text(texts["Warehouse.rosgraph.xmi"].replace("Warehouse.sct.xmi", href))
     [finding] = findings(path)
-    assert finding.message.endswith("is not in the folder of this model or below; nothing else is read")
+    assert finding.message.endswith("is not in the folder of this model or below; other files are not read")
 
 
 def test_what_is_referred_to_must_be_a_file(folder: Path) -> None:
     (folder / "Warehouse.sct.xmi").unlink()
     assert [finding.message for finding in findings(folder / "Warehouse.rosgraph.xmi")] == [
-        "there is no file 'Warehouse.sct.xmi'"
+        "the file 'Warehouse.sct.xmi' does not exist"
     ]
     os.mkfifo(folder / "Warehouse.sct.xmi")
     assert len(findings(folder / "Warehouse.rosgraph.xmi")) == 1
@@ -277,7 +277,7 @@ def test_what_is_referred_to_must_be_a_file(folder: Path) -> None:
 def test_a_file_of_another_model_is_found_out(folder: Path, texts: dict[str, str]) -> None:
     (folder / "Warehouse.sct.xmi").write_text(texts["EmergencyStopLibrary.robosc.xmi"])
     messages = {finding.message for finding in findings(folder / "Warehouse.rosgraph.xmi")}
-    assert "'model' refers to a Library, but wants a SupervisoryControlModel" in messages
+    assert "'model' refers to a Library, expected a SupervisoryControlModel" in messages
 
 
 def test_files_may_refer_to_each_other_in_a_circle(folder: Path, texts: dict[str, str]) -> None:

@@ -98,7 +98,7 @@ def test_another_synthesizer_finds_as_many_states(installed: Path) -> None:
 def test_a_synthesizer_that_is_not_installed() -> None:
     done = CliRunner().invoke(main, ["synthesize", str(LINE_FOLLOWER), "--synthesizer", "none_such"])
     assert done.exit_code == 2
-    assert "'none_such' is no synthesizer that is installed" in done.stderr
+    assert "'none_such' is not an installed synthesizer" in done.stderr
 
 
 @pytest.fixture
@@ -129,8 +129,8 @@ TARGETS = {
     "x = (": "SyntaxError",
     "def generate(models, configuration):\n    return {}\n": "`robosc_broken` has no function `preconditions`",
     f"{TARGET}return {{}}['x']\n": "KeyError: 'x'",
-    f"{TARGET}return {{'../out': ''}}\n": "it gives '../out', which is no relative path with a text",
-    f"{TARGET}return {{'file': b''}}\n": "it gives 'file', which is no relative path with a text",
+    f"{TARGET}return {{'../out': ''}}\n": "it returns '../out', which is not a relative path with a text",
+    f"{TARGET}return {{'file': b''}}\n": "it returns 'file', which is not a relative path with a text",
 }
 
 
@@ -148,9 +148,9 @@ def test_a_broken_target_is_a_finding(broken, text: str, tmp_path: Path) -> None
 
 SYNTHESIZER = "from robosc.model import sct\n\n\ndef synthesize(model):\n    "
 SYNTHESIZERS = {
-    f"{SYNTHESIZER}return None\n": ("empty-supervisor", "the supervisor is empty: `broken` finds none"),
-    f"{SYNTHESIZER}return 3\n": ("extension", "it gives a int and no supervisor"),
-    f"{SYNTHESIZER}return sct.Supervisor()\n": ("extension", "and it gives none for `"),
+    f"{SYNTHESIZER}return None\n": ("empty-supervisor", "the supervisor is empty: `broken` finds no supervisor"),
+    f"{SYNTHESIZER}return 3\n": ("extension", "it returns a int, not a supervisor"),
+    f"{SYNTHESIZER}return sct.Supervisor()\n": ("extension", "and it has none for `"),
     f"{SYNTHESIZER}raise ValueError('too large')\n": ("extension", "ValueError: too large"),
 }
 
@@ -199,10 +199,10 @@ def test_the_supervisor_of_another_tool_is_explained(broken) -> None:
     ours, other = (CliRunner().invoke(main, [*asked, *more]).stdout for more in ((), ("--synthesizer", "broken")))
     assert ours.startswith("The request to `Platform.move` can happen here.")
     assert other.startswith(
-        "The request to `Platform.move` can't happen here: only this supervisor forbids it, neither the robot"
-        " nor a requirement, nor would synthesis."
+        "The request to `Platform.move` cannot happen here: only this supervisor forbids it; the robot, the"
+        " requirements and synthesis allow it."
     )
-    assert "From here the robot gets to no state where it can happen." in other
+    assert "From here, the robot reaches no state where it can happen." in other
     done = CliRunner().invoke(main, ["explain", str(LINE_FOLLOWER), "--why-never", "move", "--synthesizer", "broken"])
     assert done.stdout.startswith("The request to `Platform.move` can never happen.\n\nThe nearest state where only")
     assert "leave out" not in done.stdout
@@ -212,7 +212,7 @@ def test_an_empty_supervisor_of_another_tool_is_told(broken) -> None:
     broken("robosc.synthesizers", f"{SYNTHESIZER}return None\n")
     done = CliRunner().invoke(main, ["explain", str(LINE_FOLLOWER), "--why-empty", "--synthesizer", "broken"])
     assert done.exit_code == 3
-    assert "`broken` finds none" in done.stderr
+    assert "`broken` finds no supervisor" in done.stderr
 
 
 def test_the_debugger_takes_another_synthesizer(broken, tmp_path: Path) -> None:
@@ -222,7 +222,7 @@ def test_the_debugger_takes_another_synthesizer(broken, tmp_path: Path) -> None:
         program.launch(LINE_FOLLOWER)
         for text in ("pressed false", "continue", "correction 0.1", 'scan "clear"', "component_Lidar.c_tau1"):
             program.console(text)
-        move = program.scope("Can't happen")["message_move.c_trigger"]
+        move = program.scope("Cannot happen")["message_move.c_trigger"]
         assert program.children(move)["supervisor"]["value"].startswith("only this supervisor forbids it")
         program.do("disconnect")
         assert program.end() == (0, "")

@@ -65,7 +65,7 @@ def test_packages_are_built_in_their_order(run_ros2: Runner, packages: Path, tmp
     ("field", "said"),
     [
         ("int3 number", "zeta_msgs/srv/Ask.srv: "),
-        ("beta_msgs/Mark mark", "beta_msgs, which is neither installed nor given"),
+        ("beta_msgs/Mark mark", "beta_msgs, which is neither installed nor in the call"),
         ("alpha_msgs/Track track", "of each other: alpha_msgs, zeta_msgs"),
     ],
 )
@@ -84,7 +84,7 @@ def test_what_keeps_a_package_from_being_built(
 def test_a_folder_without_types(run_ros2: Runner, tmp_path: Path) -> None:
     done = robosc(run_ros2, "interfaces", "build", tmp_path)
     assert done.returncode == 2
-    assert "no package with msg/*.msg" in done.stderr
+    assert "no package has msg/*.msg" in done.stderr
 
 
 def test_a_node_without_modules_names_the_command(run_ros2: Runner) -> None:

@@ -206,7 +206,7 @@ scenario "aborted"
   error from go
   expect Base.failed and Base.why = aborted and Base.missed = 0
 
-scenario "a result that can't be read"
+scenario "a result that cannot be read"
   error from go because unreadable
   expect Base.failed and Base.why = unreadable
 
@@ -238,7 +238,7 @@ def test_reasons_of_errors(run_ros2: Runner, tmp_path: Path) -> None:
     model.write_text(CARRIER, encoding="utf-8")
     status, said = played(run_ros2, run_ros2.ros.python, tmp_path, FAILS, model=model)
     number = FAILS.splitlines().index("  error from go because lost") + 1
-    fault = "error: this can't be played over ROS: no test server lets"
+    fault = "error: this cannot be played over ROS: no test server lets"
     assert status == 1, said
     assert f"own.scenarios:{number}:3: {fault} /go fail because lost" in said
     failed = FAILS.splitlines().index("  error from lift") + 1
@@ -254,13 +254,16 @@ def test_a_node_that_does_something_else_is_told_at_the_line(run_ros2: Runner, t
     model.write_text(text.replace(" and EmergencyStop.in_service", "").replace(" or EmergencyStop.stopped", ""))
     status, said = played(run_ros2, run_ros2.ros.python, tmp_path, STOPS, "--node", shlex.join(run_ros2.command(model)))
     assert (status, "1 scenario, 1 failed" in said) == (1, True), said
-    assert "own.scenarios:7:3: error: the node does something else: the trace says out message_halt.c_trigger" in said
+    assert (
+        "own.scenarios:7:3: error: the node deviates from the scenario: the trace has out message_halt.c_trigger"
+        in said
+    )
 
 
 @pytest.mark.parametrize(
     ("command", "told"),
     [
-        ("false", "the node has ended before the scenario did"),
+        ("false", "the node ended before the scenario"),
         ("none-such-program", "`none-such-program` does not start: No such file"),
     ],
 )

@@ -357,8 +357,8 @@ def test_parameters_say_what_they_mean(graph: Graph) -> None:
     overrides = ["qos_overrides./cmd_vel.publisher.reliability", "qos_overrides./stop.subscription.depth"]
     described = graph.manage("describe", "/described", *names, *overrides)
     assert set(described) == {*names, *overrides}
-    assert described["period_ms"] == ["Time from one tick to the next.", [[1, 86400000]]]
-    assert described["watchdog_ms.stop"] == ["Longest silence of /stop; 0: any.", [[0, 86400000]]]
+    assert described["period_ms"] == ["Period of ticks.", [[1, 86400000]]]
+    assert described["watchdog_ms.stop"] == ["Longest silence of /stop; 0: no limit.", [[0, 86400000]]]
     assert all(meaning for meaning, _ in described.values())
     assert graph.processes.stop(node) == 0
 

@@ -54,7 +54,7 @@ def test_the_compiled_node_follows_its_trace(ros1_workspace: Workspace, package:
 def test_a_node_that_dropped_a_requirement_does_not(ros1_workspace: Workspace, tmp_path: Path) -> None:
     status, failure = rostest(ros1_workspace, "careless_controller", tmp_path)
     assert status != 0
-    assert "the trace says out message_halt.c_trigger" in failure
+    assert "the trace has out message_halt.c_trigger" in failure
     assert "but the node did out message_move.c_trigger" in failure
 
 
@@ -127,7 +127,7 @@ def test_launch_testing_fails_where_the_node_leaves_the_trace(ros2_workspace: Wo
     trace.write_text("\n".join(lines[:sent] + lines[sent + 1 :]), encoding="utf-8")
     status, said = launch_test(ros2_workspace, package / "test_trace.py", tmp_path, trace)
     assert status != 0
-    assert f"wrong.jsonl: line {sent + 1}: the trace says" in said
+    assert f"wrong.jsonl: line {sent + 1}: the trace has" in said
 
 
 @pytest.mark.parametrize("package", MODELS)

@@ -120,7 +120,7 @@ def test_doubles_are_refused_where_they_stand(condition):
     )
     for part in (made.requirements[0].condition, made.requirements[0].condition.left):
         part.source = Place.parse("robot.rscd:3:7-3:16")
-    with pytest.raises(ModelError, match="has no place in an sct model") as caught:
+    with pytest.raises(ModelError, match="is not allowed in an sct model") as caught:
         synthesize(made)
     [finding] = caught.value.diagnostics
     assert (finding.file, finding.span.line, finding.span.column, finding.rule) == ("robot.rscd", 3, 7, "type")

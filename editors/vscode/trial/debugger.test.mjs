@@ -31,7 +31,7 @@ test("the debugger stops when a requirement forbids a command, and shows the rea
   const { body } = await client.scopesRequest({ frameId: 1 });
   const scopes = new Map(body.scopes.map((scope) => [scope.name, scope.variablesReference]));
   assert.equal((await children(scopes.get("Components"))).get("Load").value, "heavy");
-  const drive = (await children(scopes.get("Can't happen"))).get("message_drive.c_trigger");
+  const drive = (await children(scopes.get("Cannot happen"))).get("message_drive.c_trigger");
   assert.match(drive.value, /forbidden by requirement Passage/);
   const reasons = await children(drive.variablesReference);
   assert.ok([...reasons.keys()].includes(`cart.rscd:${requirement}:3`), [...reasons.keys()].join());

@@ -31,8 +31,8 @@ _BY = {
 #: Plants of the communications that components send, call and start.
 _COMMUNICATIONS = {sct.PlantKind.message, sct.PlantKind.service, sct.PlantKind.action}
 #: For a supervisor from another tool.
-NEEDLESS = "only this supervisor forbids it, neither the robot nor a requirement, nor would synthesis"
-_ELSE = "Without requirements it would, after"
+NEEDLESS = "only this supervisor forbids it; the robot, the requirements and synthesis allow it"
+_ELSE = "Without requirements, it does after"
 
 
 def _because(told: Explanation) -> str:
@@ -67,14 +67,15 @@ class Renderer:
         if told.allowed:
             yield f"The {event} can happen here{'' if told.event.controllable else ', and nothing prevents it'}."
         elif told.by is None:
-            yield f"Neither the robot nor a requirement forbids the {event} here, but the robot never gets here."
+            allows = f"Neither the robot nor a requirement forbids the {event} here"
+            yield f"{allows}, but the robot never reaches this state."
         else:
-            yield f"The {event} can't happen here: {_because(told)}."
+            yield f"The {event} cannot happen here: {_because(told)}."
         yield from self._situation(told.situation)
         yield from self._refused(told.refusal)
         yield from self._obstacles(told)
         if told.changes:
-            yield from self._section("What would make it possible at once:", self._notes(told.changes))
+            yield from self._section("Events that make it possible at once:", self._notes(told.changes))
         if told.situation.reach is Reach.SUPERVISED and not told.allowed:
             yield from self._way(told)
 
@@ -82,11 +83,11 @@ class Renderer:
         yield ""
         trace = self._steps(situation.trace)
         if situation.reach is Reach.NEVER:
-            yield "The robot never gets into this state, with or without requirements:"
+            yield "The robot never reaches this state, with or without requirements:"
         elif situation.reach is Reach.UNSUPERVISED:
-            yield f"The supervisor never lets the robot get into this state. {_ELSE} {trace}:"
+            yield f"The supervised robot never reaches this state. {_ELSE} {trace}:"
         else:
-            yield f"The state after {trace}:" if trace else "The first state:"
+            yield f"The state after {trace}:" if trace else "The initial state:"
         yield from self._state(situation)
 
     def _state(self, situation: Situation) -> Iterator[str]:
@@ -116,7 +117,7 @@ class Renderer:
         because = _because(refusal)
         yield from [
             "",
-            f"On this way the {words(refusal.event)} can't happen{f' after {after}' if after else ''}: {because}.",
+            f"On this way the {words(refusal.event)} cannot happen{f' after {after}' if after else ''}: {because}.",
         ]
         yield from self._obstacles(refusal)
 
@@ -129,21 +130,21 @@ class Renderer:
             lines = [f"{self._at(told.event)}: {counterexample_in_words(told.counterexample, self._model)}"]
             if told.counterexample.onwards:
                 last = self._events[told.counterexample.onwards[-1].event]
-                lines.append(f"{self._at(last)}: the {words(last)} is what it guards against")
+                lines.append(f"{self._at(last)}: synthesis guards against the {words(last)}")
             for plant in told.counterexample.unmarked:
                 here = plant.locations[told.counterexample.codes[plant]]
                 lines.append(f"{self._at(here)}: `{name(plant)}` is then in `{here.name}`")
-            yield from self._section("If it happened all the same:", lines)
+            yield from self._section("If it happened here:", lines)
             if told.blamed:
-                yield from self._section("What requirements forbid from there on:", self._notes(told.blamed))
+                yield from self._section("Requirements that forbid events from there on:", self._notes(told.blamed))
             yield from ["", f"To allow it, {way_out(told.counterexample)}."]
 
     def _way(self, told: Explanation) -> Iterator[str]:
         yield ""
         if told.way is None:
-            yield "From here the robot gets to no state where it can happen."
+            yield "From here, the robot reaches no state where it can happen."
         else:
-            yield f"A shortest way to where it can happen: {self._steps(told.way)}."
+            yield f"A shortest way to a state where it can happen: {self._steps(told.way)}."
 
     # An event that may never happen
 
@@ -163,22 +164,20 @@ class Renderer:
         yield from ["", *self._nearest(nearest)]
         if told.beyond:
             after = self._steps(told.beyond.situation.trace)
-            yield from ["", f"The supervisor lets the robot get to no state where they allow it. {_ELSE} {after}:"]
+            yield from ["", f"The supervised robot reaches no state where they allow it. {_ELSE} {after}:"]
             yield from self._state(told.beyond.situation)
             yield from self._refused(told.beyond.refusal)
         elif told.conflict:
-            all_of = "this allows it:" if len(told.conflict) == 1 else "all of these allow it:"
-            yield from self._section(
-                f"In no state that the robot could ever get to {all_of}", self._notes(told.conflict)
-            )
+            all_of = "This allows it in" if len(told.conflict) == 1 else "Together, these allow it in"
+            yield from self._section(f"{all_of} no state that the robot can reach:", self._notes(told.conflict))
         if not nearest.needless:
             yield from self._loosened(told.loosenings)
 
     def _nearest(self, nearest: Explanation) -> Iterator[str]:
         after = self._steps(nearest.situation.trace)
-        where = f"after {after}" if after else "the first"
+        where = f"after {after}" if after else "the initial one"
         if nearest.situation.reach is Reach.UNSUPERVISED:
-            yield f"The supervisor lets the robot get to no state where it is ready for it. {_ELSE} {after}:"
+            yield f"The supervised robot reaches no state where it is ready for it. {_ELSE} {after}:"
         elif nearest.needless:
             yield f"The nearest state where {NEEDLESS}, {where}:"
         elif nearest.by is Blocked.SYNTHESIS:
@@ -199,25 +198,25 @@ class Renderer:
             ]
             yield from self._section("A shortest trace:", steps)
         if told.stuck:
-            yield from self._section("Where it ends:", self._notes(told.stuck))
+            yield from self._section("The state at its end:", self._notes(told.stuck))
         if told.blamed:
-            yield from self._section("What requirements forbid from there on:", self._notes(told.blamed))
+            yield from self._section("Requirements that forbid events from there on:", self._notes(told.blamed))
         yield from self._loosened(told.loosenings)
 
     # Shared parts
 
     def _loosened(self, loosenings: tuple[Loosening, ...] | None) -> Iterator[str]:
         if loosenings is None:
-            yield from ["", "Without any requirement it would be the same: the components themselves have to change."]
+            yield from ["", "Without requirements, the result is the same: change the components."]
         elif not loosenings:
-            yield from ["", "To leave out one requirement would not be enough; to leave out all of them would."]
+            yield from ["", "Removing one requirement is not enough; removing all of them is."]
         else:
             lines = []
             for loosening in loosenings:
                 first = loosening.requirements[0]
                 text = listed(list(dict.fromkeys(own.text or "a requirement" for own in loosening.requirements)))
                 lines.append(f"{self._at(first)}: {text} ({counted(loosening.states, 'state')} without it)")
-            yield from self._section("It would help to loosen, or to leave out, one of these:", lines)
+            yield from self._section("Loosen or remove one of these:", lines)
 
     def _notes(self, notes: Iterable[Note]) -> Iterator[str]:
         for note in notes:

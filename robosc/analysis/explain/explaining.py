@@ -251,9 +251,9 @@ def _stuck(reason: Reason) -> list[Note]:
     for plant in reason.unmarked:
         here = plant.locations[reason.codes[plant]]
         marked = listed([f"`{location.name}`" for location in plant.locations if location.marked])
-        goal = f"can't get back to {marked}" if marked else "has no marked state"
+        goal = f"cannot get back to {marked}" if marked else "has no marked state"
         details = [
-            f"its transition on {words(edge.event)} asks for `{printed(edge.guard)}`"
+            f"its transition on {words(edge.event)} requires `{printed(edge.guard)}`"
             for edge in edges_from(here)
             if edge.guard is not None and edge.target not in (None, here)
         ]

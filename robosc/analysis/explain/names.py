@@ -148,7 +148,7 @@ def _pairs(model: sct.SupervisoryControlModel, given: str) -> list[tuple[str, An
         try:
             read = json_value(given)
         except JsonError as error:
-            raise NamingError("the state can't be read", f"{error} (character {error.position + 1})") from None
+            raise NamingError("the state cannot be read", f"{error} (character {error.position + 1})") from None
         if isinstance(read.get("components"), dict):
             return list(_reported(model, read))
         inner = read.get("state", read)
@@ -159,7 +159,9 @@ def _pairs(model: sct.SupervisoryControlModel, given: str) -> list[tuple[str, An
     for pair in given.split(","):
         name, equals, chosen = pair.partition("=")
         if not equals:
-            raise NamingError(f"`{pair.strip()}` is no part of a state", "write `Component=state,Component.variable=3`")
+            raise NamingError(
+                f"`{pair.strip()}` is not part of a state", "write `Component=state,Component.variable=3`"
+            )
         pairs.append((name.strip(), chosen.strip()))
     return pairs
 
@@ -174,7 +176,7 @@ def _reported(model: sct.SupervisoryControlModel, report: Mapping[str, Any]) -> 
         if name not in components:
             raise NamingError(f"there is no component `{name}`", _close(name, components, ""))
         if not (isinstance(entry, dict) and "state" in entry and isinstance(entry.get("variables"), dict)):
-            raise NamingError(f"the state does not tell that of `{name}`", "it needs `state` and `variables`")
+            raise NamingError(f"the state has no value for `{name}`", "it needs `state` and `variables`")
         plant = components[name]
         yield plant.name, entry["state"]
         known = {variable.name: _whole_name(variable) for variable in plant.variables}
@@ -194,12 +196,12 @@ def _code(element: Element, given: Any, name: str) -> int:
             number = None
         if isinstance(number, int) and not isinstance(number, bool) and smallest(element) <= number <= last:
             return number - smallest(element)
-        raise NamingError(f"`{name}` can't be `{given}`", f"it is an integer from {smallest(element)} to {last}")
+        raise NamingError(f"`{name}` cannot be `{given}`", f"it is an integer from {smallest(element)} to {last}")
     values = {text(value(element, code)): code for code in range(size)}
     said = text(given) if isinstance(given, (bool, int, str)) else ""
     if said in values:
         return values[said]
-    raise NamingError(f"`{name}` can't be `{given}`", _close(said, values, f"it is one of {', '.join(values)}"))
+    raise NamingError(f"`{name}` cannot be `{given}`", _close(said, values, f"it is one of {', '.join(values)}"))
 
 
 def _close(name: str, known: Iterable[str], otherwise: str) -> str:

@@ -108,7 +108,7 @@ class Obstacles:
         guard = self._guard(plant)
         if guard is not None:
             parts = tuple(dict.fromkeys(map(self._said, self._failing(guard, wanted=True))))
-            asked = f"{self._transition(plant)} asks for `{self._print(guard)}`"
+            asked = f"{self._transition(plant)} requires `{self._print(guard)}`"
             if plant.kind == sct.PlantKind.data:
                 return Note(self._event, asked, parts)
             return Note(self._edges(plant)[0], f"`{name(plant)}` is in `{here.name}`, where {asked}", parts)

@@ -59,7 +59,7 @@ def _examined(
 
     compiler = c_compiler()
     if compiler is None:
-        return skipped(f"there is no C compiler ({', '.join(COMPILERS)}) to try it with")
+        return skipped(f"no C compiler found ({', '.join(COMPILERS)})")
     try:
         with temporary_folder() as folder:
             try:
@@ -68,4 +68,4 @@ def _examined(
             except CompileError as error:
                 return [refuted(question, str(error)) for question in examinations]
     except OSError as error:  # The C is not the cause.
-        return skipped(f"it can't be tried in the folder for temporary files: {error}")
+        return skipped(f"the program cannot run in the folder for temporary files: {error}")

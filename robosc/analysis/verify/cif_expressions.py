@@ -79,7 +79,7 @@ class ExpressionReader:
         top = self._open[-1] if self._open else _Open("", position)
         if level:
             if level == 1 and top.word in OPERATORS and OPERATORS[top.word][0] == 1:
-                raise ExpressionError(position, f"Expected no '{word}': an implication is no chain")
+                raise ExpressionError(position, f"Expected no '{word}': an implication is not a chain")
             self._open.append(_Open(word, position))
         elif word == ")" and top.word == "(":
             self._open.pop()

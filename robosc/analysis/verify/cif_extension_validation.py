@@ -42,7 +42,7 @@ def validate_extension(model: sct.SupervisoryControlModel, text: str) -> Verdict
     """
     reading = read_supervised(model, text)
     if reading is None:
-        return Verdict(PROPERTY, Outcome.SKIPPED, "", "the CIF that the model was read from can't be read any more")
+        return Verdict(PROPERTY, Outcome.SKIPPED, "", "the CIF that the model was read from cannot be read any more")
     if reading.model is None:
         finding = reading.findings[0]
         return refuted(PROPERTY, f"{TEXT} is wrong: line {finding.span.line}: {finding.message}")
@@ -97,7 +97,7 @@ class _Comparison:
 
     def _pair(self, what: str, ours: Sequence[ex.NamedElement], theirs: Sequence[ex.NamedElement]) -> None:
         if [_kind(element) for element in ours] != [_kind(element) for element in theirs]:
-            raise _DifferenceError(f"its {what} are not those of the text that it imports")
+            raise _DifferenceError(f"its {what} differ from those of the imported text")
         self._theirs.update(zip(ours, theirs, strict=True))
 
     def run(self, capacity: int) -> Verdict:
@@ -144,7 +144,7 @@ class _Comparison:
             taken = here & theirs.source(edge) & theirs.holds(edge.guard)
             for update in edge.updates if happens else ():
                 if (taken & ~in_range(update, theirs)).satisfiable():
-                    return f"{step} brings `{update.variable.name}` out of its range in {TEXT}"
+                    return f"{step} sets `{update.variable.name}` to a value out of its range in {TEXT}"
         if happens and (system.allowed[event] & here).satisfiable():
             return f"{step} leads elsewhere in {TEXT}"
         return on_one_side(step, TEXT, translated=happens)

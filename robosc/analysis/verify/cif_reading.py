@@ -52,7 +52,7 @@ def read(text: str) -> Specification:
     """Return the specification of a text. Raises CifError."""
     strange = next((place for place, character in enumerate(text) if not character.isascii()), None)
     if strange is not None:
-        raise CifError(f"{_place(text, strange)}: {text[strange]!a} is no ASCII")
+        raise CifError(f"{_place(text, strange)}: {text[strange]!a} is not ASCII")
     try:
         return _Reading(_grammar().model_from_str(text), text).specification()
     except textx.TextXSyntaxError as fault:
@@ -112,7 +112,7 @@ class _Reading:
         """Raise CifError if a supervisor is in the wrong place, or a requirement automaton occurs beside one."""
         for declaration in automata:
             if supervisor is not None and declaration.kind == "requirement":
-                self._fail(declaration, "a requirement automaton stands beside a supervisor")
+                self._fail(declaration, "the specification has a requirement automaton and a supervisor")
             has_alphabet = any(type(part).__name__ == "Alphabet" for part in declaration.declarations)
             if declaration.kind == "supervisor" and has_alphabet != (declaration is supervisor):
                 self._fail(declaration, "the automaton that synthesis adds is the last one and has an alphabet")
@@ -136,7 +136,7 @@ class _Reading:
 
     def _define(self, element: Any, read: Any, scope: dict[str, Any]) -> Any:
         if element.name in scope:
-            self._fail(read, f"there are two of the name '{element.name}'")
+            self._fail(read, f"the name '{element.name}' is declared twice")
         scope[element.name] = element
         return element
 
@@ -196,11 +196,11 @@ class _Reading:
             case "Range":
                 low, high = (self._number(bound, read) for bound in (read.low, read.high))
                 if low > high:
-                    self._fail(read, f"nothing is in int[{low}..{high}]")
+                    self._fail(read, f"the range int[{low}..{high}] is empty")
                 return ex.IntegerType(minimum=low, maximum=high)
         enumeration = self._find(read.enumeration, automaton)
         if not isinstance(enumeration, ex.Enumeration):
-            self._fail(read, f"'{read.enumeration.text}' is no enumeration")
+            self._fail(read, f"'{read.enumeration.text}' is not an enumeration")
         return ex.EnumerationType(enumeration=enumeration)
 
     def _number(self, digits: str, read: Any) -> int:
@@ -264,22 +264,22 @@ class _Reading:
         self._annotated(read)
         target = self._find(read.target, automaton) if read.target else location
         if not isinstance(target, sct.Location) or target.eContainer() is not automaton:
-            self._fail(read.target, f"'{read.target.text}' is no location of '{automaton.name}'")
+            self._fail(read.target, f"'{read.target.text}' is not a location of '{automaton.name}'")
         edge = sct.Edge(event=self._event(read.event, automaton), target=target)
         if read.guard:
             edge.guard = self._condition(read.guard, automaton)
         for update in read.updates:
             variable = self._find(update.variable, automaton)
             if not isinstance(variable, sct.DiscreteVariable):
-                self._fail(update, f"'{update.variable.text}' is no variable")
+                self._fail(update, f"'{update.variable.text}' is not a variable")
             if variable.eContainer() is not automaton:
-                self._fail(update, f"'{update.variable.text}' is no variable of '{automaton.name}'")
+                self._fail(update, f"'{update.variable.text}' is not a variable of '{automaton.name}'")
             if any(variable is other.variable for other in edge.updates):
                 self._fail(update, f"'{update.variable.text}' is assigned twice")
             value, kind = self._expression(update.value, automaton, assigned=True)
             if not types.overlap(self._types[variable], kind):
                 self._fail(
-                    update, f"'{variable.name}' is {self._shown(variable)} and what it is to be {types.shown(kind)}"
+                    update, f"'{variable.name}' is {self._shown(variable)} and its new value {types.shown(kind)}"
                 )
             edge.updates.append(sct.Update(variable=variable, value=value))
         return edge
@@ -306,7 +306,7 @@ class _Reading:
     def _event(self, read: Any, automaton: sct.Plant | None) -> sct.Event:
         event = self._find(read, automaton)
         if not isinstance(event, sct.Event):
-            self._fail(read, f"'{read.text}' is no event")
+            self._fail(read, f"'{read.text}' is not an event")
         return event
 
     def _find(self, read: Any, automaton: sct.Plant | None) -> Any:
@@ -316,7 +316,7 @@ class _Reading:
         found = inner.get(first) or self._outer.get(first)
         for part in others:
             if found is not None and found not in self._inner:
-                self._fail(read, f"there is nothing in '{found.name}', so no '{read.text}'")
+                self._fail(read, f"'{found.name}' has no members, so no '{read.text}'")
             found = None if found is None else self._inner[found].get(part)
         if found is None:
             self._fail(read, f"there is no '{read.text}'")
@@ -357,7 +357,7 @@ class _Reading:
     def _reference(self, read: Any, automaton: sct.Plant | None, *, constant: bool) -> tuple[ex.Expression, types.Type]:
         element = self._find(read.name, automaton)
         if constant and not isinstance(element, ex.EnumerationLiteral):
-            self._fail(read, f"'{read.name.text}' is no constant")
+            self._fail(read, f"'{read.name.text}' is not a constant")
         match element:
             case sct.DiscreteVariable():
                 return sct.VariableReference(variable=element), self._types[element]

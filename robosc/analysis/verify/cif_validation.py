@@ -99,9 +99,9 @@ class _Comparison:
     ) -> None:
         """Pair the elements; raise CifError if the text has a supervisor that it should not have."""
         if not supervised and (specification.supervisor is not None or specification.invariants):
-            raise CifError("it says what a supervisor does")
+            raise CifError("it has statements of a supervisor")
         if supervised and specification.model.invariants:
-            raise CifError("it asks for an invariant, and under the supervisor all hold")
+            raise CifError("it has an invariant requirement, which no supervised specification has")
         self._model = model
         self._correspondence = correspondence
         self._supervised = supervised
@@ -152,7 +152,7 @@ class _Comparison:
         reached = [difference for difference in found if (difference.where & system.controlled).satisfiable()]
         if not reached:
             codes = pick(found[0].where, self._layout.domains.values())
-            return refuted(PROPERTY, f"{self._said(system, found[0], codes)}, though nothing leads there")
+            return refuted(PROPERTY, f"{self._said(system, found[0], codes)}, in a state that the robot never reaches")
         inputs = encoding.diagrams.cube(level for domain in self._inputs for level in domain.levels)
         path = system.path_to(reached[0].where.exists(inputs) & system.controlled)
         codes = path.states[-1] | pick(reached[0].where & encoding.state(path.states[-1]), self._inputs)
@@ -182,7 +182,7 @@ class _Comparison:
         assert counterpart.initial is not None
         value = arithmetic.value_of(theirs.vector(counterpart.initial))
         if value is None:
-            raise CifError(f"the initial value of '{counterpart.name}' is no constant")
+            raise CifError(f"the initial value of '{counterpart.name}' is not a constant")
         return value - smallest(counterpart)
 
     def _differences(self, system: GuardedSystem, theirs: Encoding) -> Iterator[_Difference]:

@@ -30,7 +30,7 @@ OPERATIONS = {
     "t": "a tick",
     "s": "settling",
     "x": "the end of a time",
-    "r": "starting times anew",
+    "r": "restarting times",
 }
 #: Start of the clock: it soon wraps from its largest value to 0.
 _START = 2**32 - 20_000

@@ -104,7 +104,7 @@ def controllability(system: GuardedSystem) -> Verdict:
     def explanation(relation: EventRelation, _path: Path) -> str:
         parts = ["a requirement"] if relation.requirements else []
         who = " or ".join([*parts, "its guard"] if relation.event in system.guards else parts)
-        return f"{words(relation.event)} can't be prevented, but {who} forbids it here"
+        return f"{words(relation.event)} cannot be prevented, but {who} forbids it here"
 
     evidence = f"{system.size}, {counted(len(uncontrollable), 'uncontrollable event')}"
     return _nowhere("controllability", system, evidence, forbidden, explanation)
@@ -174,7 +174,7 @@ def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Ve
         where = system.where(path.states[-1], referenced(requirement.condition))
         return f"{words(requirement.event)} can happen" + (f" where `{where}`" if where else "")
 
-    evidence = f"happens in {states}, asks for `{asked}`"
+    evidence = f"happens in {states}, requires `{asked}`"
     broken = {relation: happens & ~relation.asked[requirement]}
     return _nowhere(
         requirement_name(requirement), system, evidence, broken, explanation, last=lambda relation: relation.event
@@ -192,9 +192,9 @@ def ranges(system: GuardedSystem) -> Verdict:
     def explanation(requirement: sct.Requirement, path: Path) -> str:
         at = system.where(path.states[-1], referenced(requirement.condition))
         variables = listed([f"`{own.name}`" for own in requirement.ranges])
-        return f"{words(requirement.event)} brings {variables} out of range" + (f" where `{at}`" if at else "")
+        return f"{words(requirement.event)} sets {variables} to values out of range" + (f" where `{at}`" if at else "")
 
-    evidence = f"{system.size}, {counted(len(kept), 'edge')} that could leave a range"
+    evidence = f"{system.size}, {counted(len(kept), 'edge')} that could leave their ranges"
     return _nowhere("ranges", system, evidence, leaving, explanation, last=lambda requirement: requirement.event)
 
 
@@ -204,7 +204,7 @@ def invariant_holds(system: GuardedSystem, invariant: sct.StateInvariant | sct.I
     def explanation(_: object, path: Path) -> str:
         return f"it is violated where `{system.where(path.states[-1], referenced(invariant.condition))}`"
 
-    evidence = f"{system.size}, asks for `{RobotPrinter()(invariant.condition)}`"
+    evidence = f"{system.size}, requires `{RobotPrinter()(invariant.condition)}`"
     broken = {invariant: system.controlled & ~system.encoding.holds(invariant.condition)}
     return _nowhere(requirement_name(invariant), system, evidence, broken, explanation)
 
@@ -267,7 +267,7 @@ def cancel_when_due(system: GuardedSystem) -> Verdict:
     }
 
     def explanation(cancel: sct.Event, _path: Path) -> str:
-        return f"a requirement on the start of `{name(plant_of(cancel))}` does not hold, and its cancel can't happen"
+        return f"a requirement on the start of `{name(plant_of(cancel))}` does not hold, and its cancel cannot happen"
 
     evidence = f"{system.size}, {counted(len(cancels), 'action')} that requirements cancel"
     return _nowhere("cancel when due", system, evidence, held_back, explanation)
@@ -283,7 +283,7 @@ def maximal_permissiveness(system: GuardedSystem) -> Verdict:
     }
 
     def explanation(relation: EventRelation, _path: Path) -> str:
-        return f"{words(relation.event)} is forbidden here, though nothing speaks against it"
+        return f"{words(relation.event)} is forbidden here without a reason"
 
     evidence = f"{system.size}, {counted(len(controllable), 'controllable event')}"
     return _nowhere(
@@ -343,9 +343,9 @@ def _permitted(relation: EventRelation, controlled: Diagram) -> Diagram:
 def _stuck(plants: Sequence[sct.Plant], codes: Codes) -> str:
     """Return a clause about plants that are never marked again, or never all at once if there are none."""
     if not plants:
-        return "the marked states of all components can't be reached together any more"
+        return "the marked states of all components cannot be reached together any more"
     places = (
         f"`{name(plant)}`" + (f" in `{plant.locations[codes[plant]].name}`" if len(plant.locations) > 1 else "")
         for plant in plants
     )
-    return f"{', '.join(places)} can't get back to a marked state"
+    return f"{', '.join(places)} cannot get back to a marked state"

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from robosc.synthesis.run_to_completion import InternalEvent
 
 FINITE, BOUNDED, CONFLUENCE = "finite response", "bounded response", "confluence"
-_GIVEN_UP = "silent events take so many steps to come to rest that counting them was given up"
+_GIVEN_UP = "silent events take too many steps to count before they end"
 #: Effort limit for following all silent events together, in visited nodes.
 _EFFORT = 20_000_000
 #: Maximum number of resets of failed calls among dependent internal events. All combinations of held-back resets are
@@ -46,7 +46,9 @@ def finite_response(system: GuardedSystem) -> Verdict:
     evidence = f"{system.size}, {counted(len(system.internal), 'silent event')}"
     if found.divergent.satisfiable():
         stem, cycle = _lasso(system, found.divergent)
-        explanation = f"{counted(len(cycle), 'silent event')} can happen again and again, and nothing else then happens"
+        explanation = (
+            f"{counted(len(cycle), 'silent event')} can happen again and again, and no other event happens then"
+        )
         return Verdict(FINITE, Outcome.REFUTED, evidence, explanation, stem, cycle)
     if found.bound is None:
         return Verdict(FINITE, Outcome.SKIPPED, evidence, _GIVEN_UP)
@@ -68,7 +70,7 @@ def bounded_response(system: GuardedSystem) -> Verdict:
     if longer is not None and longer.satisfiable():
         path = system.path_to(longer)
         run = _run(system, path.states[-1], most + 1)
-        explanation = f"the supervisor says that at most {counted(most, 'silent event')} happen in a row"
+        explanation = f"according to the supervisor, at most {counted(most, 'silent event')} happen in a row"
         return Verdict(BOUNDED, Outcome.REFUTED, system.size, explanation, system.trace(path), run)
     bound = min(most, found.bound)
     return Verdict(BOUNDED, Outcome.PROVED, f"{system.size}, at most {counted(bound, 'silent event')} in a row")

@@ -24,7 +24,7 @@ P = ParamSpec("P")
 #: Parts that no verdict covers.
 TRUSTED = (
     "Trusted, not examined: the reading of the text itself, the ROS node around the control loop, the C compiler, "
-    "RoboSC itself; docs/verify.md says more."
+    "RoboSC itself; see docs/verify.md."
 )
 
 

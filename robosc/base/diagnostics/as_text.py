@@ -40,7 +40,7 @@ def render(findings: Iterable[Diagnostic], texts: Mapping[str, str], paint: Call
     lines = {file: texts[file].split("\n") for file in {finding.file for finding in shown} if file in texts}
     parts = [_render(finding, lines.get(finding.file, []), paint) for finding in shown]
     if len(found) > len(shown):
-        parts.append(f"{len(found) - len(shown)} more are not shown: `robosc check --format json` tells all\n")
+        parts.append(f"{len(found) - len(shown)} more are not shown: `robosc check --format json` prints all\n")
     return "".join(parts)
 
 

@@ -56,7 +56,7 @@ def _hint(text: str, position: int) -> str | None:
     if after.startswith("'"):
         return 'write texts in double quotes, as in "halt"'
     if after.startswith(("//", "/*", "#")):
-        return "leave out the comment: JSON has none"
+        return "leave out the comment: JSON has no comments"
     if word[0] in _WORDS:
         return f"write `{_WORDS[word[0]]}`"
     if before.endswith(("{", ",")) and re.match(r"\w+\s*:", after):
@@ -85,4 +85,4 @@ def _number(digits: str) -> float:
 
 
 def _refuse(constant: str) -> NoReturn:
-    raise ValueError(f"{constant} is no number of JSON")
+    raise ValueError(f"{constant} is not a JSON number")

@@ -106,7 +106,7 @@ def open_log(path: str | os.PathLike[str]) -> int:
     if not any(test(found.st_mode) for test in (stat.S_ISREG, stat.S_ISCHR, stat.S_ISFIFO)):
         fault = f"this is {reading.kind(found.st_mode)}, no file for a log"
     elif reading.input_named(found) is not None:
-        fault = "this call has read it: it can't be the log, too"
+        fault = "this call has read it: it cannot be the log, too"
     if fault is not None:
         os.close(descriptor)
         raise OSError(errno.EINVAL, fault, os.fspath(path))
@@ -131,7 +131,7 @@ def _write(trees: Mapping[Path, Mapping[str, str]], signals: _Signals) -> list[P
         for name, text in files.items():
             path = _inside(folder, name)
             if path.is_dir() and not path.is_symlink():
-                raise OutputError(f"{path} is a folder: a file of that name can't be written")
+                raise OutputError(f"{path} is a folder: a file of that name cannot be written")
             if texts.setdefault(path, text) != text:
                 raise OutputError(f"{path} would be written twice, with different texts")
             placed.setdefault(folder, {})[path] = text
@@ -155,22 +155,22 @@ def _inside(folder: Path, name: str) -> Path:
     relative = PurePosixPath(name)
     path = folder / relative
     if relative.is_absolute() or not relative.parts or ".." in relative.parts or "\\" in name:
-        raise OutputError(f"{name} is no path inside of the output folder")
+        raise OutputError(f"{name} is not a path inside of the output folder")
     if not path.parent.resolve().is_relative_to(folder):
-        raise OutputError(f"{path} leads out of {folder}: there is a link on the way")
+        raise OutputError(f"{path} leads out of {folder}: its path has a link")
     return path
 
 
 def _refuse_existing(path: Path, found: os.stat_result) -> None:
     if stat.S_ISDIR(found.st_mode):
-        raise OutputError(f"{path} is a folder: a file of that name can't be written")
+        raise OutputError(f"{path} is a folder: a file of that name cannot be written")
     if not stat.S_ISREG(found.st_mode):
         what = "a link" if stat.S_ISLNK(found.st_mode) else reading.kind(found.st_mode)
-        raise OutputError(f"{path} is {what}: nothing but a regular file is replaced")
+        raise OutputError(f"{path} is {what}: only a regular file can be replaced")
     name = reading.input_named(found)
     if name is not None:
         also = "" if Path(name) == path else f", as {name}"
-        raise OutputError(f"{path} was read by this call{also}: what is read is not written over")
+        raise OutputError(f"{path} was read by this call{also}: an input file is not overwritten")
 
 
 @contextmanager
@@ -188,7 +188,7 @@ def _locked(folder: Path, made: ExitStack, signals: _Signals) -> Iterator[None]:
             while not _lock(descriptor):
                 signals.check()
                 if time.monotonic() > until:
-                    raise OutputError(f"another run of robosc goes on writing to {folder}: try again when it has ended")
+                    raise OutputError(f"another run of robosc still writes to {folder}: try again after it")
                 time.sleep(0.02)
             if folder.exists() and os.path.samestat(os.fstat(descriptor), folder.stat()):
                 yield
@@ -223,7 +223,7 @@ def _replace(changed: Mapping[Path, Mapping[Path, bytes]], made: ExitStack, sign
         for _, path in moves:
             _make(path.parent, made)
             if not path.parent.is_dir():
-                raise OutputError(f"{path.parent} is no folder: {path.name} can't be written below it")
+                raise OutputError(f"{path.parent} is not a folder: {path.name} cannot be written below it")
         signals.check()
         made.pop_all()
         for staged, path in moves:

@@ -40,13 +40,13 @@ def recorded_texts(path: str) -> Iterator[RecordedText]:
     """
     found = Path(path)
     if found.is_dir() and not (found / "metadata.yaml").is_file():
-        raise RecordingError(f"{path} is a folder without a metadata.yaml: it is no recording")
+        raise RecordingError(f"{path} is a folder without a metadata.yaml: it is not a recording")
     # rosbags opens folders by itself.
     with nullcontext() if found.is_dir() else opened(path) as file, bounded(found):
         try:
             require_plain(found)
         except BoundError as error:
-            raise RecordingError(f"{path} can't be read: {error}") from None
+            raise RecordingError(f"{path} cannot be read: {error}") from None
         yield from _read(path, _mcap_texts(file) if file is not None and found.suffix == ".mcap" else _bag_texts(found))
 
 
@@ -54,7 +54,7 @@ def _read(path: str, texts: Iterator[RecordedText]) -> Iterator[RecordedText]:
     try:
         yield from texts
     except Exception as error:  # Readers raise many kinds of exceptions for damaged bytes.
-        raise RecordingError(f"{path} can't be read: {str(error) or type(error).__name__}") from None
+        raise RecordingError(f"{path} cannot be read: {str(error) or type(error).__name__}") from None
 
 
 def _bag_texts(path: Path) -> Iterator[RecordedText]:

@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 
 __all__ = ["DefinitionError", "Fields", "RosDistribution", "RosTypes", "Section", "WireType"]
 
-REPAIR = "repair it: until then nothing is checked against it"
+REPAIR = "correct it: until then, its fields are not checked"
 MAKE_KNOWN = (
-    "give the folder of its package with --interface-path, or list it in ROBOSC_INTERFACE_PATH; until then nothing is"
-    " checked against it"
+    "add the folder of its package with --interface-path or ROBOSC_INTERFACE_PATH; until then, its fields are"
+    " not checked"
 )
 #: Hint for the data of a service or action in a place that can only name messages.
 OWN_OBJECT = "for the data of a service or action, declare an object with the fields that you use and an enum over it"
@@ -149,7 +149,7 @@ class RosTypes:
             return MAKE_KNOWN
         return (
             f"only the first {MOST_FOLDERS:,} folders below `{large}` were searched: "
-            "give a folder nearer to the package with --interface-path"
+            "use --interface-path with a folder nearer to the package"
         )
 
     def other_kinds(self, package: str, name: str, kind: str) -> list[str]:
@@ -173,7 +173,7 @@ class RosTypes:
             try:
                 distribution.fields(package, name, section)
             except DefinitionError as fault:
-                return f"the definition of {package}/{name} can't be read: {fault}", REPAIR, None
+                return f"the definition of {package}/{name} cannot be read: {fault}", REPAIR, None
         for other in Section:
             if other.kind != kind and any(known.defines(package, name, other) for known in self.distributions):
                 message = f"{package}/{name} is of kind {other.kind}, expected a type of kind {kind}"

@@ -69,8 +69,8 @@ def _section(text: str, package: str) -> Fields:
             try:
                 get_types_from_msg(f"{line}\n", name)
             except TypesysError:
-                raise DefinitionError(f"`{line.strip()}` is no field") from None
-        raise DefinitionError("it is no list of fields") from None
+                raise DefinitionError(f"`{line.strip()}` is not a field") from None
+        raise DefinitionError("it is not a list of fields") from None
 
 
 def _fields(described: list[tuple[str, Any]], defaults: Iterable[Any]) -> Fields:

@@ -95,8 +95,8 @@ def repeated_events(base: rsc.Base) -> Iterator[Finding]:
                 if key in always:
                     yield Finding(
                         transition,
-                        f"this transition of state `{state.name}` is never tried: another one for this event, without"
-                        f" condition, stands before it{on_line(always[key])}",
+                        f"this transition of state `{state.name}` is never tried: one without condition for this event"
+                        f" is before it{on_line(always[key])}",
                         one_out("move it before that one, or leave one of the two out", transition, always[key]),
                         related=always[key],
                     )

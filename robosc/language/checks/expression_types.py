@@ -130,21 +130,21 @@ class ExpressionCheck:
             case rsc.Access():
                 return self._access(expression, types)
             case rsc.ErrorReason() if not self.place.has_reason:
-                self.report(expression, "`error` can't be read here: it is the reason of one `error`", _STORE_REASON)
+                self.report(expression, "`error` cannot be read here: it exists only at one `error`", _STORE_REASON)
                 return UNKNOWN
             case rsc.ArrayQuantifier():
                 self._quantifier(expression, types)
             case rsc.ArrayLiteral():
                 self.report(
                     expression,
-                    "an array stands in an expression, expected a value of a basic type or an enum",
+                    "an array is part of an expression, expected a value of a basic type or an enum",
                     "provide arrays as a whole or as the value of a property",
                 )
                 return UNKNOWN
             case rsc.ObjectValue():
                 self.report(
                     expression,
-                    "an object value stands in an expression, expected a value of a basic type or an enum",
+                    "an object value is part of an expression, expected a value of a basic type or an enum",
                     "provide objects as a whole or as the value of a property",
                 )
             case ex.Conditional():
@@ -157,7 +157,7 @@ class ExpressionCheck:
 
     def _quantifier(self, quantifier: rsc.ArrayQuantifier, types: list[Type]) -> None:
         if types[0] != UNKNOWN and not isinstance(types[0], ArrayType):
-            message = f"what stands behind `in` must be an array, found {types[0]}"
+            message = f"the operand of `in` must be an array, found {types[0]}"
             self.report(quantifier.array, message, "write the name of an array there")
         self._operand(quantifier.body, types[1], BOOLEAN, f"the condition of `{quantifier.quantifier}`")
 
@@ -167,10 +167,10 @@ class ExpressionCheck:
 
     def _conditional(self, choice: ex.Conditional, types: list[Type]) -> Type:
         condition, then, otherwise = types
-        self._operand(choice.condition, condition, BOOLEAN, "the condition behind `if`")
-        self._operand(choice.otherwise, otherwise, then, "what stands behind `else`, as behind `then`,")
+        self._operand(choice.condition, condition, BOOLEAN, "the condition after `if`")
+        self._operand(choice.otherwise, otherwise, then, "the value after `else`, as after `then`,")
         if isinstance(then, ArrayType | ObjectType):
-            message = f"what stands behind `then` must be one value, found {then}"
+            message = f"the value after `then` must be one value, found {then}"
             self.report(choice.then, message, repair(choice.then, then, UNKNOWN))
             return UNKNOWN
         return then if then != UNKNOWN else otherwise
@@ -184,8 +184,10 @@ class ExpressionCheck:
             self._equality(operator, types)
         elif isinstance(operator, ex.Addition) and {*types} == {STRING}:
             if self.place.restriction is not Restriction.CONSTANT:
-                hint = "declare a `constant` for the whole text"
-                self.report(operator, "strings are joined where this is not constant, expected a constant", hint)
+                hint = "declare a `constant` for the whole string"
+                self.report(
+                    operator, "`+` joins strings in an expression that is not constant, expected a constant", hint
+                )
         else:
             wanted = {Rule.LOGICAL: BOOLEAN, Rule.INTEGER: INTEGER, Rule.ROUNDING: DOUBLE}.get(row.rule)
             fits, names_wanted = _FITTING.get(row.rule, (is_number, "integer or double"))
@@ -252,11 +254,11 @@ class ExpressionCheck:
         if restriction is Restriction.FUNCTION and item and not isinstance(item, _SET_ITEMS):
             return (
                 f"a function reads parameters, constants and enum values only, found {_describe(access)}",
-                "give it a parameter for what it shall read, or declare a `condition`",
+                "add a parameter for this value, or declare a `condition`",
             )
         if access.value and self.place.value is None:
             return (
-                f"`value` can't be read here: {self.place.why_no_value}",
+                f"`value` cannot be read here: {self.place.why_no_value}",
                 "store it in a variable by `on response from … do variable := value`, and read the variable",
             )
         if isinstance(item, rsc.Component):

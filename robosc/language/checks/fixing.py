@@ -206,7 +206,7 @@ class _Comparison:
         if worse is not None:
             return f"line {worse.span.line}: {worse.message}"
         name = None if is_syntax else next(self._changed_names(), None)
-        return None if name is None else f"`{name.name}` would stand for something else"
+        return None if name is None else f"`{name.name}` would refer to something else"
 
     def is_harmful(self, mended: Diagnostic) -> bool:
         """Return whether the edits for a finding break the text or leave the finding."""
@@ -229,7 +229,7 @@ class _Comparison:
         """Return which import, comment or string changes; `removing`: edits may remove whole strings."""
         for path in self._files:
             if path not in self._files_after:
-                return f"{path} would be imported no more"
+                return f"{path} would no longer be imported"
             if not self._keeps_comments(path):
                 return "a comment would change"
             if not self._keeps_strings(path, mended, removing):

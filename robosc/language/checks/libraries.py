@@ -91,7 +91,7 @@ class Meaning:
         if self.made is None:
             return Finding(element, message, hint)
         message = f"with these arguments, {message}{on_line(element)}"
-        return Finding(self.made.component, message, "give other arguments", related=element)
+        return Finding(self.made.component, message, "change the arguments", related=element)
 
 
 def meanings(base: rsc.Base) -> Iterator[Meaning]:

@@ -61,7 +61,7 @@ class Finding:
         """Return the place of the related element, if any."""
         if self.related is None or self.related.source is None:
             return ()
-        return (Related(*place(self.related), "this is what the finding speaks of"),)
+        return (Related(*place(self.related), "the finding is about this element"),)
 
     def can_be_false(self, findings: Sequence[Diagnostic]) -> bool:
         """Return whether an unreadable or unresolved part of the text may have caused the finding."""

@@ -148,9 +148,7 @@ _COMPARISON = _Limit(
     "this comparison of doubles or strings", LARGEST_TABLE, "compare integers, or give the integers smaller ranges"
 )
 #: Synthesis takes seconds up to this limit. The decision diagram of a product has a node for many combinations.
-_PRODUCT = _Limit(
-    "this product", 1 << 22, "give the integers smaller ranges, or let an enum stand for what matters about them"
-)
+_PRODUCT = _Limit("this product", 1 << 22, "give the integers smaller ranges, or use an enum for their relevant values")
 
 
 class _Where(NamedTuple):
@@ -198,11 +196,11 @@ def function_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[F
             given = {types(part), *map(types, part.arguments)}
             foreign = "doubles" if DOUBLE in given else "strings" if STRING in given else ""
             if foreign:
-                message = f"`{part.function}` of {foreign} is nothing that the supervisor computes, expected integers"
-                yield Fault(part, reason, message, "compute it of `value` in an enum's rule, and compare the enum")
+                message = f"`{part.function}` of {foreign} cannot be computed by the supervisor, expected integers"
+                yield Fault(part, reason, message, "compute it from `value` in a rule of an enum, and compare the enum")
             elif cases[part] > _LARGEST_CHOICE >= max(cases[argument] for argument in part.arguments):
-                message = f"this has more than {_LARGEST_CHOICE} cases when `abs`, `min` and `max` are written out"
-                yield Fault(part, reason, message, "let a variable remember a part of it")
+                message = f"this has more than {_LARGEST_CHOICE} cases after `abs`, `min` and `max` are expanded"
+                yield Fault(part, reason, message, "store a part of it in a variable")
 
 
 def supervised_accesses(instances: Instances, result: ConeOfInfluence) -> Iterator[tuple[rsc.Access, _Where]]:

@@ -70,7 +70,7 @@ def repair(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
             hint = "write an array, such as `[1.0, 0.0]`"
             return wrapped(hint, "[", "]", expression, is_choice=True) if found == wanted.element else hint
         case BasicType.NONE:
-            return "leave the provide statement out: there is no data to send along"
+            return "leave the provide statement out: it has no data to send"
     return _conversion(expression, found, wanted)
 
 
@@ -149,7 +149,7 @@ def _part(whole: ex.Expression, found: Type, wanted: Type) -> Hint:
     properties = list(found.definition.properties)
     fitting = [part for part in properties if declared_type(part.type) == wanted]
     if isinstance(wanted, ObjectType) and not fitting:
-        return f"declare what gives the data and what takes it with one type, such as `{found.written}`"
+        return f"declare the source and the target of the data with one type, such as `{found.written}`"
     fitting = fitting or properties
     if not fitting:
         return "it has none to read"
@@ -168,8 +168,8 @@ def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
         return _around(f"write `{_text(expression)} * 1.0`", expression, "", " * 1.0", is_choice=False)
     if (found, wanted) == (DOUBLE, INTEGER):
         if isinstance(expression, _LITERAL):
-            return "write a whole number or declare it double: a double is never rounded"
-        why = "`/` always gives a double" if isinstance(expression, ex.Division) else "no double is rounded by itself"
+            return "write a whole number or declare it double: RoboSC never rounds implicitly"
+        why = "`/` always gives a double" if isinstance(expression, ex.Division) else "RoboSC never rounds implicitly"
         hint = f"write `round({_text(expression).strip('()')})` or declare it double: {why}"
         return wrapped(hint, "round(", ")", expression, is_choice=True)
     if isinstance(found, EnumType):

@@ -136,13 +136,13 @@ class _Comparison:
                 yield from self._property(owner, fields[owner.name], name)
             else:
                 close = get_close_matches(owner.name, fields, n=1)
-                hint = f"did you mean `{close[0]}`?" if close else "write a field that it has, or leave this one out"
+                hint = f"did you mean `{close[0]}`?" if close else "write an existing field, or leave this one out"
                 others = {field: fitting for field in fields if (fitting := _type_for(fields[field])) is not None}
                 taken = {other.name for other in definition.properties}
                 others = {field: fitting for field, fitting in others.items() if field not in taken}
                 fitting = _type_for(fields[close[0]]) if close and isinstance(owner.type, rsc.BasicDataType) else None
                 text = f"{written(close[0])}: {fitting}" if fitting is not None else None
-                message = f"`{owner.name}` is no field of {name}: {_listed(fields)}"
+                message = f"`{owner.name}` is not a field of {name}: {_listed(fields)}"
                 yield Fault(
                     owner,
                     message,
@@ -174,7 +174,7 @@ class _Comparison:
         try:
             fields = self._distribution.fields(wire.package, wire.name, Section.MESSAGE)
         except DefinitionError as fault:
-            message = f"the definition of {wire}, the type of `{owner.name}`, can't be read: {fault}"
+            message = f"the definition of {wire}, the type of `{owner.name}`, cannot be read: {fault}"
             yield Fault(owner, message, REPAIR, unknown=True)
             return
         if fields is None:

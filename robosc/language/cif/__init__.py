@@ -95,7 +95,7 @@ class _Files:
                 content = documents.read(file)
             except OSError as error:
                 reason = error.strerror or str(error)
-                fault = CifFaultError(asked, "unresolved-reference", f"the file `{file}` can't be read: {reason}")
+                fault = CifFaultError(asked, "unresolved-reference", f"the file `{file}` cannot be read: {reason}")
                 self.findings.append(fault.finding())
             else:
                 self._parse(file, content)
@@ -126,6 +126,8 @@ class _Files:
                 )
                 self.findings.append(fault.finding())
             elif name not in _MEANINGLESS:
-                message = f"the annotation `{annotation.name}` is unknown: synthesis does not regard it"
-                fault = CifFaultError(annotation, "cif-construct", message, "leave it out, or see that it asks nothing")
+                message = f"the annotation `{annotation.name}` is unknown: synthesis ignores it"
+                fault = CifFaultError(
+                    annotation, "cif-construct", message, "leave it out, unless it has no requirement"
+                )
                 self.findings.append(fault.warning())

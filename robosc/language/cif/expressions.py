@@ -80,7 +80,7 @@ class ExpressionReader:
         """Process a token that is not an operand."""
         if word == "sample" or (word[0] + word[-1] == "<>" and word not in _LEVELS):
             what = "distributions" if word == "sample" else "casts"
-            raise construct(token, what, "write a value of the type that is asked for")
+            raise construct(token, what, "write a value of the required type")
         if word in ("if", "switch", *_UNARY):
             self._open.append(_Open(word, token))
             return
@@ -91,7 +91,9 @@ class ExpressionReader:
             if word in FOREIGN:
                 raise CifFaultError(token, "cif-construct", f"synthesis does not take the operator `{word}`")
             if level == 1 and _LEVELS.get(top.word) == 1:
-                raise CifFaultError(token, "syntax", f"`{word}` and `{top.word}` are no chain", "write parentheses")
+                raise CifFaultError(
+                    token, "syntax", f"`{word}` and `{top.word}` cannot be chained", "write parentheses"
+                )
             self._open.append(_Open(word, token))
             return
         self._alternative(top, word, token)
@@ -123,7 +125,7 @@ class ExpressionReader:
                 self._done.append(self._choice(top, self._done.pop()))
                 return
             case _:
-                raise CifFaultError(token, "syntax", f"`{token.token}` can't stand here")
+                raise CifFaultError(token, "syntax", f"`{token.token}` is not allowed here")
         top.word = "switch:" if top.word == "switch" else word
 
     def _reduce(self, level: int) -> None:
@@ -143,7 +145,7 @@ class ExpressionReader:
     def _binary(self, top: _Open, left: Typed, right: Typed) -> Typed:
         for operand in (left, right):
             if isinstance(operand.type, sct.Plant):
-                raise CifFaultError(operand.read, "type", "an automaton is no value", "name one of its locations")
+                raise CifFaultError(operand.read, "type", "an automaton is not a value", "name one of its locations")
         kind = _checked(top.read, combined, top.word, left.type, right.type)
         if top.word == "mod":
             arguments = [left.expression, right.expression]

@@ -33,10 +33,10 @@ class CifFaultError(Exception):
 
 
 #: Hints for constructs that a transformation of CIF's `cif2cif` eliminates.
-CHANNELS = "CIF's `cif2cif -t linearize-product` makes events without data of them"
-CONDITIONAL_UPDATES = "CIF's `cif2cif -t elim-if-updates` takes them out"
-SUPERVISORS = "CIF's `cif2cif -t relabel-supervisors-as-plants` makes plants of them"
-TAU = "CIF's `cif2cif -t elim-tau-event` gives it one: declare that as `uncontrollable`"
+CHANNELS = "CIF's `cif2cif -t linearize-product` converts them to events without data"
+CONDITIONAL_UPDATES = "CIF's `cif2cif -t elim-if-updates` removes them"
+SUPERVISORS = "CIF's `cif2cif -t relabel-supervisors-as-plants` converts them to plants"
+TAU = "CIF's `cif2cif -t elim-tau-event` adds an event: declare it as `uncontrollable`"
 
 
 def text_of(read: Any) -> Text:

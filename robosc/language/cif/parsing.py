@@ -48,9 +48,9 @@ _BRACKETS = frozenset(_CLOSINGS.values())
 _BLOCKS = frozenset(["group", "location"])
 #: Hints for text that is nested too deep, by the nested construct.
 _MENDS = {
-    **dict.fromkeys(_BRACKETS, "give parts of it to algebraic variables"),
+    **dict.fromkeys(_BRACKETS, "move parts of it to algebraic variables"),
     "group": "move it out of groups",
-    "func": "take statements of its functions apart",
+    "func": "split the statements of its functions",
 }
 #: Constructs with an `end` that count only in functions: in expressions the parser reads them without recursion.
 _FLAT = frozenset(["if", "switch", "while"])
@@ -231,7 +231,7 @@ def _message(found: str, wanted: list[str]) -> str:
         if len(word) < 20 and (word in _RULES or "\\" not in word)
     ]
     shown = f"`{found if len(found) <= 30 else found[:29] + chr(0x2026)}`" if found else "the end of the file"
-    return f"found {shown}, expected {enumeration(dict.fromkeys(told))}" if told else f"{shown} can't stand here"
+    return f"found {shown}, expected {enumeration(dict.fromkeys(told))}" if told else f"{shown} is not allowed here"
 
 
 def _tells(word: str) -> bool:
@@ -251,5 +251,5 @@ def _hint(found: str, wanted: list[str]) -> Repair | str | None:
     if ";" in wanted and found.isidentifier():
         return "is a `;` missing before it?"
     if found.isidentifier() and "Identifier" in wanted:
-        return f"a keyword as a name has a dollar sign before it: `${found}`"
+        return f"write a dollar sign before a keyword that is a name: `${found}`"
     return None

@@ -182,7 +182,7 @@ class Specification:
             repair = _meant(name, 0, seen)
             if repair is None and name[0] == "." and first in self.root.names:
                 repair = Repair(
-                    f"in a definition `.` begins there; from the file's root it is `^{name[1:]}`", f"^{name[1:]}"
+                    f"in a definition, `.` starts there; from the root of the file, write `^{name[1:]}`", f"^{name[1:]}"
                 )
             raise CifFaultError(read, "unresolved-reference", f"there is no `{first}` here", repair)
         whole = first
@@ -190,7 +190,7 @@ class Specification:
             inside = self.resolved(found)
             if not isinstance(inside, Scope):
                 raise CifFaultError(
-                    read, "unresolved-reference", f"`{whole}` is no group and no automaton: nothing is in it"
+                    read, "unresolved-reference", f"`{whole}` is neither a group nor an automaton: it has no members"
                 )
             if part not in inside.names:
                 message, repair = f"there is no `{part}` in `{inside.path}`", _meant(name, position, inside.names)
@@ -219,7 +219,7 @@ class Specification:
             value = found.read.first.value
             is_name = not found.read.others and not found.read.first.openings and not found.read.first.closings
             if not is_name or type(value).__name__ != "Reference" or value.suffix:
-                raise CifFaultError(found.read, "type", "the parameter wants a name")
+                raise CifFaultError(found.read, "type", "the parameter expects a name")
             found = self.find(value.name, found.scope)
         return found
 
@@ -243,9 +243,9 @@ class Specification:
                 made = self._scope(plain(read.name), scope, read, bare=True)
                 self._instances.append((read, scope, made))
             case "Continuous":
-                raise construct(read, "continuous variables", "leave them to simulation, or model time by events")
+                raise construct(read, "continuous variables", "use them only in simulation, or model time by events")
             case "Function":
-                raise construct(read, "functions", "write an algebraic variable for what it computes")
+                raise construct(read, "functions", "write an algebraic variable for its result")
             case _:
                 self._declare_names(scope, read, rule)
 
@@ -309,17 +309,17 @@ class Specification:
                 element.name = f"L{number}"
                 with self.reporting():
                     message = "a location without a name is the only one"
-                    raise CifFaultError(location, "cif-declaration", message, "give it a name")
+                    raise CifFaultError(location, "cif-declaration", message, "write a name")
 
     def _instantiate(self, read: Any, around: Scope, scope: Scope) -> None:
         found = self.find(read.definition, around)
         if not isinstance(found, Declared) or found.kind not in ("GroupDefinition", "AutomatonDefinition"):
-            raise CifFaultError(read.definition, "type", f"`{read.definition.text}` is no definition")
+            raise CifFaultError(read.definition, "type", f"`{read.definition.text}` is not a definition")
         definition = found.read
         inside: Scope | None = around
         while inside is not None:
             if inside.definition is definition:
-                raise CifFaultError(read, "cyclic-definition", f"`{plain(definition.name)}` is made of itself")
+                raise CifFaultError(read, "cyclic-definition", f"`{plain(definition.name)}` contains itself")
             inside = inside.parent
         parameters = [(parameter, name) for parameter in definition.parameters for name in parameter.names]
         if len(parameters) != len(read.arguments):
@@ -346,4 +346,4 @@ def _is_algebraic(argument: Argument) -> bool:
 
 def _once(scope: Scope, name: str, read: Any) -> None:
     if name in scope.names:
-        raise CifFaultError(read, "cif-declaration", f"there are two of the name `{name}`", "rename one of them")
+        raise CifFaultError(read, "cif-declaration", f"the name `{name}` is declared twice", "rename one of them")

@@ -92,7 +92,7 @@ class _Transformation:
         self._identify()
         if not any(plant.kind != sct.PlantKind.requirement for plant in self.model.plants) and not names.findings:
             with names.reporting():
-                hint = "name one automaton `plant` at least"
+                hint = "write `plant` before at least one automaton"
                 raise CifFaultError(names.first, "cif-construct", "there is no plant", hint)
 
     # Declarations
@@ -201,7 +201,7 @@ class _Transformation:
             self._edges_of(taken, scope)
             if not initial:
                 message = f"`{scope.path}` has no initial location"
-                raise CifFaultError(scope.read, "initial-state", message, "write `initial;` in one")
+                raise CifFaultError(scope.read, "initial-state", message, "write `initial;` in one location")
 
     def _edges_of(self, taken: list[_Taken], scope: Scope) -> None:
         """Create the edges and the requirements of an automaton."""
@@ -233,7 +233,7 @@ class _Transformation:
     def _event(self, name: Any, scope: Scope) -> sct.Event:
         found = self._names.find(name, scope)
         if not isinstance(found, Declared) or found.kind != "Events":
-            raise CifFaultError(name, "type", f"`{name.text}` is no event")
+            raise CifFaultError(name, "type", f"`{name.text}` is not an event")
         if not found.outer.control:
             hint = f"declare `{found.name}` as `controllable` or as `uncontrollable`"
             raise construct(name, "events that are neither controllable nor uncontrollable", hint)
@@ -285,7 +285,7 @@ class _Transformation:
             raise construct(read, "updates of tuples and lists", "write a variable for each element")
         found = self._names.find(read.variable, scope)
         if not isinstance(found, Declared) or found.kind != "Variables":
-            raise CifFaultError(read, "type", f"`{read.variable.text}` is no discrete variable")
+            raise CifFaultError(read, "type", f"`{read.variable.text}` is not a discrete variable")
         if found.made is None:
             raise found.fault
         if found.made.eContainer() is not scope.plant:
@@ -293,7 +293,7 @@ class _Transformation:
             raise CifFaultError(read, "assignment-scope", message)
         value = self._values.whole(read.value, scope)
         if not overlap(found.type, value.type):
-            message = f"`{found.name}` is {shown(found.type)}, what is assigned {shown(value.type)}"
+            message = f"`{found.name}` is {shown(found.type)}, the assigned value {shown(value.type)}"
             raise CifFaultError(read, "type", message)
         return found.made, value.expression, value.type
 
@@ -431,7 +431,7 @@ class _Transformation:
             if read.kind:
                 raise construct(read, "supervisor invariants", SUPERVISORS)
             what = "invariants of no kind"
-            raise construct(read, what, "write `requirement` before it, or `plant` where the system itself sees to it")
+            raise construct(read, what, "write `requirement` before it, or `plant` if the system itself ensures it")
         for invariant in read.invariants:
             with self._names.reporting():
                 self._invariant(invariant, read.kind == "plant", scope, location)
@@ -477,7 +477,7 @@ class _Transformation:
                 with self._names.reporting():
                     overlap = [edge for own in edges[event].values() for edge in own]
                     if excluding is None or (not event.controllable and _several(overlap)):
-                        raise construct(read, f"this plant invariant with `{event.name}`", "state it by guards")
+                        raise construct(read, f"this plant invariant with `{event.name}`", "write it as guards")
                     self._exclusions.setdefault(event, []).append((read, excluding))
             self.model.initialPredicates.append(condition)
 

@@ -58,7 +58,7 @@ class Values:
         """Return the value of an expression in a scope. Raises CifFaultError."""
         made = self._nested(read, scope)
         if isinstance(made.type, sct.Plant):
-            raise CifFaultError(read, "type", "an automaton is no value", "name one of its locations")
+            raise CifFaultError(read, "type", "an automaton is not a value", "name one of its locations")
         return made
 
     def whole(self, read: Any, scope: Scope) -> Typed:
@@ -81,7 +81,7 @@ class Values:
         made = self.whole(read, scope)
         value = constant_value(made.expression)
         if value is None:
-            raise CifFaultError(read, "type", "this is no constant")
+            raise CifFaultError(read, "type", "this is not a constant")
         return value, range(value, value + 1) if isinstance(made.type, range) else made.type
 
     def _nested(self, read: Any, scope: Scope) -> Typed:
@@ -105,14 +105,14 @@ class Values:
                 return self._reference(read, scope, switched)
             case "Own":
                 if scope.plant is None:
-                    raise CifFaultError(read, "type", "`self` stands in automata only")
+                    raise CifFaultError(read, "type", "`self` is allowed only in automata")
                 return Typed(read, None, scope.plant)
         raise construct(read, *_FOREIGN[type(read).__name__])
 
     def _call(self, read: Any, scope: Scope) -> Typed:
         name = read.function.strip()
         if name not in ("min", "max", "abs"):
-            raise construct(read, f"the function `{name}`", "synthesis computes with `min`, `max` and `abs` only")
+            raise construct(read, f"the function `{name}`", "synthesis computes only `min`, `max` and `abs`")
         given = [self._nested(argument, scope) for argument in read.arguments]
         wanted = 1 if name == "abs" else 2
         if len(given) != wanted:
@@ -121,7 +121,7 @@ class Values:
             )
         for argument, value in zip(read.arguments, given, strict=True):
             if not isinstance(value.type, range):
-                raise CifFaultError(argument, "type", f"`{name}` wants an int")
+                raise CifFaultError(argument, "type", f"`{name}` expects an int")
         made = ex.FunctionCall(function=name, arguments=[value.expression for value in given])
         bounds = [(value.type.start, value.type.stop - 1) for value in given if isinstance(value.type, range)]
         if name == "abs":
@@ -133,14 +133,14 @@ class Values:
     def _reference(self, read: Any, scope: Scope, switched: sct.Plant | None) -> Typed:
         if read.suffix:
             what = _SUFFIXES[read.suffix[0]]
-            raise construct(read, what, "write an algebraic variable for what it computes")
+            raise construct(read, what, "write an algebraic variable for its result")
         if switched is not None:
             own = next((location for location in switched.locations if location.name == plain(read.name.text)), None)
             if own is not None:
                 return Typed(read, sct.LocationReference(location=own), BOOLEAN)
         made = self._value(read, self.names.find(read.name, scope))
         if switched is not None and not isinstance(made.expression, sct.LocationReference):
-            raise CifFaultError(read, "type", f"`{read.name.text}` is no location of `{switched.name}`")
+            raise CifFaultError(read, "type", f"`{read.name.text}` is not a location of `{switched.name}`")
         return made
 
     def _value(self, read: Any, found: Any) -> Typed:
@@ -156,7 +156,7 @@ class Values:
             case Declared(kind="Variables" | "Inputs"):
                 if found.made is None:
                     # A variable that is declared later has no fault yet, but a constant cannot read it.
-                    raise found.fault or CifFaultError(read, "type", "this is no constant")
+                    raise found.fault or CifFaultError(read, "type", "this is not a constant")
                 return Typed(read, sct.VariableReference(variable=found.made), found.type)
             case Declared(kind="Literal"):
                 enumeration = self.enumeration(found.outer)
@@ -176,9 +176,9 @@ class Values:
         self._size += more
         self._size_in_all += more
         if self._size > _LARGEST:
-            raise _too_large(read, "what the names in the expression stand for", _LARGEST)
+            raise _too_large(read, "the expression after its names are expanded", _LARGEST)
         if self._size_in_all > _LARGEST_IN_ALL:
-            what = "what all names in expressions stand for"
+            what = "the specification after its names are expanded"
             self._exhausted = self._exhausted or _too_large(read, what, _LARGEST_IN_ALL)
             raise self._exhausted
 
@@ -238,7 +238,7 @@ class Values:
     def _made(self, found: Definition) -> Any:
         """Return the value of a definition or an argument, or its fault."""
         if len(self._open) > _DEEPEST:
-            return CifFaultError(found.read, "cif-construct", "definitions lie too deep within each other")
+            return CifFaultError(found.read, "cif-construct", "definitions are nested too deeply")
         before, self._size = self._size, 0
         self._open.add(found)
         try:
@@ -271,9 +271,7 @@ class Values:
             return self.typed(found.read.value, found.scope)
         equations = self.equations(found.scope).get(found.name, [])
         if not equations:
-            raise CifFaultError(
-                found.read, "cif-declaration", f"nothing says what `{found.name}` is", "add an equation for it"
-            )
+            raise CifFaultError(found.read, "cif-declaration", f"`{found.name}` has no value", "add an equation for it")
         made: Typed | None = None
         for location, read in reversed(equations):
             value = self.typed(read, found.scope)
@@ -304,7 +302,7 @@ class Values:
                             told += [(location, equation) for equation in element.equations]
             for place, equation in told:
                 if equation.derivative:
-                    raise construct(equation, "continuous variables", "leave them to simulation")
+                    raise construct(equation, "continuous variables", "use them only in simulation")
                 known.setdefault(plain(equation.name), []).append((place, equation.value))
         return self._equations[scope]
 
@@ -323,7 +321,7 @@ class Values:
         if isinstance(found, Declared) and found.kind == "Enumeration":
             return self.enumeration(found)
         if not isinstance(found, Declared) or found.kind != "Types":
-            raise CifFaultError(read, "type", f"`{read.type.text}` is no type")
+            raise CifFaultError(read, "type", f"`{read.type.text}` is not a type")
         kind: Type | str = self.known(found)
         return kind
 
@@ -332,7 +330,7 @@ class Values:
         if not isinstance(lowest, range) or not isinstance(highest, range):
             raise CifFaultError(read, "type", "the bounds of an int are whole numbers")
         if low > high:
-            raise CifFaultError(read, "integer-range", f"nothing is in int[{low}..{high}]")
+            raise CifFaultError(read, "integer-range", f"the range int[{low}..{high}] is empty")
         return range(low, high + 1)
 
     def enumeration(self, declared: Declared) -> ex.Enumeration:
@@ -348,7 +346,7 @@ class Values:
 
 def _too_large(read: Any, what: str, most: int) -> CifFaultError:
     message = f"{what} has more than {most} operators and operands"
-    return CifFaultError(read, "cif-construct", message, "give parts of it to automata with variables")
+    return CifFaultError(read, "cif-construct", message, "move parts of it to automata with variables")
 
 
 def computed_from_itself(found: Definition) -> CifFaultError:
@@ -356,7 +354,7 @@ def computed_from_itself(found: Definition) -> CifFaultError:
     if isinstance(found, Declared):
         verb = "defined by" if found.kind == "Types" else "computed from"
         return CifFaultError(found.read, "cyclic-definition", f"`{found.name}` is {verb} itself")
-    return CifFaultError(found.read, "cyclic-definition", "what the parameter stands for is computed from itself")
+    return CifFaultError(found.read, "cyclic-definition", "the argument of the parameter is computed from itself")
 
 
 class _ChangingError(Exception):

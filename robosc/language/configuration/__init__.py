@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 FILE_NAME = "controller-config.json"
 RULE = "configuration"
 #: Warnings of a node at its start that nothing stops its robot: when the node ends, and when a topic falls silent.
-NO_STOP = "onShutdown names no message: when this node ends, the robot goes on as it was told last"
+NO_STOP = "onShutdown names no message: when this node ends, the robot continues with its last command"
 NO_STOP_ON_SILENCE = (
-    "watchdog_stops holds commands back and does not stop the robot: onShutdown names no message, it goes on as it was"
-    " told last"
+    "watchdog_stops holds commands back and does not stop the robot: onShutdown names no message, the robot continues"
+    " with its last command"
 )
 #: Maximum depth of folders below the model in the search for a configuration.
 SEARCH_DEPTH = 3
@@ -107,24 +107,31 @@ class Supervisor(_Settings):
 class ControlLoop(_Settings):
     """Timing of the controller."""
 
-    period_ms: Milliseconds = Field(default=100, description="Time from one tick to the next.")
-    events_per_tick: Count = Field(default=0, description="Most events sent in a tick; 0: no limit.")
-    react_immediately: bool = Field(default=True, description="Whether incoming data may start events at once.")
+    period_ms: Milliseconds = Field(default=100, description="Period of ticks in milliseconds.")
+    events_per_tick: Count = Field(default=0, description="Maximum number of events sent in a tick; 0: no limit.")
+    react_immediately: bool = Field(
+        default=True, description="Whether incoming data may start events at once, before the next tick."
+    )
     reactions_per_tick: Count = Field(
-        default=10, description="Most events started by the data of one topic, service or action between two ticks."
+        default=10,
+        description="Maximum number of events that data of one topic, service or action starts between two ticks.",
     )
 
 
 class Services(_Settings):
     """Service calls."""
 
-    timeout_ms: Milliseconds = Field(default=5000, description="After this time without an answer a call has failed.")
+    timeout_ms: Milliseconds = Field(
+        default=5000, description="A call fails after this time without an answer, in milliseconds."
+    )
 
 
 class Actions(_Settings):
     """Action goals."""
 
-    timeout_ms: Milliseconds = Field(default=5000, description="After this time without acceptance a goal has failed.")
+    timeout_ms: Milliseconds = Field(
+        default=5000, description="A goal fails after this time without acceptance, in milliseconds."
+    )
 
 
 class QualityOfService(_Settings):
@@ -142,7 +149,7 @@ class Package(_Settings):
         default=None,
         pattern=r"^[a-z][a-z0-9]*(_[a-z0-9]+)*$",
         min_length=2,
-        description="Package, node and executable; absent: from the robot's name.",
+        description="Name of the package, node and executable. Default: derived from the robot's name.",
     )
     version: str = Field(default="0.1.0", pattern=r"^[0-9]+\.[0-9]+\.[0-9]+$")
     maintainer: str = Field(default="Unknown maintainer", min_length=1)
@@ -151,7 +158,9 @@ class Package(_Settings):
         pattern=r"^[-a-zA-Z0-9_%+]+(\.[-a-zA-Z0-9_%+]+)*@([-a-zA-Z0-9%]+\.)+[a-zA-Z]{2,}$",
     )
     license: str = Field(default="Proprietary", min_length=1)
-    description: str | None = Field(default=None, min_length=1, description="Absent: a sentence with the robot's name.")
+    description: str | None = Field(
+        default=None, min_length=1, description="Default: a sentence with the robot's name."
+    )
 
 
 class Configuration(_Settings):
@@ -160,52 +169,54 @@ class Configuration(_Settings):
     publish_state_information: bool = Field(default=True, description="Whether the node publishes its state.")
     typed_state: bool = Field(
         default=False,
-        description="Whether the node publishes its state as a message, too, and a package with its type is generated.",
+        description="Whether the node also publishes its state as a message. Generates a package with its type.",
     )
     write_events_to_log: bool = Field(default=False, description="Whether the node writes an event log.")
     diagnostics_ms: int = Field(
         default=1000,
         ge=0,
         le=24 * 3600 * 1000,
-        description="From one report on /diagnostics to the next; 0: the node does not know this topic.",
+        description="Period of reports on /diagnostics in milliseconds; 0: the node does not publish this topic.",
     )
     output: Output = Output()
     supervisor: Supervisor = Supervisor()
     control_loop: ControlLoop = ControlLoop()
     services: Services = Services()
     actions: Actions = Actions()
-    retry_ms: Milliseconds = Field(default=1000, description="From the failure of a service or action to its reset.")
-    frame_id: ByTopic[str] = Field(
-        default={}, description="By topic: the frame of headers that the model leaves unset."
+    retry_ms: Milliseconds = Field(
+        default=1000, description="Time from the failure of a service or action to its reset, in milliseconds."
     )
+    frame_id: ByTopic[str] = Field(default={}, description="Frame of headers that the model leaves unset, by topic.")
     qos: ByTopic[QualityOfService] = Field(
-        default={}, description="By topic, service or action: ROS 2 quality of service."
+        default={}, description="ROS 2 quality of service, by topic, service or action."
     )
-    watchdog_ms: ByTopic[Milliseconds] = Field(default={}, description="By topic: silence that is reported.")
+    watchdog_ms: ByTopic[Milliseconds] = Field(
+        default={}, description="Silence after which the node reports a topic, in milliseconds, by topic."
+    )
     watchdog_stops: bool = Field(
         default=False,
-        description="Whether such a silence holds all commands back, cancels actions and sends what onShutdown names.",
+        description="Whether such a silence holds all commands back, cancels actions and sends onShutdown.",
     )
     on_shutdown: list[str] = Field(
         default=[],
         description="Messages of the model to send, in this order, when the node ends or a topic's silence stops it."
-        " Without any the robot goes on as it was told last.",
+        " Without one, the robot continues with its last command.",
     )
     on_withheld: list[str] = Field(
         default=[],
-        description="Messages of the model to send, in this order, when a command's data can't be sent."
-        " Without any the robot goes on as it was told last.",
+        description="Messages of the model to send, in this order, when a command's data cannot be sent."
+        " Without one, the robot continues with its last command.",
     )
     on_blocked: list[str] = Field(
         default=[],
-        description="Messages of the model. When a layer blocks one of them after it forwarded one, it sends one"
-        " itself, once. Without any the robot goes on as it was told last.",
+        description="Messages of the model. A layer that blocks one after it forwarded one sends one itself, once."
+        " Without one, the robot continues with its last command.",
     )
     wait_for: list[str] = Field(
         default=[],
-        description="Topics that a controller must have heard once each before it sends commands.",
+        description="Topics from which a controller must receive a message each before it sends commands.",
     )
-    lifecycle: bool = Field(default=False, description="Whether the ROS 2 node is a managed one.")
+    lifecycle: bool = Field(default=False, description="Whether the ROS 2 node is a managed (lifecycle) node.")
     package: Package = Package()
 
     _file: str = PrivateAttr(FILE_NAME)
@@ -247,7 +258,7 @@ class Configuration(_Settings):
     def watchdog_meaning(self) -> str:
         """Description of the parameter `watchdog_stops` with these settings."""
         if not self.on_shutdown:
-            stands = "It sends nothing: what the robot was told last stands."
+            stands = "It sends nothing: the robot continues with its last command."
             return f"Whether a silent topic holds commands back and cancels actions. {stands}"
         return f"Whether a silent topic holds commands back, cancels actions and sends {', '.join(self.on_shutdown)}."
 
@@ -302,7 +313,7 @@ def read(file: Path) -> Configuration:
     except JsonError as error:
         line, column = _position(text, error.position)
         raise ModelError([_error(name, str(error), Span(line, column, line, column + 1), error.hint)]) from error
-    findings = [_error(name, f'the key "{key}" stands twice', span) for key, span in _duplicates(text, _skip(text, 0))]
+    findings = [_error(name, f'the key "{key}" occurs twice', span) for key, span in _duplicates(text, _skip(text, 0))]
     try:
         configuration = Configuration.model_validate(values, context=(name, text), by_alias=True, by_name=False)
     except ValidationError as error:

@@ -40,28 +40,37 @@ def controller_parameters(graph: rosgraph.RosGraph, configuration: Configuration
     clients = [
         *_timeouts(graph, configuration),
         Parameter(
-            "retry_ms", configuration.retry_ms, "From the failure of a service or action to its reset.", (1, _DAY)
+            "retry_ms", configuration.retry_ms, "Time from the failure of a service or action to its reset.", (1, _DAY)
         ),
     ]
     watchdogs, words = configuration.watchdog_ms, topic_words(graph)
     loop = configuration.control_loop
     return [
-        Parameter("period_ms", loop.period_ms, "Time from one tick to the next.", (1, _DAY)),
-        Parameter("events_per_tick", loop.events_per_tick, "Most events sent in a tick; 0: no limit.", (0, _COUNT)),
+        Parameter("period_ms", loop.period_ms, "Period of ticks.", (1, _DAY)),
+        Parameter(
+            "events_per_tick",
+            loop.events_per_tick,
+            "Maximum number of events sent in a tick; 0: no limit.",
+            (0, _COUNT),
+        ),
         Parameter(
             "reactions_per_tick",
             loop.reactions_per_tick,
-            "Most events started by the data of one topic between two ticks.",
+            "Maximum number of events that data of one topic starts between two ticks.",
             (0, _COUNT),
         ),
-        Parameter("react_immediately", loop.react_immediately, "Whether incoming data may start events at once."),
+        Parameter(
+            "react_immediately",
+            loop.react_immediately,
+            "Whether incoming data may start events at once, before the next tick.",
+        ),
         *(clients if len(clients) > 1 else ()),
         Parameter("watchdog_stops", configuration.watchdog_stops, configuration.watchdog_meaning),
         *(
             Parameter(
                 watchdog(words, subscription),
                 watchdogs.get(subscription.topic.removeprefix("/"), 0),
-                f"Longest silence of {subscription.topic}; 0: any.",
+                f"Longest silence of {subscription.topic}; 0: no limit.",
                 (0, _DAY),
             )
             for subscription in graph.subscriptions
@@ -109,7 +118,7 @@ def layer_parameters(graph: rosgraph.RosGraph, configuration: Configuration, log
     """Return the parameters of a supervisory layer."""
     period = configuration.control_loop.period_ms
     return [
-        Parameter("period_ms", period, "Time from one report of the state to the next.", (1, _DAY)),
+        Parameter("period_ms", period, "Period of reports of the state.", (1, _DAY)),
         *_timeouts(graph, configuration),
         *_diagnostics(configuration),
         _event_log(log),
@@ -121,19 +130,19 @@ def _timeouts(graph: rosgraph.RosGraph, configuration: Configuration) -> list[Pa
     services, actions = configuration.services.timeout_ms, configuration.actions.timeout_ms
     found = []
     if graph.serviceClients:
-        meaning = "After this time without an answer a call has failed."
+        meaning = "A call fails after this time without an answer."
         found.append(Parameter("service_timeout_ms", services, meaning, (1, _DAY)))
     if graph.actionClients:
-        meaning = "After this time without acceptance a goal has failed."
+        meaning = "A goal fails after this time without acceptance."
         found.append(Parameter("action_timeout_ms", actions, meaning, (1, _DAY)))
     return found
 
 
 def _diagnostics(configuration: Configuration) -> list[Parameter]:
-    meaning = "From one report on /diagnostics to the next; 0: none."
+    meaning = "Period of reports on /diagnostics; 0: none."
     period = configuration.diagnostics_ms
     return [Parameter("diagnostics_ms", period, meaning, (0, _DAY))] if period else []
 
 
 def _event_log(log: str) -> Parameter:
-    return Parameter("event_log", log, "A file that gets a line of JSON for each event; empty: none.")
+    return Parameter("event_log", log, "File for the event log, with a line of JSON for each event; empty: none.")

@@ -88,7 +88,7 @@ class _Transformation:
                         *place(culprit),
                         Severity.ERROR,
                         "cif",
-                        f"this can't be said in CIF: {reason}",
+                        f"CIF cannot express this: {reason}",
                         "give the integers smaller ranges",
                     )
                     for culprit, reason in self._faults.items()

@@ -285,4 +285,4 @@ def _both(left: ex.Expression | None, right: ex.Expression | None) -> ex.Express
 
 def _limit(origin: ex.Expression, cases: int) -> None:
     if cases > MOST_CASES:
-        raise Unsupported(origin, f"it would have to be split into {cases} cases; {MOST_CASES} are the most")
+        raise Unsupported(origin, f"it needs {cases} cases; the maximum is {MOST_CASES}")

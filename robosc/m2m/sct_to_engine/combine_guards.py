@@ -79,8 +79,8 @@ def _one_of(edges: Sequence[sct.Edge], lower: Lowering) -> Term:
     whole = lower.terms.junction(engine.Or, [left_open(guard, denied, lower.terms) for guard in guards])
     if any(isinstance(read, engine.Input) for read in whole.reads()):
         name = event_name(edges[0].event)
-        message = f"whether `{name}` can happen depends on its data, which a controller learns when it happens"
-        hint = "leave it out of plant invariants, or add an edge for all other data"
+        message = f"`{name}` depends on its data, which the controller only receives with the event"
+        hint = "remove it from plant invariants, or add an edge for all other data"
         raise ModelError([Diagnostic(*place(edges[0]), Severity.ERROR, "cif-construct", message, hint)])
     return whole
 

@@ -32,7 +32,7 @@ def preconditions(model: sct.SupervisoryControlModel) -> list[Diagnostic]:
             Severity.ERROR,
             RULE,
             f"this computation can overflow in C: {fault}",
-            "give its variables smaller ranges",
+            "use smaller ranges for its variables",
         )
         for element, expression in _expressions(model)
         for fault in _overflows(expression, lower)

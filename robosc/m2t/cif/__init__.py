@@ -37,11 +37,11 @@ def preconditions(models: Models, _configuration: Configuration) -> list[Diagnos
         return []
     if not models.sct.plants:
         reason = "the robot has neither communications nor behaviours, and CIF takes no specification without a plant"
-        hint = "give it a component with a message, a service, an action or a behaviour"
+        hint = "add a component with a message, a service, an action or a behaviour"
         return [_finding(models.sct, reason, hint)]
     named = (element for _, element in tree(models.sct) if isinstance(element, ex.NamedElement))
     found = [
-        _finding(element, f"'{element.name}' is no identifier", "give it a name of letters, digits and `_`")
+        _finding(element, f"'{element.name}' is not an identifier", "use a name of letters, digits and `_`")
         for element in named
         if not _NAME.fullmatch(element.name)
     ]
@@ -70,4 +70,4 @@ def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
 
 
 def _finding(culprit: Any, reason: str, hint: str) -> Diagnostic:
-    return Diagnostic(*place(culprit), Severity.ERROR, "cif", f"this can't be said in CIF: {reason}", hint)
+    return Diagnostic(*place(culprit), Severity.ERROR, "cif", f"CIF cannot express this: {reason}", hint)

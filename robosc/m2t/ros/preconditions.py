@@ -56,7 +56,7 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
     """
     graph = models.rosgraph
     if graph is None:
-        message = "there is no ROS graph beside this model: generate from the .rscd or the .rosgraph.xmi"
+        message = "this model has no ROS graph: generate from the .rscd or the .rosgraph.xmi"
         return [Diagnostic(models.sct.name, START, Severity.ERROR, RULE, message)]
     found = [*engine_preconditions(models.sct), *_names(graph), *_types(graph)]
     found += _parameters(graph, configuration, kind, ros)
@@ -80,10 +80,12 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
 def _package(graph: rosgraph.RosGraph, configuration: Configuration, name: str) -> Iterator[Diagnostic]:
     """Return errors on the name and settings of a package."""
     if not _PACKAGE.fullmatch(name):
-        yield _error(graph, f'"{name}" is no name of a ROS package', 'set "package.name" in controller-config.json')
+        yield _error(graph, f'"{name}" is not a name of a ROS package', 'set "package.name" in controller-config.json')
     if _RISKY.search(configuration.package.maintainer):
         hint = 'leave out ", \\, $ and ;'
-        yield configuration.error(("package", "maintainer"), "the maintainer would break the package's build", hint)
+        yield configuration.error(
+            ("package", "maintainer"), "the maintainer has characters that break the build of the package", hint
+        )
 
 
 def _error(element: ex.Located, message: str, hint: str | None = None, rule: str = RULE) -> Diagnostic:
@@ -95,9 +97,9 @@ def _names(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
     """Return errors on names that appear in code unchanged, and that ROS would reject at run time."""
     for interface in graph.interfaces:
         if not _PACKAGE.fullmatch(interface.package):
-            yield _error(interface, f'"{interface.package}" is no name of a ROS package')
+            yield _error(interface, f'"{interface.package}" is not a name of a ROS package')
         if not _TYPE.fullmatch(interface.type):
-            yield _error(interface, f'"{interface.type}" is no name of a ROS type')
+            yield _error(interface, f'"{interface.type}" is not a name of a ROS type')
     named: list[tuple[ex.Located, str, str]] = [
         *((subscription, subscription.topic, "topic") for subscription in graph.subscriptions),
         *((publisher, publisher.topic, "topic") for publisher in graph.publishers),
@@ -107,10 +109,10 @@ def _names(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
     for element, name, kind in named:
         if not _TOPIC.fullmatch(name):
             hint = "write letters, digits and underscores, with single slashes between them"
-            yield _error(element, f'"{name}" is no name of a ROS {kind}', hint)
+            yield _error(element, f'"{name}" is not a name of a ROS {kind}', hint)
     for element, name in _fields(graph):
         if not _FIELD.fullmatch(name):
-            yield _error(element, f'"{name}" is no name of a field in ROS')
+            yield _error(element, f'"{name}" is not a name of a field in ROS')
 
 
 def _parameters(graph: rosgraph.RosGraph, configuration: Configuration, kind: str, ros: int) -> Iterator[Diagnostic]:
@@ -119,7 +121,7 @@ def _parameters(graph: rosgraph.RosGraph, configuration: Configuration, kind: st
     names = Counter([*_OWN_PARAMETERS[ros], *(parameter.name for parameter in declared)])
     for element, parameter in model_parameters(graph).items():
         if names[parameter.name] > 1:
-            yield _error(element, f"the node has a parameter {parameter.name} of its own", "give it another name")
+            yield _error(element, f"the node has a parameter {parameter.name} of its own", "rename it")
         if ros == 1 and isinstance(parameter.default, int) and parameter.bounds is not None:
             low, high = parameter.bounds
             if low < -(2**31) or high >= 2**31:
@@ -135,7 +137,7 @@ def _types(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
         kind = f"{end.interface.package}/{end.interface.type}"
         first = types.setdefault(end.topic.removeprefix("/"), kind)
         if kind != first:
-            hint = "give it another topic, or one type to all that is on this topic"
+            hint = "use another topic, or one type for all communications on this topic"
             yield _error(end, f'"{end.topic}" is a topic of {first} already, and can\'t be one of {kind}', hint)
 
 
@@ -185,7 +187,7 @@ def _outside(
             continue
         for requirement in graph.model.requirements:
             if requirement.event is sending.event and requirement.text:
-                message = f'"{setting}": {name} is sent then in spite of "{requirement.text}"'
+                message = f'"{setting}": {name} is then sent regardless of "{requirement.text}"'
                 yield configuration.warning((setting, place_of_name), message)
 
 
@@ -197,7 +199,7 @@ def _unsendable(
         if message_named(graph, name) is None:
             sent = [sending.name for publisher in graph.publishers for sending in publisher.sendings]
             hint = f"messages to the robot: {', '.join(sent)}" if sent else None
-            message = f'"{setting}": {name} is no message that the node sends'
+            message = f'"{setting}": {name} is not a message that the node sends'
             yield configuration.error((setting, place_of_name), message, hint)
 
 
@@ -213,11 +215,11 @@ def _swallowed(
         for sending in publisher.sendings:
             if kind in _MOVING and sending.event in blockable:
                 message = (
-                    f"the layer can block {sending.name}, also one that stops the robot: the robot then goes on as it"
-                    " was told last"
+                    f"the layer can block {sending.name}, also one that stops the robot: the robot then continues with"
+                    " its last command"
                 )
                 hint = (
-                    f'name it in controller-config.json: "onBlocked": ["{sending.name}"]; where the robot stops by'
+                    f'name it in controller-config.json: "onBlocked": ["{sending.name}"]; if the robot stops by'
                     " itself, write []"
                 )
                 yield replace(_error(sending.event, message, hint), severity=Severity.WARNING)
@@ -228,13 +230,13 @@ def _nothing_safe(graph: rosgraph.RosGraph, configuration: Configuration) -> Ite
     if not graph.publishers:
         return
     if configuration.watchdog_stops and not configuration.on_shutdown:
-        message = '"watchdogStops" only holds commands back: "onShutdown" names nothing that stops the robot'
+        message = '"watchdogStops" only holds commands back: "onShutdown" names no message that stops the robot'
         yield configuration.warning(
             ("watchdogStops",), message, 'name the message that stops it: "onShutdown": ["halt"]'
         )
     elif not configuration.says_how_to_stop:
-        message = '"onShutdown" is not set: when the node ends, the robot goes on as it was told last'
-        hint = 'name the message that stops it, as in "onShutdown": ["halt"]; where nothing can, write []'
+        message = '"onShutdown" is not set: when the node ends, the robot continues with its last command'
+        hint = 'name the message that stops it, as in "onShutdown": ["halt"]; if no message can, write []'
         yield configuration.warning(("onShutdown",), message, hint)
     if "on_withheld" not in configuration.model_fields_set:
         outside = _from_outside(graph)
@@ -242,12 +244,14 @@ def _nothing_safe(graph: rosgraph.RosGraph, configuration: Configuration) -> Ite
             fields = [field for provided in sending.alternatives for field in provided.fields]
             found = next((field for field in fields if _may_be_withheld(field, outside)), None)
             if found is not None:
-                what = "is no" if infer(found.value) == DOUBLE else "holds what is no"
+                what = "is not a" if infer(found.value) == DOUBLE else "has a value that is not a"
                 message = (
-                    f"{sending.name} is not sent where its {'.'.join(found.path) or 'data'} {what} finite number, nor"
-                    " is anything else: the robot goes on as it was told last"
+                    f"{sending.name} is not sent where its {'.'.join(found.path) or 'data'} {what} finite number, and"
+                    " no other message is: the robot continues with its last command"
                 )
-                hint = 'name what is sent then in controller-config.json, as in "onWithheld": ["halt"]; or write []'
+                hint = (
+                    'name the message to send then in controller-config.json, as in "onWithheld": ["halt"]; or write []'
+                )
                 yield replace(_error(found, message, hint), severity=Severity.WARNING)
 
 
@@ -297,8 +301,8 @@ def _shared_topics(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
         if first is None:
             named[topic.removeprefix("/")] = message.name
             continue
-        text = f'{first} and {message.name} are both on "{topic}": a supervisory layer would not know which one passes'
-        yield _error(message, text, "give each a topic of its own, or make one of them", LAYER_RULE)
+        text = f'{first} and {message.name} are both on "{topic}": a supervisory layer cannot distinguish them'
+        yield _error(message, text, "use a separate topic for each, or one message for both", LAYER_RULE)
 
 
 def _controller(configuration: Configuration) -> Iterator[Diagnostic]:
@@ -320,7 +324,7 @@ def _controller(configuration: Configuration) -> Iterator[Diagnostic]:
         checked += [("launch", "packageName", launch.package_name, _PACKAGE), ("launch", "file", launch.file, _FILE)]
     for form, name, value, pattern in checked:
         if value is not None and not pattern.fullmatch(value):
-            message = f'"{".".join((*key, form, name))}" is no name that a launch file could use'
+            message = f'"{".".join((*key, form, name))}" is not a name that a launch file could use'
             yield configuration.error((*key, form, name), message)
 
 

@@ -98,9 +98,9 @@ def bounded(operator: str, made: range) -> range:
 
 def _divided(operator: str, left: range, right: range) -> range:
     if len(right) != 1 or right.start < 1:
-        raise TypeError(f"synthesis takes `{operator}` by a positive constant only")
+        raise TypeError(f"synthesis supports `{operator}` only by a positive constant")
     if left.start < 0:
-        raise TypeError(f"synthesis takes `{operator}` of what is never negative only")
+        raise TypeError(f"synthesis supports `{operator}` only of values that are never negative")
     divisor, last = right.start, left.stop - 1
     return range(left.start // divisor, last // divisor + 1) if operator == "div" else range(min(last, divisor - 1) + 1)
 

@@ -59,7 +59,7 @@ def step_in_words(text: str) -> StepInWords | None:
         return None
     data = data_in_words(text, step.start("data")) if step["data"] else None
     if step["message"] and not isinstance(data, dict):
-        raise StepError("a message is an object with fields", 0, 'write `with message {"ranges": [1.0]}`')
+        raise StepError("a message must be an object with fields", 0, 'write `with message {"ranges": [1.0]}`')
     return StepInWords(event_in_words(step), not step["kind"], step["reason"], data, bool(step["message"]))
 
 
@@ -79,7 +79,7 @@ def data_in_words(text: str, position: int) -> Any:
         hint = error.hint or "data is JSON, or the name of a literal"
         raise StepError(str(error), position + error.position, hint) from None
     if value is None:
-        raise StepError("`null` is no data", position, "leave out `with null`")
+        raise StepError("`null` is not data", position, "leave out `with null`")
     return value
 
 

@@ -54,7 +54,7 @@ def _identifier(feature: str) -> Check:
         value = getattr(element, feature)
         for text in [value] if isinstance(value, str) else value:
             if not _IDENTIFIER.fullmatch(text):
-                yield element, f"'{feature}' is to be an identifier, which '{text}' is not"
+                yield element, f"'{feature}' must be an identifier, found '{text}'"
 
     return check
 
@@ -63,7 +63,7 @@ def _shown(element: Any, _model: Model) -> Iterator[Fault]:
     for feature in _SHOWN:
         text = getattr(element, feature, None)
         if text is not None and visible(text) != text:
-            yield element, f"'{feature}' is to be one line without hidden characters"
+            yield element, f"'{feature}' must be one line without hidden characters"
 
 
 def _literal(literal: ex.IntegerLiteral | ex.DoubleLiteral, _model: Model) -> Iterator[Fault]:
@@ -71,11 +71,13 @@ def _literal(literal: ex.IntegerLiteral | ex.DoubleLiteral, _model: Model) -> It
     if literal.value < 0:
         yield literal, "a literal has no sign; the sign is a UnaryMinus around it"
     elif isinstance(literal, ex.IntegerLiteral) and literal.value > most:
-        yield literal, f"{literal.value} is no integer of 64 bits"
+        yield literal, f"{literal.value} is not an integer of 64 bits"
 
 
 _INTERFACE = [
-    demand(lambda interface: bool(_PACKAGE.fullmatch(interface.package)), "'{0.package}' is no name of a ROS package"),
+    demand(
+        lambda interface: bool(_PACKAGE.fullmatch(interface.package)), "'{0.package}' is not a name of a ROS package"
+    ),
     _identifier("type"),
 ]
 _INDEX = demand(lambda step: step.index is None or step.index >= 0, "an index counts from 0")
@@ -112,7 +114,7 @@ _ARGUMENTS: Checks = {
     ex.FunctionCall: [
         demand(
             lambda call: len(call.arguments) == getattr(operator_of(call), "parameters", None),
-            "'{0.function}' has another number of arguments",
+            "'{0.function}' has a wrong number of arguments",
         )
     ]
 }

@@ -37,7 +37,7 @@ class Model:
         """Report a fault if an expression does not have the wanted type."""
         found = self.types(expression)
         if UNKNOWN not in {found, wanted} and found != wanted:
-            yield expression, f"this is of {_named(found)}, but {_named(wanted)} is wanted"
+            yield expression, f"this is of {_named(found)}, expected {_named(wanted)}"
 
 
 Check = Callable[[Any, Model], Iterable[Fault]]
@@ -82,7 +82,7 @@ def unique(*features: str) -> Check:
     def check(element: Any, _model: Model) -> Iterator[Fault]:
         for feature in features:
             for named in repeated(getattr(element, feature), lambda named: named.name):
-                yield named, f"the name '{named.name}' is given twice"
+                yield named, f"the name '{named.name}' is used twice"
 
     return check
 
@@ -111,7 +111,7 @@ def fitting_operands(expression: ex.Expression, model: Model) -> Iterator[Fault]
     """Check the operators of an sct or rosgraph model, whose operands all have one type."""
     row, given = operator_of(expression), operands(expression)
     if isinstance(expression, (robosc.Access, robosc.ObjectValue)):
-        yield expression, f"{type(expression).__name__} belongs in a robosc model only"
+        yield expression, f"{type(expression).__name__} is allowed only in a robosc model"
     elif isinstance(expression, ex.Conditional):
         yield from model.unlike(expression.condition, BOOLEAN)
         yield from _differ(expression, given[1:], model)
@@ -124,7 +124,7 @@ def fitting_operands(expression: ex.Expression, model: Model) -> Iterator[Fault]
         yield from faults
         found = model.types(given[0])
         if row.rule is not Rule.EQUALITY and not faults and not is_number(found) and found != UNKNOWN:
-            yield expression, f"numbers are wanted, not {_named(found)}"
+            yield expression, f"expected numbers, found {_named(found)}"
 
 
 def _differ(expression: ex.Expression, given: Iterable[ex.Expression], model: Model) -> Iterator[Fault]:

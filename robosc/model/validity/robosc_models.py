@@ -24,45 +24,48 @@ if TYPE_CHECKING:
 def _made(made: robosc.InstantiatedComponent | robosc.ImportedComponent, _model: Model) -> Iterator[Fault]:
     user = around(made, robosc.Component)
     if user is not None and user.parameters:
-        yield made, f"the template '{user.name}' has no text of its own"
+        yield made, f"the template '{user.name}' has no content of its own"
         return
     seen, component = {user}, made.definition
     while isinstance(component.type, robosc.InstantiatedComponent | robosc.ImportedComponent):
         if component in seen:
-            yield made, f"'{component.name}' is made of itself"
+            yield made, f"'{component.name}' contains itself"
             return
         seen.add(component)
         component = component.type.definition
     if isinstance(made, robosc.ImportedComponent):
         yield from _import(made)
     elif not made.definition.parameters:
-        yield made, f"'{made.definition.name}' is no template"
+        yield made, f"'{made.definition.name}' is not a template"
 
 
 def _import(imported: robosc.ImportedComponent) -> Iterator[Fault]:
     if imported.definition.eContainer() is not imported.library:
-        yield imported, f"'{imported.definition.name}' is no component of {imported.library.name}"
+        yield imported, f"'{imported.definition.name}' is not a component of {imported.library.name}"
         return
     own = _definitions(imported.definition)
     for remapping in imported.remappings:
         if remapping.communicationType not in own:
-            yield remapping, f"'{remapping.communicationType.name}' is no communication of {imported.definition.name}"
+            yield (
+                remapping,
+                f"'{remapping.communicationType.name}' is not a communication of {imported.definition.name}",
+            )
 
 
 def _communication(reference: robosc.CommunicationReference, _model: Model) -> Iterator[Fault]:
     component = _owner(reference)
     if component is None:
-        yield reference, f"it does not say whose '{reference.communicationType.name}' is meant"
+        yield reference, f"the component of '{reference.communicationType.name}' is missing"
     elif reference.communicationType not in _definitions(component):
-        yield reference, f"'{reference.communicationType.name}' is no communication of '{component.name}'"
+        yield reference, f"'{reference.communicationType.name}' is not a communication of '{component.name}'"
 
 
 def _running(access: robosc.Access, item: robosc.CommunicationType) -> Iterator[Fault]:
     component = _owner(access)
     if component is None:
-        yield access, f"it does not say whose '{item.name}' is meant"
+        yield access, f"the component of '{item.name}' is missing"
     elif item not in _definitions(component):
-        yield access, f"'{item.name}' is no communication of '{component.name}'"
+        yield access, f"'{item.name}' is not a communication of '{component.name}'"
     elif isinstance(item, robosc.Message):
         yield access, f"'{item.name}' is a message: only a service or an action is running"
 
@@ -72,11 +75,11 @@ def _access(access: robosc.Access, _model: Model) -> Iterator[Fault]:
     if isinstance(item, (robosc.State, robosc.Variable)):
         component = _owner(access)
         if component is None:
-            yield access, f"it does not say whose '{item.name}' is meant"
+            yield access, f"the component of '{item.name}' is missing"
             return
         behaviours = [part for part in _definitions(component) if isinstance(part, robosc.ComponentBehaviour)]
         if item.eContainer() not in [behaviour.automaton for behaviour in behaviours]:
-            yield access, f"'{item.name}' is no state or variable of '{component.name}'"
+            yield access, f"'{item.name}' is not a state or variable of '{component.name}'"
             return
     elif isinstance(item, robosc.CommunicationType):
         yield from _running(access, item)
@@ -101,7 +104,7 @@ def _property(element: robosc.ObjectPropertyValue, _model: Model) -> Iterator[Fa
 
 def _member(element: Any, of: Any) -> Iterator[Fault]:
     if of is not UNKNOWN and not (isinstance(of, ObjectType) and element.property in of.definition.properties):
-        yield element, f"'{element.property.name}' is no property of {of}"
+        yield element, f"'{element.property.name}' is not a property of {of}"
 
 
 def _owner(reference: robosc.CommunicationReference | robosc.Access) -> robosc.Component | None:
@@ -146,11 +149,11 @@ _DATA_TYPE = demand(
     lambda reference: (
         isinstance(reference, robosc.InterfaceTypeReference) or isinstance(reference.type.eContainer(), robosc.Base)
     ),
-    "'{0.type.name}' is no data type of a robot or library",
+    "'{0.type.name}' is not a data type of a robot or library",
 )
 _OWN_OBJECT = demand(
     lambda reference: reference.type is reference.definition,
-    "it is to name the object that stands for {0.package}/{0.rosType}",
+    "it must name the object for {0.package}/{0.rosType}",
 )
 
 #: The other checks follow imports. They are skipped if an import is broken.

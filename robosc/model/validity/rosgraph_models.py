@@ -28,18 +28,18 @@ _BASIC = (ex.BooleanType, ex.IntegerType, ex.DoubleType, ex.StringType, rosgraph
 def _own_event(element: Any, model: Model) -> Iterator[Fault]:
     event = getattr(element, "event", None)
     if isinstance(event, sct.Event) and event.eContainer().eContainer() is not model.root.model:
-        yield element, f"the event '{event.name}' is another model's"
+        yield element, f"the event '{event.name}' belongs to another model"
 
 
 def _interface(wanted: rosgraph.InterfaceKind) -> Check:
-    message = f"'{{0.interface.type}}' is a {{0.interface.kind}}, but a {wanted} is wanted"
+    message = f"'{{0.interface.type}}' is a {{0.interface.kind}}, expected a {wanted}"
     return demand(lambda user: user.interface.kind == wanted, message)
 
 
 def _literals(conversion: rosgraph.Conversion, _model: Model) -> Iterator[Fault]:
     for literal in dict.fromkeys([conversion.default, *(rule.literal for rule in conversion.rules)]):
         if literal.eContainer() is not conversion.enumeration:
-            yield conversion, f"'{literal.name}' is no literal of {conversion.enumeration.name}"
+            yield conversion, f"'{literal.name}' is not a literal of {conversion.enumeration.name}"
 
 
 def _inputs(reception: rosgraph.Reception, _model: Model) -> Iterator[Fault]:
@@ -55,7 +55,7 @@ def _reason(read: rosgraph.ErrorReason, _model: Model) -> Iterator[Fault]:
         user = user.eContainer()
     event = user.event if isinstance(user, rosgraph.Reaction | rosgraph.Reception) else None
     if event is None or event.kind != sct.EventKind.error:
-        yield read, "a reason is read at the error of a service or an action only"
+        yield read, "a reason can be read only at the error of a service or an action"
     missing = {*FAILURES} - {literal.name for literal in read.enumeration.literals}
     if missing:
         yield read, f"{read.enumeration.name} has no literal '{min(missing)}'"
@@ -80,7 +80,7 @@ class _Shape:
         known = self._kinds.setdefault(path, kind)
         if known != kind:
             place = f"'{'.'.join(map(str, path))}'" if path else "the message"
-            yield element, f"{place} is read or written as {kind} here, but as {known} elsewhere"
+            yield element, f"{place} has the type {kind} here, but {known} elsewhere"
 
 
 def _converted_shape(conversion: rosgraph.Conversion, _model: Model) -> Iterator[Fault]:
@@ -118,13 +118,13 @@ def _received_shapes(graph: rosgraph.RosGraph, _model: Model) -> Iterator[Fault]
                 yield from _received(shape, access)
     for event, values in reactions.items():
         if event not in read_anywhere:
-            yield from ((read, f"'{event.name}' comes with no data") for read in _reads(values))
+            yield from ((read, f"'{event.name}' has no data") for read in _reads(values))
 
 
 def _received(shape: _Shape, access: rosgraph.WireAccess) -> Iterator[Fault]:
     path = _path(access)
     if access.type is not None and not path:
-        yield access, "a message is no basic value"
+        yield access, "a message is not a basic value"
     yield from shape.add(access, path, access.type)
     owner = access.eContainer()
     if isinstance(owner, rosgraph.ConversionCall):
@@ -143,26 +143,26 @@ def _path(access: rosgraph.WireAccess) -> list[str | int]:
 
 
 _BASIC_FIELD = demand(
-    lambda field: field.type is None or isinstance(field.type, _BASIC), "{0.type.eClass.name} is no type of a field"
+    lambda field: field.type is None or isinstance(field.type, _BASIC), "{0.type.eClass.name} is not a type of a field"
 )
 _FIELD = demand(
     lambda field: field.type is None or isinstance(field.type, (*_BASIC, rosgraph.ObjectType)),
-    "{0.type.eClass.name} is no type of a field",
+    "{0.type.eClass.name} is not a type of a field",
 )
 _DATA = demand(
     lambda provided: provided.location.eContainer().kind == sct.PlantKind.data,
-    "'{0.location.name}' is no location of a data plant",
+    "'{0.location.name}' is not a location of a data plant",
 )
 _ONE_PLANT = demand(
     lambda reaction: len({location.eContainer() for location in reaction.locations}) <= 1,
-    "the locations are of several plants",
+    "the locations belong to several plants",
 )
 _WHOLE = demand(
     lambda access: (
         access.type is not None
         or isinstance(access.eContainer(), rosgraph.ConversionCall | rosgraph.NodeAssignment | rosgraph.FieldAssignment)
     ),
-    "only what a conversion takes, and what is stored or sent as a whole, may be without a type",
+    "only inputs of conversions and data stored or sent as a whole may have no type",
 )
 
 _ALTERNATIVE = demand(
@@ -171,7 +171,7 @@ _ALTERNATIVE = demand(
         and not reads_elements(choice.otherwise)
         and infer(choice.value) == infer(choice.otherwise)
     ),
-    "what takes the place of a value is of its type, and reads no element of an array",
+    "the replacement of a value must have its type and must not read an element of an array",
 )
 
 CHECKS: Checks = {

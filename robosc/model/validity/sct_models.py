@@ -29,12 +29,12 @@ def _references(element: Any, model: Model) -> Iterator[Fault]:
     for name in _REFERENCES:
         referred = getattr(element, name, None)
         if referred is not None and referred not in model.own:
-            yield element, f"the {name} '{referred.name}' is another model's"
+            yield element, f"the {name} '{referred.name}' belongs to another model"
 
 
 def _bounds(integer: ex.IntegerType, _model: Model) -> Iterator[Fault]:
     if integer.minimum is None or integer.maximum is None:
-        yield integer, "both bounds of an integer are given in an sct model"
+        yield integer, "an integer in an sct model must have both bounds"
     elif integer.minimum > integer.maximum:
         yield integer, f"the range {integer.minimum}..{integer.maximum} is reversed"
 
@@ -42,7 +42,7 @@ def _bounds(integer: ex.IntegerType, _model: Model) -> Iterator[Fault]:
 def _initial_location(plant: sct.Plant, model: Model) -> Iterator[Fault]:
     initial = sum(location.initial for location in plant.locations)
     if initial != 1 and not (initial and is_from_cif(model.root)):
-        yield plant, f"plant '{plant.name}' has {initial or 'no'} initial locations; it starts in exactly one"
+        yield plant, f"plant '{plant.name}' has {initial or 'no'} initial locations, expected exactly one"
 
 
 def _end_of_action(plant: sct.Plant, _model: Model) -> Iterator[Fault]:
@@ -50,7 +50,7 @@ def _end_of_action(plant: sct.Plant, _model: Model) -> Iterator[Fault]:
     ended = (edge for edge in edges_of(plant) if edge.event.kind == sct.EventKind.cancel and edge.target.name == IDLE)
     if plant.kind == sct.PlantKind.action and any(ended):
         found = f"the action '{plant.origin or plant.name}' ends where it is canceled, as in older models"
-        yield plant, f"{found}; make this model anew from its text: `robosc transform MODEL.rscd --to xmi`"
+        yield plant, f"{found}; generate this model again from its text: `robosc transform MODEL.rscd --to xmi`"
 
 
 def _initial_value(variable: sct.DiscreteVariable, model: Model) -> Iterator[Fault]:
@@ -62,7 +62,7 @@ def _initial_value(variable: sct.DiscreteVariable, model: Model) -> Iterator[Fau
     if isinstance(value, ex.UnaryMinus):
         value, sign = value.operand, -1
     if not isinstance(value, (ex.BooleanLiteral, ex.IntegerLiteral, ex.EnumerationLiteralReference)):
-        yield variable.initial, "an initial value is a literal"
+        yield variable.initial, "an initial value must be a literal"
     elif isinstance(value, ex.IntegerLiteral) and isinstance(variable.type, ex.IntegerType):
         minimum, maximum = variable.type.minimum, variable.type.maximum
         if minimum is not None and maximum is not None and not minimum <= sign * value.value <= maximum:
@@ -97,7 +97,7 @@ def _unguarded(edges: Iterable[sct.Edge]) -> list[sct.Edge]:
 def _carried(event: sct.Event, _model: Model) -> Iterator[Fault]:
     for carried in event.inputs:
         if carried.eContainer() is not event.eContainer():
-            yield event, f"the input '{carried.name}' is another plant's"
+            yield event, f"the input '{carried.name}' belongs to another plant"
 
 
 def _updated_once(edge: sct.Edge, _model: Model) -> Iterator[Fault]:
@@ -120,7 +120,7 @@ def _read(reference: sct.InputReference, _model: Model) -> Iterator[Fault]:
     while isinstance(user, ex.Expression | sct.Update):
         user = user.eContainer()
     if not isinstance(user, sct.Edge | sct.Requirement):
-        yield reference, "an input is read in guards and updates of edges, and in requirements, only"
+        yield reference, "an input can be read only in guards and updates of edges, and in requirements"
     elif reference.input not in user.event.inputs:
         yield reference, f"'{user.event.name}' does not carry the input '{reference.input.name}'"
 
@@ -131,10 +131,10 @@ def _part(kind: ex.EnumerationType, _model: Model) -> Iterator[Fault]:
     ends = [literal for literal in (kind.first, kind.last) if literal is not None]
     for literal in ends:
         if literal not in literals:
-            yield kind, f"'{literal.name}' is no literal of {kind.enumeration.name}"
+            yield kind, f"'{literal.name}' is not a literal of {kind.enumeration.name}"
             return
     if ends and not isinstance(kind.eContainer(), sct.Input):
-        yield kind, "only an input has a part of an enumeration"
+        yield kind, "only an input can have a part of an enumeration"
     elif domain(kind).low > domain(kind).high:
         yield kind, f"'{ends[0].name}' stands behind '{ends[1].name}'"
 
@@ -148,7 +148,7 @@ def _guards(supervisor: sct.Supervisor, model: Model) -> Iterator[Fault]:
             requirement.event is not guard.event or requirement not in model.root.requirements
             for requirement in guard.requirements
         ):
-            yield guard, f"a requirement of this guard is not one on '{guard.event.name}'"
+            yield guard, f"a requirement of this guard does not restrict '{guard.event.name}'"
     for plant in model.root.plants:
         for event in plant.events:
             if event.controllable and event not in guarded:
@@ -158,18 +158,18 @@ def _guards(supervisor: sct.Supervisor, model: Model) -> Iterator[Fault]:
 def _timer(timer: sct.Timer, model: Model) -> Iterator[Fault]:
     """Check that the elements that restart a timer are in the same model and in its location."""
     if (timer.milliseconds is None) == (timer.duration is None):
-        yield timer, "a time has either milliseconds or a duration"
+        yield timer, "a time must have either milliseconds or a duration"
     if timer.milliseconds is not None and not SHORTEST <= timer.milliseconds <= LONGEST:
-        yield timer, f"a time is {SHORTEST} to {LONGEST} ms long, found {timer.milliseconds}"
+        yield timer, f"a time must be {SHORTEST} to {LONGEST} ms long, found {timer.milliseconds}"
     if timer.location is not None and timer.location.eContainer() is not around(timer, sct.Plant):
-        yield timer, f"the location '{timer.location.name}' is another plant's"
+        yield timer, f"the location '{timer.location.name}' belongs to another plant"
     if timer.location is None and not timer.without:
-        yield timer, "a time that runs in all locations is the silence of a message"
+        yield timer, "a time that runs in all locations must be the silence of a message"
     if any(edge.target is not timer.location for edge in timer.entries):
         yield timer, "an edge that enters the location leads elsewhere"
     for message in timer.without:
         if message.kind != sct.EventKind.response or message not in model.own:
-            yield timer, f"'{message.name}' is no message of this model that a component sends"
+            yield timer, f"'{message.name}' is not a message of this model that a component sends"
 
 
 _SETTABLE = demand(
@@ -177,26 +177,26 @@ _SETTABLE = demand(
         SHORTEST <= duration.shortest <= duration.milliseconds <= duration.longest <= LONGEST
         and duration.unit in UNITS.values()
     ),
-    f"'{{0.parameter}}' is set within its range, in ms, s or min, and the range lies in {SHORTEST} to {LONGEST} ms",
+    f"'{{0.parameter}}' must have the unit ms, s or min and a range within {SHORTEST} to {LONGEST} ms",
 )
 _TIMED = demand(
     lambda event: (
         (event.timer is not None) == (event.kind == sct.EventKind.timeout) and not (event.timer and event.controllable)
     ),
-    "'{0.name}' is a timeout, uncontrollable with a timer, or it is none and has no timer",
+    "'{0.name}' must be either an uncontrollable timeout with a timer, or another event without timer",
 )
-_FOREIGN = demand(lambda _: False, "{0.eClass.name} has no place in an sct model")
+_FOREIGN = demand(lambda _: False, "{0.eClass.name} is not allowed in an sct model")
 _SUPERVISED = demand(
     lambda call: FUNCTIONS[call.function].is_supervised and len(call.arguments) == FUNCTIONS[call.function].parameters,
-    "this call of '{0.function}' has no place in an sct model",
+    "this call of '{0.function}' is not allowed in an sct model",
 )
 _PLAIN = demand(
     lambda declared: isinstance(declared.type, (ex.BooleanType, ex.IntegerType, ex.EnumerationType)),
-    "{0.type.eClass.name} has no place in an sct model",
+    "{0.type.eClass.name} is not allowed in an sct model",
 )
 _CONTROLLABLE = demand(
     lambda restriction: restriction.event.controllable,
-    "the event '{0.event.name}' is uncontrollable: nothing can restrict it",
+    "the event '{0.event.name}' is uncontrollable: no requirement can restrict it",
 )
 _RESTRICTABLE = demand(
     lambda requirement: (
@@ -204,15 +204,15 @@ _RESTRICTABLE = demand(
         or requirement.automaton is not None
         or requirement.event.kind == sct.EventKind.plain
     ),
-    "the event '{0.event.name}' is uncontrollable: nothing can restrict it",
+    "the event '{0.event.name}' is uncontrollable: no requirement can restrict it",
 )
 _OWN_TARGET = demand(
     lambda edge: edge.target.eContainer() is around(edge, sct.Plant),
-    "the target '{0.target.name}' is another plant's location",
+    "the target '{0.target.name}' is a location of another plant",
 )
 _OWN_VARIABLE = demand(
     lambda update: update.variable.eContainer() is around(update, sct.Plant),
-    "the variable '{0.variable.name}' is another plant's",
+    "the variable '{0.variable.name}' belongs to another plant",
 )
 
 CHECKS: Checks = {

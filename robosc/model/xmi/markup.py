@@ -87,11 +87,11 @@ class _Parser:
             self._lines = _LINE_END.split(self._data.decode("utf-8-sig"))
         except UnicodeDecodeError as error:
             before = _LINE_END.split(self._data[: error.start].decode("utf-8", "replace"))
-            raise self._error(len(before), len(before[-1]) + 1, "this is no text in UTF-8") from None
+            raise self._error(len(before), len(before[-1]) + 1, "this is not text in UTF-8") from None
         try:
             self._expat.Parse(self._data, True)
         except expat.ExpatError as error:
-            message = f"this is no well-formed XML: {expat.ErrorString(error.code)}"
+            message = f"this is not well-formed XML: {expat.ErrorString(error.code)}"
             raise self._error(error.lineno, error.offset + 1, message) from None
         assert self._root is not None
         return self._root

@@ -104,13 +104,13 @@ class Document:
         if top.namespace == _ECORE:
             self.report(top.span, "this is a metamodel (Ecore), not a model")
         elif (top.namespace, top.name) == (XMI, "XMI"):
-            self.report(top.span, "this file has several models; one is wanted")
+            self.report(top.span, "this file has several models, expected one")
         elif package is None:
             known = ", ".join(packages()[root].nsURI for root in ROOTS)
             self.report(top.span, f"no model of RoboSC has the namespace '{top.namespace}'", f"known are {known}")
         elif top.name not in ROOTS.get(package.name, ()):
             wanted = ", ".join(name for names in ROOTS.values() for name in names)
-            self.report(top.span, f"a file can't hold a {top.name} by itself", f"it may hold {wanted}")
+            self.report(top.span, f"a {top.name} cannot be the root of a file", f"expected {wanted}")
         else:
             return package.getEClassifier(top.name)
         return None
@@ -121,7 +121,7 @@ class Document:
         given = Counter(self._fill_attributes(markup, element))
         children = list(self._fill_children(markup, element, given))
         if markup.text.strip():
-            self.report(markup.span, f"{named} holds no text")
+            self.report(markup.span, f"{named} cannot have text")
         for name, feature in declared.items():
             # Features that EMF omits have a default: a boolean, a number, the first literal of an enumeration.
             if feature.lowerBound and name not in given and (feature.many or getattr(element, name) is None):
@@ -178,11 +178,11 @@ class Document:
         found = feature.eType if child.type is None else _classifier(*child.type)
         if found is None or not isinstance(found, EClass):
             written = child.attributes.get((XSI, "type"))
-            self.report(child.attribute_span("xsi:type"), f"there is no class '{written}'")
+            self.report(child.attribute_span("xsi:type"), f"unknown class '{written}'")
         elif not issubclass(found.python_class, feature.eType.python_class):
-            self.report(child.span, f"'{feature.name}' wants {a(feature.eType)}, which {a(found)} is not")
+            self.report(child.span, f"'{feature.name}' expects {a(feature.eType)}, found {a(found)}")
         elif found.abstract:
-            self.report(child.span, f"{found.name} is abstract", "say what it is with xsi:type")
+            self.report(child.span, f"{found.name} is abstract", "write its class with xsi:type")
         else:
             return found
         return None
@@ -193,7 +193,7 @@ class Document:
         if value is None:
             literals = ", ".join(literal.name for literal in kind.eLiterals) if isinstance(kind, EEnum) else ""
             hint = f"one of {literals}" if literals else None
-            self.report(where(), f"'{feature.name}' can't be '{text[:80]}'", hint)
+            self.report(where(), f"'{feature.name}' cannot be '{text[:80]}'", hint)
         else:
             _put(element, feature, value)
 
@@ -235,7 +235,7 @@ class _Loading:
                 self._texts[document.name] = content.decode("utf-8", errors="replace")
                 document.build(parse(content, document.name))
             except OSError as error:
-                document.report(START, f"the file can't be read: {error.strerror}")
+                document.report(START, f"the file cannot be read: {error.strerror}")
             except ModelError as error:
                 document.findings += error.diagnostics
             pending += self._referred(document)
@@ -251,10 +251,10 @@ class _Loading:
             self._sought.add((document, href))
             path = self._path(document, href)
             if path is None:
-                message = f"'{href}' is not in the folder of this model or below; nothing else is read"
+                message = f"'{href}' is not in the folder of this model or below; other files are not read"
                 document.report(reference.where(), message)
             elif not path.is_file():
-                document.report(reference.where(), f"there is no file '{href}'")
+                document.report(reference.where(), f"the file '{href}' does not exist")
             elif path not in self._documents:
                 name = (PurePosixPath(document.name).parent / href).as_posix()
                 found.append(self._documents.setdefault(path, Document(name, path, self.sources)))
@@ -277,9 +277,9 @@ class _Loading:
         target = _walk(other.root, fragment)
         shown = reference.target.removeprefix("#")
         if target is None:
-            document.report(reference.where(), f"'{feature.name}' refers to '{shown}', where nothing is")
+            document.report(reference.where(), f"'{feature.name}' refers to '{shown}', which does not exist")
         elif not isinstance(target, feature.eType.python_class):
-            message = f"'{feature.name}' refers to {a(target.eClass)}, but wants {a(feature.eType)}"
+            message = f"'{feature.name}' refers to {a(target.eClass)}, expected {a(feature.eType)}"
             document.report(reference.where(), message)
         elif feature.many and target in getattr(element, feature.name):
             document.report(reference.where(), f"'{feature.name}' names '{shown}' twice")

@@ -133,7 +133,7 @@ class _Document:
     def _value(self, element: Any, value: Any) -> str:
         text = to_text(value)
         if UNWRITABLE.search(text):
-            raise _unwritable(element, f"XML can't hold a character of {text!r}")
+            raise _unwritable(element, f"XML cannot represent a character of {text!r}")
         return text
 
     def _with_namespaces(self, lines: list[str], package: str, root: Any) -> str:

@@ -85,27 +85,27 @@ def parse(text: str, number: int) -> Line:
     # `json` may follow any number of brackets, until the process ends.
     opened = (BRACKETS.get(found.group(), 0) for found in STRING_OR_BRACKET.finditer(text))
     if max(accumulate(opened, initial=0)) > DEEPEST:
-        raise TraceError(f"line {number} is no line of an event log: nested too deeply")
+        raise TraceError(f"line {number} is not a line of an event log: nested too deeply")
     try:
         values = json.loads(text)
         line = Line(number, **{name: values.get(name) for name in ("time", "direction", "event", "data", "message")})
     except (ValueError, AttributeError) as error:
-        raise TraceError(f"line {number} is no line of an event log: {error}") from None
+        raise TraceError(f"line {number} is not a line of an event log: {error}") from None
     if isinstance(line.time, bool) or not isinstance(line.time, (int, float)) or not abs(line.time) < LATEST:
-        raise TraceError(f"line {number} is no line of an event log: it has no time in seconds")
+        raise TraceError(f"line {number} is not a line of an event log: it has no time in seconds")
     if not isinstance(line.direction, str) or not isinstance(line.event, str):
-        raise TraceError(f"line {number} is no line of an event log: it has no direction and event")
+        raise TraceError(f"line {number} is not a line of an event log: it has no direction and event")
     if line.data is not None and not (isinstance(line.data, dict) and {"value", "reason"} & set(line.data)):
-        raise TraceError(f'line {number} is no line of an event log: "data" is to be an object with a value')
+        raise TraceError(f'line {number} is not a line of an event log: "data" must be an object with a value')
     if line.message is not None and not isinstance(line.message, dict):
-        raise TraceError(f'line {number} is no line of an event log: "message" is to be an object')
+        raise TraceError(f'line {number} is not a line of an event log: "message" must be an object')
     return line
 
 
 def read_trace(path: str) -> list[Line]:
     """Read the lines of a trace, up to where the node was stopped. Raises TraceError."""
     if not Path(path).is_file():  # a pipe would block
-        raise TraceError(f"{path} is no regular file")
+        raise TraceError(f"{path} is not a regular file")
     lines = []
     # Strings may hold other line separators; lines of a node end with a line feed.
     *texts, last = Path(path).read_bytes().split(b"\n")
@@ -113,14 +113,14 @@ def read_trace(path: str) -> list[Line]:
         try:
             line = parse(text.decode("utf-8"), number)
         except UnicodeDecodeError as error:
-            raise TraceError(f"line {number} is no UTF-8: {error.reason} at byte {error.start}") from None
+            raise TraceError(f"line {number} is not UTF-8: {error.reason} at byte {error.start}") from None
         if line.direction == "outside":
             break
         if line.direction not in ("in", "out", "internal"):
-            raise TraceError(f"line {number} is of a supervisory layer, not of a controller")
+            raise TraceError(f"line {number} comes from a supervisory layer, not from a controller")
         lines.append(line)
     if not lines:
-        raise TraceError(f"there is nothing to play in {path}")
+        raise TraceError(f"{path} has no events to play")
     return lines
 
 
@@ -258,7 +258,7 @@ class Incoming:
         if not literals:
             return {}
         wanted = ", ".join(map(str, literals))
-        raise TraceError(f"line {line.number} can't be played: no message is known that the node reads as {wanted}")
+        raise TraceError(f"line {line.number} cannot be played: no known message is read as {wanted} by the node")
 
 
 def last_index(path: tuple[str, ...]) -> int:
@@ -447,7 +447,7 @@ class Player:
         time.sleep(SETTLED)
         for name, waiting in self._port.sent.items():
             if not waiting.empty() and self._log.peek() is None:
-                raise TraceError(f"the node has sent something on {name} without saying so in its log")
+                raise TraceError(f"the node sent a message on {name} that its log does not have")
 
     # Time
 
@@ -491,7 +491,7 @@ class Player:
         try:
             return self._sent(lines, position)
         except UNSENDABLE as error:
-            raise TraceError(f"line {lines[position].number}: this can't be sent: {error!r}") from None
+            raise TraceError(f"line {lines[position].number}: this cannot be sent: {error!r}") from None
 
     def _sent(self, lines: list[Line], position: int) -> int:
         line = lines[position]
@@ -539,7 +539,7 @@ class Player:
     @staticmethod
     def _unplayable(server: str, line: Line) -> TraceError:
         why = f"no test server lets {server} fail because {line.reason}"
-        return TraceError(f"line {line.number} can't be played: {why}")
+        return TraceError(f"line {line.number} cannot be played: {why}")
 
     def _batch(self, lines: list[Line], position: int, incoming: Incoming) -> list[Line]:
         """Return the lines of one message: all events of its topic, in order, except unreadable ones."""
@@ -550,7 +550,7 @@ class Player:
                 batch.append(lines[ahead])
             elif event not in incoming.unreadable:
                 names = ", ".join(incoming.events)
-                raise TraceError(f"line {lines[position].number}: one message makes {names}, in a row")
+                raise TraceError(f"line {lines[position].number}: one message causes {names} in a row")
         return batch
 
     def _together(self, batch: list[Line], line: Line) -> bool:
@@ -569,12 +569,12 @@ class Player:
         else:
             done = self._wait_for_own(lines, position, previous)
         if done is None:
-            raise TraceError(f"line {line.number}: the node does not do what the trace says: {line}")
+            raise TraceError(f"line {line.number}: the node does not follow the trace: {line}")
         if (done.direction, done.event) != (line.direction, line.event):
-            raise TraceError(f"line {line.number}: the trace says {line}, but the node did {done}")
+            raise TraceError(f"line {line.number}: the trace has {line}, but the node did {done}")
         if (line.data or done.data) and not same(line.data, done.data):
             verb = "read" if line.direction == "in" else "sent"
-            raise TraceError(f"line {line.number}: the trace says {line}, but the node {verb} {done}")
+            raise TraceError(f"line {line.number}: the trace has {line}, but the node {verb} {done}")
         self._log.drop()
         self._note_deadlines(line.event)
         if line.direction == "out":
@@ -633,7 +633,7 @@ class Player:
         try:
             message = self._port.sent[self._outlets[line.event]].get(timeout=PATIENCE)
         except queue.Empty:
-            raise TraceError(f"line {line.number}: the node logs {line}, but nothing arrives") from None
+            raise TraceError(f"line {line.number}: the node logs {line}, but no message arrives") from None
         if line.data is None:
             return
         value = line.data["value"]
@@ -641,4 +641,4 @@ class Player:
             found = held(message, path)
             if not same(expected, found):
                 name = ".".join(path)
-                raise TraceError(f"line {line.number}: the trace says {line}, but {name} arrives as {found}")
+                raise TraceError(f"line {line.number}: the trace has {line}, but {name} arrives as {found}")

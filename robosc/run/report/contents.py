@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 #: First paragraph of the report.
 NOTICE = (
     "This is not a safety certificate, and the controller is not a safety-rated one: it is ordinary software on "
-    "ordinary hardware. Functions that people's safety depends on belong into safety-rated parts of the robot."
+    "ordinary hardware. Functions that people's safety depends on belong in safety-rated parts of the robot."
 )
 #: Targets that are generated for the report; without ROS in the model, those that do not need it.
 _TARGETS = ("supervisor", "cif", "ros1", "ros2")

@@ -35,7 +35,7 @@ class Extended:
             names = _NAMED.findall(finding.message)
             reading = (condition for condition in self.conditions if any(name in condition.text for name in names))
             condition = next(reading, self.conditions[0])
-            return condition.fault(finding.message, "read a state, or a variable that the supervisor knows")
+            return condition.fault(finding.message, "read a state, or a variable of the supervisor")
         condition = self.conditions[number]
         shift = condition.span.column - len(_before(number)) - 1
         line = condition.span.line

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 #: Seconds that a node has to end after an interrupt.
 _PATIENCE = 20.0
 #: Report of the player about a line of the log.
-_DIFFERENCE = re.compile(r"line (\d+)( can't be played)?: (.*)")
+_DIFFERENCE = re.compile(r"line (\d+)( cannot be played)?: (.*)")
 _MISSING = re.compile(r"(?:ModuleNotFound|Import)Error: (.*)")
 #: Number of characters shown of a program's output.
 _SHOWN = 1500
@@ -62,17 +62,17 @@ class LiveNode:
                 status, said = self._play(folder, played, log, node)
                 missing = _MISSING.search(said)
                 if status is None:
-                    raise LiveError(f"the node has ended before the scenario did:\n{_end(told)}")
+                    raise LiveError(f"the node ended before the scenario:\n{_end(told)}")
                 if missing is not None:
-                    raise LiveError(f"ROS 2 is not there for this Python: {missing[1]}")
+                    raise LiveError(f"this Python has no ROS 2: {missing[1]}")
                 if not status:
                     return None
                 found = _DIFFERENCE.search(said)
                 if found is None:
-                    message = f"this could not be played over ROS: {said.strip()[-_SHOWN:]}"
+                    message = f"playing over ROS failed: {said.strip()[-_SHOWN:]}"
                     return scenario.line.fault(message, _end(told))
         line = lines[int(found[1]) - 1] if int(found[1]) <= len(lines) else scenario.line
-        verdict = "this can't be played over ROS" if found[2] else "the node does something else"
+        verdict = "this cannot be played over ROS" if found[2] else "the node deviates from the scenario"
         return line.fault(f"{verdict}: {found[3].strip()}")
 
     @contextmanager

@@ -96,7 +96,7 @@ def unknown_events(model: sct.SupervisoryControlModel, scenarios: Iterable[Scena
         if isinstance(line, Incoming):
             yield from _impossible(line, event)
         elif isinstance(line, Sent) and not event.controllable:
-            yield line.fault(f"the {words(event)} comes from the robot: the controller does not send it")
+            yield line.fault(f"the {words(event)} comes from the robot, not from the controller")
 
 
 def unfit_data(graph: rosgraph.RosGraph, types: RosTypes, scenarios: Iterable[Scenario]) -> Iterator[Diagnostic]:
@@ -115,15 +115,15 @@ def _impossible(line: Incoming, event: sct.Event) -> Iterator[Diagnostic]:
     """Yield findings if the robot does not send an event, or not with the line's reason or data."""
     possible = possible_reasons(event)
     if event.kind not in _FROM_THE_ROBOT:
-        hint = "a step names a message, an answer or an error; time goes by with `wait`"
+        hint = "a step is a message, an answer or an error; time passes with `wait`"
         yield line.fault(f"the {words(event)} does not come from the robot", hint)
     elif line.reason is not None and not possible:
         yield line.fault("only the error of a service or an action has a reason", f"leave out `because {line.reason}`")
     elif line.reason is not None and line.reason not in possible:
-        hint = f"possible is {listed([f'`{reason}`' for reason in sorted(possible)])}"
-        yield line.fault(f"the {words(event)} can't have the reason `{line.reason}`", hint)
+        hint = f"expected {listed([f'`{reason}`' for reason in sorted(possible)])}"
+        yield line.fault(f"the {words(event)} cannot have the reason `{line.reason}`", hint)
     elif possible and line.data is not None and not brings_data(event, line.reason):
-        yield line.fault(f"an error with the reason `{line.reason}` brings no data", "leave out `with …`")
+        yield line.fault(f"an error with the reason `{line.reason}` has no data", "leave out `with …`")
 
 
 class Player(Drive):
@@ -242,7 +242,7 @@ class Player(Drive):
             if event.kind == sct.EventKind.canceled and self._clients[event] in self._robot.goals:
                 hint = f"write `error from {self._called(event)} because canceled`"
                 raise NamingError("the controller has not canceled this goal", hint)
-            raise NamingError(f"the {words(event)} can't come now: nothing that it ends is under way", "")
+            raise NamingError(f"the {words(event)} cannot come now: it ends no running call or goal", "")
         if event.kind == sct.EventKind.error:
             self._fail(event, line)
         elif line.data is None and event.kind == sct.EventKind.canceled:
@@ -318,7 +318,7 @@ class Player(Drive):
         data, fields = (blank, {}) if line.data is None else self._message(event, line, *others)
         is_read = self._controller.reads([client.response], data)
         if is_read and line.data is not None:
-            raise NamingError(f"the node can read this data: it is that of the {words(event)}", "")
+            raise NamingError(f"the node can read this data: write it at the {words(event)}", "")
 
         def come_in() -> dict[str, Any] | None:
             if is_read and line.data is None:  # it may be unreadable for another cause
@@ -358,7 +358,7 @@ class Player(Drive):
             self._pass_until(self._in_time(goal), client.error.event)
         if reason is Failure.UNAVAILABLE and goal.is_asked:
             hint = f"write `canceled from {self._called(client.canceled.event)}`"
-            raise NamingError("a goal that is canceled before a server is there ends canceled", hint)
+            raise NamingError("a goal that is canceled without a server ends as canceled", hint)
 
         def end(result: Any) -> None:
             self._forget(client)
@@ -381,7 +381,7 @@ class Player(Drive):
         is_late = reason is Failure.TIMEOUT
         if goal.accepted is not None and (is_early or (is_late and goal.accepted < self._in_time(goal))):
             hint = "an accepted goal fails with `aborted`, `canceled`, `lost` or `unreadable`"
-            raise NamingError(f"the goal has been accepted: it can't fail with `{reason}`", hint)
+            raise NamingError(f"the goal has been accepted: it cannot fail with `{reason}`", hint)
         if is_early and self._now > self._in_time(goal):
             hint = "after `actions.timeoutMs` a goal that was not accepted fails with `timeout`"
             raise NamingError(f"the goal was sent too long ago to fail with `{reason}`", hint)
@@ -474,9 +474,9 @@ class Player(Drive):
             return None
         unknown = _first_unknown(line.data, sent[-1], self._handed_on(event))
         if unknown:
-            message = f"`{unknown}` of the {told} can't be compared: it is handed on as it came"
+            message = f"`{unknown}` of the {told} cannot be compared: the node forwards it unchanged"
             return line.fault(message, "leave it out: times and fields of unknown definitions are not compared")
-        return line.fault(f"the {told} was sent with other data", f"sent was {json_text(sent[-1])}")
+        return line.fault(f"the {told} was sent with other data", f"the sent data is {json_text(sent[-1])}")
 
     def _handed_on(self, event: sct.Event) -> list[Sequence[str]]:
         """Return the paths in a command at which data is forwarded unchanged."""
@@ -531,7 +531,7 @@ def _is_raw(reads: Sequence[Read], data: Any) -> bool:
     has_literals = any(read.conversion is not None and isinstance(value, str) for read, value in values)
     if raw and (has_literals or not isinstance(data, dict)):
         raise NamingError(
-            f"{json.dumps(raw[0])} is data of ROS in the place of a literal", "write `with message {…}` with all fields"
+            f"{json.dumps(raw[0])} is ROS data instead of a literal", "write `with message {…}` with all fields"
         )
     return bool(raw)
 

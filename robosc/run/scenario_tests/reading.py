@@ -117,7 +117,7 @@ def read_scenarios(file: str, text: str) -> tuple[list[Scenario], list[Holds], l
         reader.findings.append(start_of_file.fault("the file has no scenario", 'begin with `scenario "…"`'))
     for scenario in reader.scenarios:
         if not any(isinstance(step, (Holds, Allowed, Sent)) for step in scenario.steps):
-            reader.findings.append(scenario.line.fault("nothing is expected in this scenario", "write `expect …`"))
+            reader.findings.append(scenario.line.fault("the scenario has no expectation", "write `expect …`"))
     return reader.scenarios, reader.conditions, sorted(reader.findings, key=lambda finding: finding.span.line)
 
 
@@ -159,7 +159,7 @@ class _Reader:
             self.scenarios.append(Scenario(named[1] if named else "", line))
             return
         if not self.scenarios:
-            self.findings.append(line.fault("this stands before the first scenario", 'begin with `scenario "…"`'))
+            self.findings.append(line.fault("this line is before the first scenario", 'begin with `scenario "…"`'))
             self.scenarios.append(Scenario("", line))
         steps = self.scenarios[-1].steps
         if word == "wait":
@@ -203,14 +203,14 @@ class _Reader:
         if given is None:
             if not text:
                 self.findings.append(
-                    line.fault("`expect` needs what is expected", "write `expect move allowed`, or a condition")
+                    line.fault("`expect` has no expectation", "write `expect move allowed`, or a condition")
                 )
                 return
             column = line.span.end_column - len(text)
             span = Span(line.span.line, column, line.span.line, line.span.end_column)
             if not _is_whole(text):
-                hint = "close each bracket, and write a comment behind `//`"
-                self.findings.append(Line(line.file, span).fault("this is not one condition", hint))
+                hint = "close each bracket, and write a comment after `//`"
+                self.findings.append(Line(line.file, span).fault("this is not a single condition", hint))
                 return
             self.conditions.append(Holds(line.file, span, text, len(self.conditions)))
             yield self.conditions[-1]
@@ -218,7 +218,7 @@ class _Reader:
             expected = given["sent"] == "sent"
             data = self._data(text, given, line)
             if not expected and data is not None:
-                self.findings.append(line.fault("what is not sent has no data", "leave out `with …`"))
+                self.findings.append(line.fault("`not sent` cannot have data", "leave out `with …`"))
             yield Sent(line.file, line.span, event_in_words(given), expected, data)
         else:
             by = given["by"].strip().strip('"') if given["by"] else None

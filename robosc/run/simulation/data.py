@@ -134,7 +134,7 @@ class EventData:
         declared = self._events[event]
         unknown = sorted(set(data) - {"value", "where", "reason"})
         if unknown:
-            raise DataError(f'"{unknown[0]}" is no data of an event: write {{"value": ...}}')
+            raise DataError(f'"{unknown[0]}" is not data of an event: write {{"value": ...}}')
         reason, computed = reason_of(declared, data), _computed(declared, data.get("where", {}))
         self._is_new = not brings_data(declared, reason)
         if self._node is not None:
@@ -238,7 +238,7 @@ class EventData:
             set_part = self._defaults.set_part(event, data["value"], partial(self._new_literal, event))
             parts = [set_part, *parts] if set_part else parts
         if parts:
-            raise DataError(f"an error with the reason `{reason}` brings no data, but {parts[0]}", "leave it out")
+            raise DataError(f"an error with the reason `{reason}` has no data, but {parts[0]}", "leave it out")
 
     def _new_literal(self, event: str, conversion: rosgraph.Conversion, path: tuple[str, ...]) -> str:
         """Return the literal that a conversion makes of the data at a path in a new message."""
@@ -306,7 +306,7 @@ class EventData:
             return str(self._node.literal(conversion, self._received(event, found, self._path(given))))
         except DataError as error:
             literals = ", ".join(literal.name for literal in conversion.enumeration.literals)
-            raise DataError(f"expected one of {literals}, or the data to tell it from: {error}") from None
+            raise DataError(f"expected one of {literals}, or data that determines it: {error}") from None
 
 
 class _Given(NamedTuple):

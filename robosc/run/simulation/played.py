@@ -89,12 +89,12 @@ def counterexample_steps(simulation: Simulation, wanted: str | None) -> tuple[li
     named = [name for name in properties if wanted is None or _is_called(name, wanted)]
     if wanted is not None and not named:
         close = get_close_matches(wanted, properties, n=1)
-        raise PlayError(f"there is no property `{wanted}`{f'; did you mean `{close[0]}`?' if close else ''}")
+        raise PlayError(f"unknown property `{wanted}`{f'; did you mean `{close[0]}`?' if close else ''}")
     refuted = next(
         (verdict for verdict in verdicts if verdict.outcome is Outcome.REFUTED and verdict.property in named), None
     )
     if refuted is None:
-        raise PlayError("nothing is refuted: there is no counterexample")
+        raise PlayError("no property is refuted, so there is no counterexample")
     return _steps(simulation, [*refuted.trace, *refuted.onwards]), f"{refuted.property}: {refuted.explanation}\n"
 
 

@@ -99,7 +99,7 @@ def spoken(model: sct.SupervisoryControlModel, text: str) -> tuple[str, dict[str
     if step.is_refusal:
         return REFUSE, {"of": plant_of(event).name}
     if step.data is not None and not brings_data(event, step.reason):
-        raise StepError(f"an error with the reason `{step.reason}` brings no data", 0, "leave out `with …`")
+        raise StepError(f"an error with the reason `{step.reason}` has no data", 0, "leave out `with …`")
     data = {} if step.data is None else {"value": step.data}
     return event_name(event), data if step.reason is None else {**data, "reason": step.reason}
 
@@ -134,7 +134,7 @@ class _Line:
                 self._fault(self._start, 'expected an object like {"event": "...", "data": {"value": ...}}')
                 return None
             for key in (key for key in _OF_DATA if key in logged):
-                self._fault(self._place(f'"{key}"'), f"`{key}` is part of the data", 'write it inside of `"data"`')
+                self._fault(self._place(f'"{key}"'), f"`{key}` is part of the data", 'write it inside `"data"`')
             known = self._known(name, self._place(json.dumps(name)[1:-1], name, '"event"'))
             return (
                 self._wait(str(data.get("seconds", "")))
@@ -168,7 +168,7 @@ class _Line:
             return None
         if step is None:
             hint = "write `response from scan with clear` or `error from lift because timeout`"
-            self._fault(self._start, "this is no step of a scenario", hint, len(word))
+            self._fault(self._start, "this is not a step of a scenario", hint, len(word))
             return None
         event, data = step
         return Step(self._number, event, data) if event == REFUSE or self._known(event, self._start) else None
@@ -188,8 +188,8 @@ class _Line:
             return True
         if name in self._names.others:
             looped = "tick" in self._names.events
-            message = f"`{name}` is no line of a script {'with' if looped else 'without'} the control loop"
-            hint = "the control loop decides itself when it happens, at `tick`" if looped else "it needs `--loop`"
+            message = f"`{name}` is not a line of a script {'with' if looped else 'without'} the control loop"
+            hint = "the control loop itself decides at `tick` when it happens" if looped else "it needs `--loop`"
             self._fault(column, message, hint, len(name))
             return False
         close = get_close_matches(name, sorted(self._names.events), n=1)

@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from robosc.run.simulation.simulation import Happened, Simulation
 
 HELP = """\
-NUMBER or EVENT, with data in JSON where it carries some: let it happen, as in  1 {"value": 3}
+NUMBER or EVENT, with its data in JSON: perform it, as in  1 {"value": 3}
 or in the words of a scenario:  error from dock because timeout
-  e          what can happen now      d          what can't, and why
+  e          enabled events           d          disabled events, and why
   s          the state                u          undo
-  r [N]      N random events          t          what has happened
-  save FILE  the trace to a file      load FILE  play a trace or script
-  h          this help                q          the end"""
+  r [N]      N random events          t          the trace
+  save FILE  save the trace           load FILE  play a trace or script
+  h          this help                q          quit"""
 
 #: Maximum number of random events of a command.
 MOST_AT_ONCE = 10_000
@@ -76,7 +76,7 @@ class Session:
         if word not in (*engine.events, *FIRST_WORDS) and not word.startswith(("{", "#")):
             close = get_close_matches(word, engine.events, n=1)
             hint = f", did you mean `{close[0]}`?" if close else ""
-            return f"there is no command and no event `{word}`{hint} (h for help)"
+            return f"unknown command or event `{word}`{hint} (h for help)"
         steps, findings = read_script("", f"{word} {rest}", engine.events, model=engine.model)
         return _complaints(findings) or "\n".join(self._perform(step.event, dict(step.data)) for step in steps)
 
@@ -85,7 +85,7 @@ class Session:
         enabled = self._simulation.enabled
         return (
             "\n".join(f"{number:4} {self._named[event]}" for number, event in enumerate(enabled, 1))
-            or "nothing can happen any more"
+            or "no event can happen any more"
         )
 
     def state(self) -> str:
@@ -112,7 +112,7 @@ class Session:
     def _disabled(self) -> str:
         engine = self._simulation.engine
         blocked = ((event, engine.blocked_by(event)) for event in engine.events)
-        return "\n".join(self._reason(event, by) for event, by in blocked if by is not None) or "everything can happen"
+        return "\n".join(self._reason(event, by) for event, by in blocked if by is not None) or "every event can happen"
 
     def _reason(self, event: str, by: Blocked | Unreadable) -> str:
         named = event if isinstance(by, Unreadable) else self._named.get(event, event)
@@ -127,25 +127,25 @@ class Session:
     def _run(self, rest: str) -> str:
         number = _number(rest or "1")
         if number is None:
-            return f"{rest[:20]} is no number of events up to {MOST_AT_ONCE}"
+            return f"{rest[:20]} is not a number of events up to {MOST_AT_ONCE}"
         lines = []
         for _ in range(number):
             happened = self._simulation.random_step(self._random)
             if happened is None:
-                lines.append("nothing can happen any more")
+                lines.append("no event can happen any more")
                 break
             lines.append(self._named[happened.event])
         return "\n".join([*lines, *self._changes()])
 
     def _save(self, file: str) -> str:
         if not file:
-            return "save where? give a file"
+            return "missing file: save FILE"
         write_file(file, "".join(f"{trace_line(happened)}\n" for happened in self._simulation.trace))
         return f"{len(self._simulation.trace)} events in {file}"
 
     def _load(self, file: str) -> str:
         if not file:
-            return "load what? give a file"
+            return "missing file: load FILE"
         engine = self._simulation.engine
         text = files.read(file, is_input=False).decode()
         steps, findings = read_script(file, text, engine.events, model=engine.model)

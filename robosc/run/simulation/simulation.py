@@ -154,7 +154,7 @@ class Simulation:
         guard = next(guard for guard in supervisor.guards if event_name(guard.event) == event)
         needed = SctPrinter()(guard.synthesis) if guard.synthesis is not None else "false"
         otherwise = f"; otherwise, {guard.explanation}" if guard.explanation else ""
-        return f"forbidden by synthesis, which asks for {needed}{otherwise}"
+        return f"forbidden by synthesis, which requires {needed}{otherwise}"
 
 
 def _any(kind: ex.Type, random: Random) -> Value:

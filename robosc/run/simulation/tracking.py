@@ -71,17 +71,17 @@ class Tracker:
     def report(self, report: Any) -> Iterator[Told]:
         """Yield the events of a report; the engine is in the state after each. Raises ReportError."""
         if not isinstance(report, dict):
-            raise ReportError("it is no object")
+            raise ReportError("it is not an object")
         ends = self._ends(report)
         events = report.get("transitions")
         if not (isinstance(events, list) and all(isinstance(event, str) for event in events)):
-            raise ReportError("`transitions` is no list of events")
+            raise ReportError("`transitions` is not a list of events")
         unknown = next((event for event in events if event not in self.engine.events), None)
         if unknown is not None:
             raise ReportError(f"the model has no event `{unknown}`")
         time = report.get("time")
         if isinstance(time, bool) or not isinstance(time, (int, float)) or not abs(time) < 2**52:
-            raise ReportError("`time` is no number of seconds")
+            raise ReportError("`time` is not a number of seconds")
         variables = {
             f"{name}.{variable}": value
             for name in self._components
@@ -98,18 +98,18 @@ class Tracker:
         """Return the states and variables of the components in a report."""
         robot, told = report.get("robot"), report.get("components")
         if robot != self.engine.model.name:
-            raise ReportError(f"the report is one of the robot `{robot}`, the model is `{self.engine.model.name}`")
+            raise ReportError(f"the report is of the robot `{robot}`, the model is `{self.engine.model.name}`")
         ends: dict[sct.Plant | sct.DiscreteVariable, Value] = {}
         for name, plant in self._components.items():
             try:
                 ends[plant] = told[name]["state"]  # type: ignore[index]
                 ends |= {variable: told[name]["variables"][variable.name] for variable in plant.variables}  # type: ignore[index]
             except (KeyError, TypeError):
-                raise ReportError(f"the report does not tell the state of `{name}`") from None
+                raise ReportError(f"the report has no state of `{name}`") from None
         try:
             self.engine.state_with(ends)
         except ValueError as error:
-            raise ReportError(f"the report tells a state that the model does not have: {error}") from None
+            raise ReportError(f"the report has a state that the model does not have: {error}") from None
         return ends
 
     def _followed(

@@ -29,25 +29,37 @@ EMPTY_SUPERVISOR = 3
 INTERNAL_ERROR = 70
 INTERRUPTED = 130
 
-_COMMANDS = {
-    "new": "Begin a model of a robot.",
-    "check": "Say what is wrong with models.",
-    "transform": "Generate code and models.",
-    "synthesize": "Show the supervisor.",
-    "explain": "Say why something can't happen.",
-    "verify": "Prove what the supervised robot promises.",
-    "report": "Write what one reads who must sign for the robot.",
-    "test": "Play scenarios, and say what is not as they expect.",
-    "simulate": "Try the supervised robot.",
-    "view": "See the supervised robot decide, in a browser.",
-    "dap": "Debug a robot in an editor.",
-    "run": "Be a robot's controller on ROS, without a build.",
-    "interfaces": "Build ROS 2 types of your own, without colcon.",
-    "format": "Lay out models in the one canonical way.",
-    "rule": "Say what a rule means.",
-    "lsp": "Serve an editor: findings while typing, completion, and more.",
-    "diagram": "Draw a model or a metamodel.",
+#: Commands and their summaries, by the heading in `robosc --help`.
+_GROUPS = {
+    "Write models": {
+        "new": "Create a model of a robot.",
+        "check": "Report errors and warnings in models.",
+        "format": "Format models in the canonical layout.",
+        "rule": "Explain a rule.",
+        "diagram": "Draw a model or a metamodel.",
+    },
+    "Analyze": {
+        "synthesize": "Synthesize the supervisor; print its states and guards.",
+        "explain": "Explain why an event is forbidden.",
+        "verify": "Prove the properties of the supervised robot.",
+        "report": "Write a verification report for the person who signs off the robot.",
+    },
+    "Simulate and test": {
+        "simulate": "Simulate the supervised robot.",
+        "view": "Show the decisions of a robot in a browser.",
+        "test": "Run scenario tests.",
+    },
+    "Generate and run": {
+        "transform": "Generate code and models.",
+        "run": "Run the controller as a ROS node, without building it.",
+        "interfaces": "Build ROS 2 types of your own, without colcon.",
+    },
+    "Editors": {
+        "lsp": "Serve an editor: findings, completion, and more.",
+        "dap": "Debug a robot in an editor.",
+    },
 }
+_COMMANDS = {name: summary for group in _GROUPS.values() for name, summary in group.items()}
 #: Suffixes of model files.
 _MODELS = (".rscd", ".cif", ".xmi")
 #: Commands whose module has another name: the module `report` collects findings.
@@ -111,8 +123,10 @@ class _Commands(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         # Like click, but without loading the commands.
-        with formatter.section("Commands"):
-            formatter.write_dl(list(_COMMANDS.items()))
+        width = max(map(len, _COMMANDS))
+        for heading, group in _GROUPS.items():
+            with formatter.section(heading):
+                formatter.write_dl([(name.ljust(width), summary) for name, summary in group.items()])
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         with _visible_errors():
@@ -149,8 +163,8 @@ def _told(error: Exception, *, show: bool) -> click.ClickException:
         return CallError(f"the model is too large: {str(error) or 'out of memory'}")
     if show:
         traceback.print_exc()
-    hint = "" if show else "; `robosc --traceback ...` shows where"
-    return _InternalError(f"a fault of robosc itself, please report it: {type(error).__name__}: {error}{hint}")
+    hint = "" if show else "; `robosc --traceback ...` shows the place"
+    return _InternalError(f"internal error of robosc, please report it: {type(error).__name__}: {error}{hint}")
 
 
 def _cmake_dir(context: click.Context, _parameter: click.Parameter, asked: bool) -> None:
@@ -159,7 +173,14 @@ def _cmake_dir(context: click.Context, _parameter: click.Parameter, asked: bool)
         context.exit()
 
 
-@click.command(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
+_EPILOG = """`robosc COMMAND --help` describes a command. The documentation begins at docs/index.md in the repository.
+
+Shell completion: add `eval "$(_ROBOSC_COMPLETE=bash_source robosc)"` to ~/.bashrc. docs/cli.md has the lines for zsh
+and fish.
+"""
+
+
+@click.command(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]}, epilog=_EPILOG)
 @click.version_option(__version__, prog_name="robosc")
 @click.option(
     "--cmake-dir",
@@ -167,14 +188,15 @@ def _cmake_dir(context: click.Context, _parameter: click.Parameter, asked: bool)
     is_eager=True,
     expose_value=False,
     callback=_cmake_dir,
-    help="Say where the tool's CMake packages are, for CMAKE_PREFIX_PATH, and exit.",
+    help="Print the folder of RoboSC's CMake packages, for CMAKE_PREFIX_PATH, and exit.",
 )
-@click.option("--traceback", is_flag=True, envvar="ROBOSC_TRACEBACK", help="Show where a fault of robosc itself is.")
+@click.option("--traceback", is_flag=True, envvar="ROBOSC_TRACEBACK", help="Print the traceback of an internal error.")
 def main(**_: Any) -> None:
     """Generate a ROS controller that provably does only what a model of the robot allows.
 
     \b
     Examples:
+      robosc new Porter
       robosc check line_follower.rscd
       robosc transform line_follower.rscd --to ros2,cif
       robosc synthesize line_follower.rscd
@@ -212,5 +234,5 @@ def run() -> NoReturn:
         pass  # the reader needs no more output
     except OSError as error:
         status = WRONG_CALL
-        say(f"Error: the output can't be written: {error.strerror}", err=True)
+        say(f"Error: cannot write the output: {error.strerror}", err=True)
     os._exit(INTERRUPTED if interruption.happened() else status)

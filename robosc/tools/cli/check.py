@@ -37,8 +37,8 @@ _ROUNDS = 10
 @click.command("check")
 @click.argument("models", type=FILE, nargs=-1, required=True, metavar="MODEL...")
 @findings_format
-@click.option("--fix", is_flag=True, help="Do first what hints say to write, in the models themselves.")
-@click.option("--watch", is_flag=True, help="Check again whenever a file changes, until Ctrl-C.")
+@click.option("--fix", is_flag=True, help="First apply hints that have exactly one edit to the models.")
+@click.option("--watch", is_flag=True, help="Check again after each change of a file, until Ctrl-C.")
 @paths
 def command(models: Sequence[str], form: str, fix: bool, watch: bool, paths: Paths) -> None:
     """Read robots and libraries, resolve their names, and report violations of the rules of the language.
@@ -70,7 +70,7 @@ def command(models: Sequence[str], form: str, fix: bool, watch: bool, paths: Pat
             pass  # the report has the errors
         except OSError as error:
             say(f"{visible(str(error.filename))}: {error.strerror}", err=True)
-        say("waiting for changes, Ctrl-C ends", err=True)
+        say("waiting for changes; stop with Ctrl-C", err=True)
 
     whenever_files_change(
         again, models, [*dict.fromkeys(Path(model).parent for model in models), *search_folders(paths.libraries)]
@@ -87,7 +87,7 @@ class _Checked(NamedTuple):
 def _mend(model: str, paths: Paths) -> None:
     """Apply the edits of findings to a text, repeatedly, unless they make it worse."""
     if not model.endswith(".rscd"):
-        raise CallError(f"{model} is no .rscd file: only a text can be mended")
+        raise CallError(f"{model} is not a .rscd file: --fix edits only text")
     interfaces = RosTypes(paths.interfaces)
 
     def checked(content: str) -> _Checked:

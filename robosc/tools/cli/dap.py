@@ -31,8 +31,10 @@ class _Kept(Report):
 
 
 @click.command("dap")
-@click.option("--port", type=click.IntRange(0, 65535), help="Listen on a port of this machine; 0: a free one.")
-@click.option("--once", is_flag=True, help="With --port: end after the first client.")
+@click.option(
+    "--port", type=click.IntRange(0, 65535), help="Listen on this TCP port of this machine; 0 selects a free port."
+)
+@click.option("--once", is_flag=True, help="With --port: exit after the first client.")
 @synthesizer
 def command(port: int | None, once: bool) -> None:
     """Debug robots in an editor with the Debug Adapter Protocol: step, step back, break, inspect, explain.
@@ -52,7 +54,7 @@ def command(port: int | None, once: bool) -> None:
             raise click.UsageError("--once needs --port")
         fault = serve_stdio(lambda connection: Adapter(connection, _load))
         if fault is not None:
-            raise CallError(f"this is no Debug Adapter Protocol: {fault}")
+            raise CallError(f"this is not the Debug Adapter Protocol: {fault}")
         return
     serve_port(
         port,

@@ -31,7 +31,7 @@ _KINDS = ("behaviour", "ros-graph", "plants")
 
 @click.command("diagram")
 @click.argument("model", type=FILE, required=False)
-@click.option("--kind", type=click.Choice(_KINDS), help="What of MODEL is drawn.  [default: behaviour]")
+@click.option("--kind", type=click.Choice(_KINDS), help="The part of MODEL to draw.  [default: behaviour]")
 @click.option("--metamodel", "name", type=click.Choice(METAMODELS), help="Draw a metamodel instead.")
 @click.option(
     "--format",
@@ -39,9 +39,14 @@ _KINDS = ("behaviour", "ros-graph", "plants")
     type=click.Choice(tuple(dict.fromkeys([*GRAPH_NOTATIONS, *NOTATIONS]))),
     default="mermaid",
     show_default=True,
-    help="How it is drawn: dot for models only, plantuml for metamodels only.",
+    help="The output format; dot only for models, plantuml only for metamodels.",
 )
-@click.option("-o", "--output", type=click.Path(dir_okay=False), help="The file to write, instead of printing it.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(dir_okay=False),
+    help="Write the diagram to this file instead of the standard output.",
+)
 @paths
 def command(
     model: str | None,
@@ -69,7 +74,7 @@ def command(
     if model is None and name is None and kind is None:
         raise CallError("give a MODEL or --metamodel NAME")
     if (model is None) == (name is None) or (model is None and kind is not None):
-        raise CallError("either a MODEL, with or without --kind, or a --metamodel is drawn")
+        raise CallError("give either a MODEL, with or without --kind, or a --metamodel")
     allowed = tuple(GRAPH_NOTATIONS) if model else NOTATIONS
     if notation not in allowed:
         raise CallError(f"a {'' if model else 'meta'}model is drawn in {', '.join(allowed)}, not in {notation}")
@@ -94,11 +99,11 @@ def _graph(path: str, kind: str, paths: Paths, report: Report) -> Graph:
         base = read(path, paths, report)
         report.stop_on_errors()
         if not isinstance(base, rsc.Base):
-            raise CallError(f"{path} says nothing about components: --kind plants draws what it holds")
+            raise CallError(f"{path} has no components: use --kind plants")
         return behaviour_graph(base)
     models = read_models(path, paths, report, cif=True)
     if kind == "plants":
         return plants_graph(models.sct)
     if models.rosgraph is None:
-        raise CallError(f"{path} says nothing about ROS: --kind plants draws what it holds")
+        raise CallError(f"{path} has no ROS graph: use --kind plants")
     return ros_graph(models.rosgraph)

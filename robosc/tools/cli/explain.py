@@ -37,14 +37,14 @@ if TYPE_CHECKING:
 
 @click.command("explain")
 @model
-@click.option("--event", metavar="EVENT", help="Why EVENT can or can't happen in a state.")
+@click.option("--event", metavar="EVENT", help="Explain why EVENT can or cannot happen in a state.")
 @click.option(
     "--state",
     metavar="STATE",
-    help="That state: `Door=open,Gauge.level=3`, or JSON, such as `~/state` tells. Else it is the first one.",
+    help="The state for --event: `Door=open,Gauge.level=3`, or JSON as on `~/state`.  [default: the initial state]",
 )
-@click.option("--why-empty", is_flag=True, help="Why the robot has no supervisor.")
-@click.option("--why-never", metavar="EVENT", help="Why EVENT can never happen, in whatever state.")
+@click.option("--why-empty", is_flag=True, help="Explain why the robot has no supervisor.")
+@click.option("--why-never", metavar="EVENT", help="Explain why EVENT cannot happen in any state.")
 @click.option("--json", "as_data", is_flag=True, help="Print one JSON object.")
 @synthesizer
 @paths
@@ -83,7 +83,7 @@ def command(
     with Report(aside=True) as report:
         plants = read_models(model, paths, report, cif=True).sct
         supervise_otherwise(plants)
-        with progress("exploring what the robot can do"):
+        with progress("exploring the states of the robot"):
             answer = explored(plants, emptiness if why_empty else _question(plants, event, state, why_never))
         if answer is None and not why_empty:
             supervise(plants)  # raises with the cause

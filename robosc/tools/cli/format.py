@@ -26,8 +26,8 @@ _STDIN = "<stdin>"
 
 @click.command("format")
 @click.argument("models", type=click.Path(exists=True, allow_dash=True), nargs=-1, required=True, metavar="MODEL...")
-@click.option("--check", is_flag=True, help="Write nothing; list the files that would change.")
-@click.option("--diff", is_flag=True, help="Write nothing; show what would change.")
+@click.option("--check", is_flag=True, help="Do not write; list the files that would change.")
+@click.option("--diff", is_flag=True, help="Do not write; print the changes.")
 def command(models: Sequence[str], check: bool, diff: bool) -> None:
     """Format robots and libraries in the canonical layout. Their meaning and comments do not change.
 
@@ -63,7 +63,7 @@ def _files(model: str) -> Iterator[str]:
     if model == "-":
         yield _STDIN
     elif model.endswith(".xmi"):
-        raise CallError(f"{model} is no .rscd file: only a text has a layout")
+        raise CallError(f"{model} is not a .rscd file: only text can be formatted")
     elif not Path(model).is_dir():
         yield model
     else:

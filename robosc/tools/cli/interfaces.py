@@ -36,7 +36,7 @@ def command() -> None:
     type=click.Path(file_okay=False),
     default="build/interfaces",
     show_default=True,
-    help="The folder that the modules are written to, for PYTHONPATH.",
+    help="The output folder for the modules. Add it to PYTHONPATH.",
 )
 def build(folders: Sequence[str], output: str) -> None:
     """Build the Python modules of all interface packages below FOLDER for the wheels of ROS 2, without colcon.
@@ -56,7 +56,7 @@ def build(folders: Sequence[str], output: str) -> None:
         from robosc.run.runtime.ros2 import interfaces
     except ImportError as error:
         python = f"this Python ({sys.executable}) has no {error.name}"
-        hint = "pip install 'robosc[ros2]' gives it the wheels of ROS 2; call the robosc of that environment"
+        hint = "pip install 'robosc[ros2]' installs the wheels of ROS 2; then call robosc in that environment"
         raise CallError(f"{python}\n  {hint}") from error
     out = Path(output).resolve()
     try:

@@ -14,8 +14,7 @@ from robosc.tools.cli.options import Paths, paths
     "--port",
     type=click.IntRange(0, 65535),
     metavar="PORT",
-    help="Wait for the editor on this port of this computer (0: a free one, which is told) instead of the standard"
-    " input and output.",
+    help="Listen on this TCP port (0: a free port, which is printed) instead of the standard input and output.",
 )
 @paths
 def command(port: int | None, paths: Paths) -> None:
@@ -34,5 +33,5 @@ def command(port: int | None, paths: Paths) -> None:
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in {"pygls", "lsprotocol", "attrs", "cattrs"}:
             raise
-        raise CallError(f"{error.name} is not installed: pip install 'robosc[editor]' brings it") from error
+        raise CallError(f"{error.name} is not installed: run pip install 'robosc[editor]'") from error
     serve(Server(__version__, paths.libraries, paths.interfaces), port)

@@ -18,24 +18,26 @@ from robosc.tools.starter import Choices, files
 
 #: Questions on a terminal, by the choice that they set.
 _QUESTIONS = {
-    "sensors": "Messages that say whether the robot may move (std_msgs/Bool)",
-    "command": "The command that needs them",
-    "stop": "The command that is sent otherwise; `-` for none",
-    "service": "A service to call first (std_srvs/Trigger); `-` for none",
+    "sensors": "Messages that allow or forbid driving (std_msgs/Bool)",
+    "command": "Command to send while all of them allow it",
+    "stop": "Command to send otherwise; `-` for none",
+    "service": "Service to call first (std_srvs/Trigger); `-` for none",
 }
 _NONE = "-"
 
 
 @click.command("new")
 @click.argument("name")
-@click.option("--ros", type=click.Choice(["1", "2"]), help="The ROS that README.md speaks of; 2 if nothing is said.")
-@click.option("--sensor", "sensors", multiple=True, metavar="MESSAGE", help="Says whether to go; may be repeated.")
-@click.option("--command", "command", metavar="MESSAGE", help="Goes out while all sensors allow it.")
-@click.option("--stop", metavar="MESSAGE", help="Goes out otherwise; `-`: nothing does.")
-@click.option("--service", metavar="SERVICE", help="Is called first, until it succeeds.")
-@click.option("--twist", is_flag=True, help="Commands are velocities on /cmd_vel.")
-@click.option("-o", "--output", "folder", type=click.Path(), help="The new folder, if not one named after the robot.")
-@click.option("-y", "--yes", is_flag=True, help="Ask nothing on a terminal, either.")
+@click.option("--ros", type=click.Choice(["1", "2"]), help="The ROS version in README.md.  [default: 2]")
+@click.option(
+    "--sensor", "sensors", multiple=True, metavar="MESSAGE", help="Message that allows or forbids driving; repeatable."
+)
+@click.option("--command", "command", metavar="MESSAGE", help="Command to send while all sensors allow it.")
+@click.option("--stop", metavar="MESSAGE", help="Command to send otherwise; `-` for none.")
+@click.option("--service", metavar="SERVICE", help="Service to call first, until it succeeds.")
+@click.option("--twist", is_flag=True, help="Send commands as velocities on /cmd_vel.")
+@click.option("-o", "--output", "folder", type=click.Path(), help="The new folder.  [default: the robot's name]")
+@click.option("-y", "--yes", is_flag=True, help="Do not prompt; use the defaults.")
 def command(name: str, folder: str | None, yes: bool, **given: Any) -> None:
     """Create a model of a robot: a folder with model, configuration, README.md and test.
 
@@ -55,7 +57,7 @@ def command(name: str, folder: str | None, yes: bool, **given: Any) -> None:
     choices = _choices(name, given if yes or not _on_terminal() else _asked(given))
     target = Path(folder or choices.stem)
     if os.path.lexists(target) and (not target.is_dir() or any(target.iterdir())):
-        raise CallError(f"{visible(str(target))} is there already: nothing is written over; -o names another folder")
+        raise CallError(f"{visible(str(target))} exists already and is not overwritten; choose another folder with -o")
     texts = dict(files(choices))
     model = f"{choices.stem}.rscd"
     laid_out, _ = format_text(Text(model, texts[model]))

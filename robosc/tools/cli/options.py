@@ -48,7 +48,7 @@ _library_path = click.option(
     "library_paths",
     multiple=True,
     type=click.Path(exists=True, file_okay=False),
-    help="A folder with libraries, searched after the model's own; may be repeated. Then come those in ROBOSC_PATH.",
+    help="Search this folder for libraries, after the model's folder and before ROBOSC_PATH; repeatable.",
 )
 
 _interface_path = click.option(
@@ -56,12 +56,12 @@ _interface_path = click.option(
     "interface_paths",
     multiple=True,
     type=click.Path(exists=True, file_okay=False),
-    help="A folder with ROS packages below it, searched for .msg, .srv and .action files; may be repeated."
-    " Then come those in ROBOSC_INTERFACE_PATH.",
+    help="Search the ROS packages below this folder for .msg, .srv and .action files, before"
+    " ROBOSC_INTERFACE_PATH; repeatable.",
 )
 
 configuration = click.option(
-    "--config", "chosen", type=FILE, help="The configuration, if not the controller-config.json near the model."
+    "--config", "chosen", type=FILE, help="The configuration file.  [default: controller-config.json near the model]"
 )
 
 findings_format = click.option(
@@ -70,7 +70,7 @@ findings_format = click.option(
     type=click.Choice(["text", "json", "sarif"]),
     default="text",
     show_default=True,
-    help="How findings are shown.",
+    help="The format of findings.",
 )
 
 memory = click.option(
@@ -80,7 +80,7 @@ memory = click.option(
     metavar="MB",
     default=4096,
     show_default=True,
-    help="The most memory for synthesis and generating, in megabytes of 2^20 bytes.",
+    help="The memory limit for synthesis and generation, in megabytes of 2^20 bytes.",
 )
 
 
@@ -96,8 +96,8 @@ def _keep(context: click.Context, _parameter: click.Parameter, name: str | None)
     if name is not None:
         known = extensions("robosc.synthesizers")
         if name not in known:
-            others = ", ".join(known) or "no package with one"
-            raise click.BadParameter(f"{name!r} is no synthesizer that is installed; there is {others}")
+            others = ", ".join(known) or "none"
+            raise click.BadParameter(f"{name!r} is not an installed synthesizer; installed: {others}")
         context.meta[_SYNTHESIZER] = known[name]
 
 
@@ -107,7 +107,7 @@ synthesizer = click.option(
     metavar="NAME",
     expose_value=False,
     callback=_keep,
-    help="Let another tool synthesize, of a package that is installed (entry point robosc.synthesizers).",
+    help="Use the synthesizer NAME of an installed package (entry point robosc.synthesizers).",
 )
 
 

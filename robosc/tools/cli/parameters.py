@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from robosc.model import rosgraph
 
 parameters = click.option(
-    "--param", "given", multiple=True, metavar="NAME=VALUE", help="Set a parameter of the model; may be repeated."
+    "--param", "given", multiple=True, metavar="NAME=VALUE", help="Set a parameter of the model; repeatable."
 )
 
 

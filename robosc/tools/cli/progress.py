@@ -79,8 +79,8 @@ def synthesizing(model: sct.SupervisoryControlModel) -> Iterator[Statistics]:
         types = [variable.type for plant in model.plants for variable in plant.variables]
         types += [given.type for plant in model.plants for given in plant.inputs]
         has_integers = any(isinstance(kind, ex.IntegerType) for kind in types)
-        smaller = "give integers smaller ranges" if has_integers else "describe the robot with fewer states"
-        helps = f"let `synthesize` or `transform` have more `--memory`, or {smaller}"
+        smaller = "give integers smaller ranges" if has_integers else "use fewer states in the model"
+        helps = f"raise `--memory` of `synthesize` or `transform`, or {smaller}"
         raise MemoryError(f"{str(error) or 'out of memory'}: {helps}") from error
 
 

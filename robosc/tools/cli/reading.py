@@ -91,7 +91,7 @@ def read_configuration(model: str, chosen: str | None, report: Report) -> Config
     if file is None:
         return config.Configuration()
     if not chosen and file.parent != Path(model).parent:
-        say(f"the configuration is {file}: write --config to choose another one", err=True)
+        say(f"the configuration is {file}; choose another one with --config", err=True)
     report.may_quote(str(file))
     return config.read(file)
 
@@ -103,12 +103,12 @@ def read_models(path: str, paths: Paths, report: Report, *, cif: bool = False) -
     """
     if path.endswith(".cif") and not cif:
         raise CallError(
-            f"{path} is CIF, which stands for no ROS and no control loop: `check`, `synthesize`, `explain`, `verify`,"
+            f"{path} is CIF, which has no ROS graph and no control loop: `check`, `synthesize`, `explain`, `verify`,"
             " `simulate`, `diagram` and `transform --to cif,supervisor,xmi` take it"
         )
     root = read(path, paths, report)
     if isinstance(root, rsc.Library):
-        raise CallError(f"{path} holds a library: it has no supervisor of its own, a robot that imports it has")
+        raise CallError(f"{path} has a library: only a robot that imports it has a supervisor")
     report.stop_on_errors()
     if isinstance(root, rsc.Robot):
         types = RosTypes(paths.interfaces)

@@ -29,7 +29,7 @@ def command(rule: str | None) -> None:
     text = page(rule)
     if text is None:
         close = get_close_matches(rule, rules(), n=1)
-        hint = f"did you mean {close[0]!r}?" if close else "`robosc rule` lists all."
+        hint = f"did you mean {close[0]!r}?" if close else "`robosc rule` lists all rules."
         raise click.BadParameter(f"there is no rule {rule!r}; {hint}", param_hint="RULE")
     if sys.stdout.isatty():
         Console().print(Markdown(text))

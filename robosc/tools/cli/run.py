@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 @click.command("run", context_settings={"ignore_unknown_options": True})
 @model
-@over_ros("Be a node of ROS 2, as without this flag.")
-@click.option("--layer", is_flag=True, help="Be the supervisory layer between an existing controller and the robot.")
+@over_ros("Run as a ROS 2 node; this is the default.")
+@click.option("--layer", is_flag=True, help="Run the supervisory layer between an existing controller and the robot.")
 @configuration
 @findings_format
 @parameters
@@ -56,11 +56,11 @@ def command(
     Exit status: 0 interrupted, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
     if "--ros1" in arguments:
-        raise CallError("`run` is a node of ROS 2: for ROS 1 generate one with `transform --to ros1`")
+        raise CallError("`run` starts a ROS 2 node: for ROS 1, generate a node with `transform --to ros1`")
     with Report(form) as report:
         models = read_models(model, paths, report)
         if models.rosgraph is None:
-            raise CallError(f"{model} has no ROS graph: give its .rosgraph.xmi or .rscd")
+            raise CallError(f"{model} has no ROS graph: use its .rosgraph.xmi or .rscd")
         set_parameters(models.rosgraph, given)
         settings = read_configuration(model, chosen, report)
         supervise_models(models, report)

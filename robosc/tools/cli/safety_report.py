@@ -20,9 +20,11 @@ from robosc.tools.cli.report import Report
 
 @click.command("report")
 @model
-@click.option("-o", "--output", type=click.Path(dir_okay=False), help="The file.  [default: <robot>.report.html]")
+@click.option(
+    "-o", "--output", type=click.Path(dir_okay=False), help="The output file.  [default: <robot>.report.html]"
+)
 @click.option("--json", "as_object", is_flag=True, help="Print one JSON object instead of a page.")
-@click.option("--needs", type=click.Path(dir_okay=False), help="Write the needs of sphinx-needs to FILE, too.")
+@click.option("--needs", type=click.Path(dir_okay=False), help="Also write the needs of sphinx-needs to FILE.")
 @configuration
 @synthesizer
 @paths

@@ -32,11 +32,18 @@ if TYPE_CHECKING:
 
 @click.command("simulate")
 @model
-@click.option("--script", type=click.Path(allow_dash=True), help="Play FILE (-: standard input), print JSON Lines.")
-@click.option("--loop", is_flag=True, help="Run the control loop: lines are what comes in, `tick`, `begin`, `end`.")
-@click.option("--random", "number", type=click.IntRange(0), metavar="N", help="Let N random events happen; print them.")
-@click.option("--seed", type=int, default=0, show_default=True, help="Of everything random.")
-@click.option("--config", "chosen", type=FILE, help="For --loop: the configuration, if not the one near the model.")
+@click.option(
+    "--script", type=click.Path(allow_dash=True), help="Play the script FILE (-: standard input); print JSON Lines."
+)
+@click.option("--loop", is_flag=True, help="Run the control loop: lines are incoming events, `tick`, `begin`, `end`.")
+@click.option("--random", "number", type=click.IntRange(0), metavar="N", help="Perform N random events; print them.")
+@click.option("--seed", type=int, default=0, show_default=True, help="The seed of random numbers.")
+@click.option(
+    "--config",
+    "chosen",
+    type=FILE,
+    help="With --loop: the configuration file.  [default: controller-config.json near the model]",
+)
 @parameters
 @synthesizer
 @paths
@@ -130,7 +137,7 @@ def _converse(simulation: Simulation, seed: int) -> None:
     if hasattr(sys.stdin, "reconfigure"):
         sys.stdin.reconfigure(errors="replace")
     if interactive:
-        say(f"{simulation.engine.model.name}: h for help, q to end")
+        say(f"{simulation.engine.model.name}: h for help, q to quit")
     say(session.enabled())
     while not session.ended:
         if interactive:

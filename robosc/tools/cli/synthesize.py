@@ -37,9 +37,9 @@ _EFFORT = 500_000
 @click.command("synthesize")
 @model
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-@click.option("--counts", is_flag=True, help="Count states only: no guards, no findings.")
+@click.option("--counts", is_flag=True, help="Print only the numbers of states, without guards and findings.")
 @click.option(
-    "--count-inputs", is_flag=True, help="Count states as CIF does: each once for each value that inputs may have."
+    "--count-inputs", is_flag=True, help="Count states as CIF does: each state once for each value of the inputs."
 )
 @memory
 @synthesizer
@@ -65,7 +65,7 @@ def command(model: str, as_json: bool, counts: bool, count_inputs: bool, megabyt
     Exit status: 0 success, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
     if counts and chosen_synthesizer() is not None:
-        raise click.UsageError("--counts is what our own synthesis counts: leave it or --synthesizer out")
+        raise click.UsageError("--counts needs RoboSC's own synthesis: remove it or --synthesizer")
     with Report(aside=True) as report:
         plants = read_models(model, paths, report, cif=True).sct
         times = input_values(plants) if count_inputs else 1
@@ -203,7 +203,7 @@ def _show(model: sct.SupervisoryControlModel, synthesis: Diagnosis, times: int) 
         say(f"\n{heading}{'' if event['ever_enabled'] else ' (never enabled)'}")
         if event["ever_enabled"] or event["guard"] != "true":
             nodes = event.get("guard_nodes")
-            too_long = f"too long to write out: a decision diagram of {nodes} nodes"
+            too_long = f"too long to print: a decision diagram of {nodes} nodes"
             say(f"    guard: {too_long if nodes else event['guard']}")
         if event["added_by_synthesis"]:
             say(f"    added by synthesis: {event['added_by_synthesis']}")
@@ -211,5 +211,5 @@ def _show(model: sct.SupervisoryControlModel, synthesis: Diagnosis, times: int) 
         say(f"\n{called(weight.requirements)}")
         count = counted(weight.states, "state")
         invariant = isinstance(weight.requirements[0], sct.StateInvariant)
-        matters = f"forbids {count}" if invariant else f"forbids something in {count}"
+        matters = f"forbids {count}" if invariant else f"restricts the robot in {count}"
         say(f"    {matters if weight.states else 'matters in no state'}")

@@ -55,14 +55,20 @@ if TYPE_CHECKING:
 @click.command("test")
 @model
 @click.argument("scenarios", nargs=-1, required=True, type=FILE, metavar="FILE...")
-@click.option("--engine", type=click.Choice(["python", "c"]), default="python", show_default=True, help="What plays.")
-@over_ros("Play with a node of ROS 2, too.")
+@click.option(
+    "--engine",
+    type=click.Choice(["python", "c"]),
+    default="python",
+    show_default=True,
+    help="The control loop that plays.",
+)
+@over_ros("Also play with a ROS 2 node.")
 @click.option(
     "--node",
     metavar="COMMAND",
-    help="With --ros2: what starts the node, such as a compiled one; else `robosc run` is.",
+    help="With --ros2: the command that starts the node, such as a compiled one.  [default: `robosc run`]",
 )
-@click.option("--traces", type=click.Path(file_okay=False), help="Write the event log of each scenario to FOLDER, too.")
+@click.option("--traces", type=click.Path(file_okay=False), help="Also write the event log of each scenario to FOLDER.")
 @configuration
 @findings_format
 @synthesizer
@@ -96,7 +102,7 @@ def command(
     Exit status: 0 all scenarios passed, 1 a scenario failed, or errors, 2 a wrong call, 3 no supervisor exists.
     """
     if not model.endswith(".rscd"):
-        raise CallError(f"{model} is no text: scenarios speak of a robot in a .rscd file")
+        raise CallError(f"{model} is not a text file: scenarios need a robot in a .rscd file")
     if node is not None and not live:
         raise click.UsageError("--node needs --ros2")
     with Report(form, aside=form != "text") as report:
@@ -207,7 +213,7 @@ def _compared(models: Models, settings: Configuration, runs: Sequence[Operations
     """Return the deviations of the generated control loop. Raises CallError if it cannot be compiled here."""
     compiler = c_compiler()
     if compiler is None:
-        raise CallError("there is no C compiler to play scenarios with")
+        raise CallError("no C compiler found to play scenarios with")
     generated = robosc.generate("supervisor", models, settings)
     with temporary_folder() as folder:
         program = CProgram(models.sct, folder, compiler, generated)

@@ -36,13 +36,15 @@ def _targets(_context: click.Context, _parameter: click.Parameter, values: Seque
     known = targets()
     for name in names:
         if name not in known:
-            raise click.BadParameter(f"{name!r} is none of {', '.join(known)}")
+            raise click.BadParameter(f"unknown target {name!r}, expected one of {', '.join(known)}")
     return [known[name] for name in dict.fromkeys(names)]
 
 
 def _into(_context: click.Context, _parameter: click.Parameter, name: str | None) -> str | None:
     if name is not None and not _INCLUDING.fullmatch(name):
-        raise click.BadParameter(f"{name!r} names neither a package nor a target of CMake: letters, digits, _, - and .")
+        raise click.BadParameter(
+            f"{name!r} is not a name of a package or a target of CMake: use letters, digits, _, - and ."
+        )
     return name
 
 
@@ -76,26 +78,26 @@ class _Command(click.Command):
 @click.option(
     "--typed-state",
     is_flag=True,
-    help="Let the node publish its state as a message, too; a package with its type is generated beside it.",
+    help="The node also publishes its state as a message. The package of its type is generated beside it.",
 )
 @click.option(
     "--into",
     metavar="NAME",
     callback=_into,
-    help="Make no package of its own, but what the package NAME of yours includes with CMake (of `supervisor`: the"
-    " target NAME): the code, fragment.cmake, and the files that it comes from in inputs.txt.",
+    help="Generate no package, but code that your package NAME includes with CMake (for `supervisor`: the target"
+    " NAME). fragment.cmake builds the code; inputs.txt lists the files that it comes from.",
 )
 @click.option(
     "--confirm",
     "confirmed",
     multiple=True,
     type=click.Choice(list(LOCATIONS.values())),
-    help="Let the configuration name a folder outside of the model's with this key; may be repeated.",
+    help="Allow this key of the configuration to name a folder outside of the model's folder; repeatable.",
 )
 @click.option(
     "--list-inputs",
     is_flag=True,
-    help="Write nothing: print the files that the model comes from, a line each, for tools that build.",
+    help="Write nothing; print all input files of the model, one per line, for build tools.",
 )
 @findings_format
 @memory
@@ -136,7 +138,7 @@ def command(
         models = read_models(model, paths, report, cif=not any(target.needs_graph for target in targets))
         for target in targets:
             if target.needs_graph and models.rosgraph is None:
-                raise CallError(f"{model} has no ROS graph, which {target.name} needs: give its .rosgraph.xmi or .rscd")
+                raise CallError(f"{model} has no ROS graph, which {target.name} needs: use its .rosgraph.xmi or .rscd")
         settings = _settings(model, chosen, typed_state, into, report)
         # The output of a build stays in the build.
         copied = [] if into else targets
@@ -178,10 +180,9 @@ def _settings(model: str, chosen: str | None, typed_state: bool, into: str | Non
     settings = settings.model_copy(update={"typed_state": typed_state or settings.typed_state})
     if into and settings.typed_state:
         message = (
-            "what a package of yours includes can't have a typed state: a message is built before the node that sends"
-            " it, in a package of its own"
+            "code for your own package cannot have a typed state: a separate package builds the message before the node"
         )
-        hint = "leave the typed state out, or --into: without it both packages are written"
+        hint = "remove the typed state or --into: without --into, both packages are written"
         report.add([settings.error(("typedState",), message, hint)])
     return settings
 
@@ -196,7 +197,7 @@ def _tests(target: Target, models: Models, settings: Configuration, paths: Paths
 def _tell_coverage(tests: Mapping[Target, TraceTest | None]) -> None:
     for target, test in tests.items():
         if test is not None:
-            say(f"{target.name}: the tests see {test.coverage}", err=True)
+            say(f"{target.name}: the tests cover {test.coverage}", err=True)
             for missed in test.missed:
                 say(f"  not seen: {missed}", err=True)
 
@@ -204,7 +205,7 @@ def _tell_coverage(tests: Mapping[Target, TraceTest | None]) -> None:
 def _refuse_what_does_not_fit(targets: Sequence[Target], with_tests: bool, typed_state: bool, into: str | None) -> None:
     if with_tests and not any(target.tested_ros for target in targets):
         tested = [target.name for target in TARGETS.values() if target.tested_ros]
-        raise CallError(f"--with-tests is for {' and '.join(tested)}: the other targets have none")
+        raise CallError(f"--with-tests is for {' and '.join(tested)}: the other targets have no tests")
     if typed_state and not any(target.package for target in targets):
         nodes = [target.name for target in TARGETS.values() if target.package]
         raise CallError(f"--typed-state is for {', '.join(nodes)}: the other targets have no node")
@@ -240,7 +241,7 @@ def _copies(
             continue
         if not inside and key not in confirmed:
             message = f'"{key}" names {copies[target]}, which is outside of the model\'s folder'
-            hint = f"if files may be written there, say so: --confirm {key}"
+            hint = f"to allow files there, add --confirm {key}"
             report.add([configuration.error(tuple(key.split(".")), message, hint)])
     return copies
 
@@ -259,7 +260,7 @@ def _trees(
         below = PurePosixPath(target.folder(models, configuration))
         if target.package and packages.setdefault(below, target) is not target:
             names = f"{packages[below].name} and {target.name}"
-            raise CallError(f'{names} would both be {below}: "package.name" names both, generate one at a time')
+            raise CallError(f'{names} would both be {below}: "package.name" names both; generate one at a time')
         trees[folder] |= {(below / path).as_posix(): text for path, text in files.items()}
         trees[folder] |= target.beside(models, configuration)
         if target in copies:

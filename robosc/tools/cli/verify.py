@@ -38,7 +38,7 @@ _WIDTH = 120
 @click.command("verify")
 @model
 @click.option("--json", "as_object", is_flag=True, help="Print one JSON object.")
-@click.option("--junit", type=click.Path(dir_okay=False), help="Write JUnit XML to FILE, too.")
+@click.option("--junit", type=click.Path(dir_okay=False), help="Also write JUnit XML to FILE.")
 @configuration
 @synthesizer
 @paths

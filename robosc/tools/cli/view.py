@@ -29,17 +29,27 @@ if TYPE_CHECKING:
 
 @click.command("view")
 @click.argument("models", metavar="MODEL...", nargs=-1, required=True, type=FILE)
-@over_ros("Show a robot of ROS 2 that runs.")
-@click.option("--node", help="Of this node, such as /robot/line_follower_controller; without it, by its usual name.")
-@click.option("--log", type=click.Path(), help="Show an event log, a script, or a recording: a bag, MCAP.")
-@click.option("--trace", "refuted", metavar="PROPERTY", help="Show a counterexample of `verify`; `any`: the first.")
-@click.option("--seed", type=int, default=0, show_default=True, help="Of random events.")
-@click.option("--export", "folder", type=click.Path(), help="Write the page to FOLDER, to open without a server.")
+@over_ros("Show a running ROS 2 robot.")
+@click.option("--node", help="The node to show, such as /robot/line_follower_controller.  [default: its usual name]")
+@click.option("--log", type=click.Path(), help="Show an event log, a script, or a recording (bag, MCAP).")
+@click.option(
+    "--trace",
+    "refuted",
+    metavar="PROPERTY",
+    help="Show the counterexample of this property of `verify`; `any` selects the first.",
+)
+@click.option("--seed", type=int, default=0, show_default=True, help="The seed of random events.")
+@click.option("--export", "folder", type=click.Path(), help="Write the page to FOLDER. It opens without a server.")
 @click.option("--open", "opens", is_flag=True, help="Open a browser.")
 @click.option(
-    "--port", type=click.IntRange(0, 65535), default=0, help="Listen on this port; 0, the default: a free one."
+    "--port", type=click.IntRange(0, 65535), default=0, help="Listen on this TCP port.  [default: a free port]"
 )
-@click.option("--address", default="127.0.0.1", show_default=True, help="Listen on this address; others need a token.")
+@click.option(
+    "--address",
+    default="127.0.0.1",
+    show_default=True,
+    help="Listen on this address. Addresses of other machines need a token.",
+)
 @parameters
 @synthesizer
 @paths
@@ -79,13 +89,13 @@ def command(
     if sum([live, log is not None, refuted is not None]) > 1:
         raise click.UsageError("--ros2, --log and --trace exclude each other")
     if live and folder is not None:
-        raise click.UsageError("a robot that runs can't be exported: record it, and export the recording with --log")
+        raise click.UsageError("a running robot cannot be exported: record it, and export the recording with --log")
     if len(models) > 1 and {node, log, refuted, folder} != {None}:
         raise click.UsageError("--node, --log, --trace and --export are for one model")
     try:
         from robosc.tools import view
     except ModuleNotFoundError as error:
-        raise CallError(f"{error.name} is missing: `pip install 'robosc[view]'` brings it") from error
+        raise CallError(f"{error.name} is missing: run `pip install 'robosc[view]'`") from error
     shown: list[tuple[Mapping[str, Any], Moments]] = []
     heard: list[tuple[list[str], Live]] = []
     for model in models:
@@ -100,7 +110,7 @@ def command(
             else:
                 if robot.rosgraph is None:
                     raise CallError(
-                        f"{model} has no ROS graph, so no node tells of it: give its .rosgraph.xmi or .rscd"
+                        f"{model} has no ROS graph, so no node reports its state: use its .rosgraph.xmi or .rscd"
                     )
                 nodes = [node] if node else _nodes(robot.rosgraph, settings)
                 record = view.Live(simulation, robot.rosgraph, " or ".join(nodes))

@@ -36,11 +36,11 @@ _THREAD = 1
 #: Number of steps before the adapter sends output and reads requests again.
 _AT_ONCE = 100
 _HELP = """\
-EVENT [JSON]  let an event happen, with data: move, Lidar.scan {"value": "clear"}, message_move.c_trigger
+EVENT [JSON]  perform an event, with data: move, Lidar.scan {"value": "clear"}, message_move.c_trigger
 STEP          a step of a scenario: response from scan with clear, error from lift because timeout
-wait SECONDS  let time go by
-why EVENT     why an event can't happen here, and what would help
-NAME          a component's state, a variable's value, whether a state is the present one: Lidar, Lidar.free"""
+wait SECONDS  let time pass
+why EVENT     why an event cannot happen here, and what would change that
+NAME          a component's state, a variable's value, whether a state is the current one: Lidar, Lidar.free"""
 #: Requests that are allowed while the robot runs.
 _WHILE_RUNNING = (
     "pause",
@@ -106,7 +106,7 @@ class Adapter:
             request = None
             if message.get("type") == "request" and _is_integer(sequence):
                 request = sequence, command if isinstance(command, str) else ""
-            self.malformed("a message is no request with `seq` and `command`", request)
+            self.malformed("a message is not a request with `seq` and `command`", request)
             return
         arguments = message.get("arguments")
         answer = {"request_seq": sequence, "command": command}
@@ -122,7 +122,7 @@ class Adapter:
                 self._event("terminated")
         except Exception as error:  # Report every fault to the client, which can then continue.
             traceback.print_exc(file=sys.stderr)
-            self._refuse(answer, f"a fault of robosc itself, please report it: {type(error).__name__}: {error}")
+            self._refuse(answer, f"internal error of robosc, please report it: {type(error).__name__}: {error}")
         if after is not None:
             after()
 
@@ -151,11 +151,11 @@ class Adapter:
             raise RequestError("`arguments` are no object")
         answers = self._answers.get(command)
         if answers is None:
-            raise RequestError(f"the request `{command}` is not known to robosc")
+            raise RequestError(f"the request `{command}` is unknown")
         if command in ("disconnect", "terminate"):
             await self._halt()
         elif self._running is not None and command not in _WHILE_RUNNING:
-            raise RequestError("the robot is running: pause it first")
+            raise RequestError("the robot runs: pause it first")
         result = answers(self, arguments)
         return result if isinstance(result, tuple) else (result, None)
 
@@ -168,7 +168,7 @@ class Adapter:
     @property
     def _debugged(self) -> _Run:
         if self._run is None:
-            raise RequestError("nothing is launched yet")
+            raise RequestError("no robot is launched yet")
         return self._run
 
     # From start to end
@@ -198,7 +198,7 @@ class Adapter:
 
         def begin() -> None:
             if run.launch.stop_on_entry:
-                self._stopped(Stop("entry", f"{run.replay.engine.model.name} has not begun"))
+                self._stopped(Stop("entry", f"{run.replay.engine.model.name} has not started"))
             else:
                 self._go_on(forward=True)
 
@@ -248,7 +248,7 @@ class Adapter:
             raise RequestError("there is no such target")
         event = run.replay.engine.events[target]
         if event not in enabled:
-            raise RequestError(f"{event} can't happen here")
+            raise RequestError(f"{event} cannot happen here")
         moment = run.replay.inject(event, {})
         return None, lambda: self._injected(run, [moment])
 
@@ -267,7 +267,7 @@ class Adapter:
         run = self._debugged
         moment = run.replay.back()
         if moment is None:
-            return None, lambda: self._stopped(Stop("entry", "this is where the robot began"))
+            return None, lambda: self._stopped(Stop("entry", "this is the start of the robot"))
         self._output(f"taken back: {run.views.told(moment)}\n")
         run.stops.look()
         return None, lambda: self._stopped(Stop("step", "one step back"))
@@ -300,7 +300,7 @@ class Adapter:
             traceback.print_exc(file=sys.stderr)
             self._running = None
             fault = f"{type(error).__name__}: {error}"
-            self._stopped(Stop("exception", f"a fault of robosc itself, please report it: {fault}"))
+            self._stopped(Stop("exception", f"internal error of robosc, please report it: {fault}"))
 
     async def _played(self, run: _Run, step: Callable[[_Run, int], tuple[str, Stop | None, bool]]) -> None:
         told: list[str] = []
@@ -342,7 +342,7 @@ class Adapter:
     def _back(self, run: _Run, _: int) -> tuple[str, Stop | None, bool]:
         moment = run.replay.back()
         if moment is None:
-            return "", Stop("entry", "this is where the robot began"), False
+            return "", Stop("entry", "this is the start of the robot"), False
         run.stops.look()
         last = run.replay.past[-1] if run.replay.past else None
         stop: Stop | None = None
@@ -397,7 +397,7 @@ class Adapter:
             asked = next((child.path for child in children if child.name == asked and child.path), asked)
         name = self._debugged.views.state_name(asked)
         if name is None:
-            return {"dataId": None, "description": f"{asked} is no part of the state that changes"}
+            return {"dataId": None, "description": f"{asked} is not part of the state that changes"}
         return {"dataId": name, "description": name, "accessTypes": ["write"], "canPersist": True}
 
     def _set_data_breakpoints(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -471,7 +471,7 @@ class Adapter:
 
     def _children(self, reference: Any) -> Sequence[Variable]:
         if not _is_integer(reference) or not 1 <= reference <= len(self._references):
-            raise RequestError("there is no such variable any more: the robot has gone on")
+            raise RequestError("this variable does not exist any more: the robot has continued")
         return self._references[reference - 1]()
 
     def _exception_info(self, _: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -487,7 +487,7 @@ class Adapter:
         if arguments.get("context") not in ("repl", None):
             value = run.views.value(text)
             if value is None:
-                raise RequestError(f"`{text}` is no component, variable or state")
+                raise RequestError(f"`{text}` is not a component, variable or state")
             return {"result": value, "variablesReference": 0}, None
         word, _, rest = text.partition(" ")
         if text in ("", "help", "?"):
@@ -549,7 +549,7 @@ class Adapter:
     def _line(self, given: Any) -> int:
         line = given.get("line") if isinstance(given, dict) else None
         if not _is_integer(line):
-            raise RequestError("`line` has to be a number")
+            raise RequestError("`line` must be a number")
         return line + 1 - self._first_line
 
     def _shown_line(self, line: int) -> int:
@@ -612,7 +612,7 @@ def _data(text: str, event: sct.Event) -> Mapping[str, Any]:
     try:
         data = json_value(text)
     except JsonError as error:
-        raise RequestError(f'the data can\'t be read: {error}; write {{"value": ...}}') from None
+        raise RequestError(f'the data cannot be read: {error}; write {{"value": ...}}') from None
     known = {"value", "where", *(["reason"] if possible_reasons(event) else [])}
     return data if isinstance(data, dict) and set(data) <= known else {"value": data}
 
@@ -641,5 +641,5 @@ def _natural(value: Any) -> int:
 
 def _objects(given: Any) -> list[dict[str, Any]]:
     if given is not None and not (isinstance(given, list) and all(isinstance(item, dict) for item in given)):
-        raise RequestError("a list of objects is wanted")
+        raise RequestError("expected a list of objects")
     return given or []

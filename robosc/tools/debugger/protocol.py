@@ -82,13 +82,13 @@ class Connection:
             data = await self._reader.readexactly(length)
             message = json_value(data.decode())
         except asyncio.IncompleteReadError:
-            raise FramingError("the last message is cut off") from None
+            raise FramingError("the last message is incomplete") from None
         except UnicodeDecodeError:
-            raise MessageError("a message is no UTF-8", data.decode("utf-8", "replace")) from None
+            raise MessageError("a message is not UTF-8", data.decode("utf-8", "replace")) from None
         except JsonError as error:
-            raise MessageError(f"a message is no JSON: {error}", data.decode()) from None
+            raise MessageError(f"a message is not JSON: {error}", data.decode()) from None
         if not isinstance(message, dict):
-            raise MessageError("a message is no object")
+            raise MessageError("a message is not an object")
         return message
 
     async def _length(self) -> int | None:
@@ -102,7 +102,7 @@ class Connection:
             if not line and not started:
                 return None
             if not line.endswith(b"\n") or len(line) > _MOST_HEADER:
-                raise FramingError("a header is cut off or too long")
+                raise FramingError("a header is incomplete or too long")
             started = True
             name, _, value = line.strip().partition(b":")
             if not name:

@@ -21,22 +21,22 @@ REFUSED, FORBIDDEN, STUCK = "refused", "forbidden", "stuck"
 FILTERS = [
     {
         "filter": REFUSED,
-        "label": "An event that can't happen",
-        "description": "Stops where the script asks for an event that the robot or the supervisor does not let happen.",
+        "label": "An event that cannot happen",
+        "description": "Stops when the script requests an event that the robot or the supervisor does not allow.",
         "default": True,
     },
     {
         "filter": FORBIDDEN,
         "label": "A command becomes forbidden",
-        "description": "Stops where the supervisor begins to forbid a command.",
+        "description": "Stops when the supervisor begins to forbid a command.",
         "default": False,
         "supportsCondition": True,
         "conditionDescription": "commands, such as: move, Platform.halt",
     },
     {
         "filter": STUCK,
-        "label": "Nothing can happen",
-        "description": "Stops where no event can happen any more.",
+        "label": "No event can happen",
+        "description": "Stops when no event can happen any more.",
         "default": True,
     },
 ]
@@ -104,7 +104,7 @@ class Stops:
     @property
     def stuck(self) -> Stop:
         """Stop of a run in which no event can happen any more, whether or not its filter is set."""
-        return Stop("exception" if STUCK in self._filters else "pause", "nothing can happen any more")
+        return Stop("exception" if STUCK in self._filters else "pause", "no event can happen any more")
 
     @property
     def _in_files(self) -> list[_Breakpoint]:
@@ -122,7 +122,7 @@ class Stops:
         points, told = [], []
         for line in lines:
             targets = self._targets.at(path, line)
-            told.append(self._answer(targets, "nothing that a robot could stop at stands here"))
+            told.append(self._answer(targets, "this line has no element at which a robot can stop"))
             told[-1]["line"] = min((target.span.line for target in targets if target.span), default=line)
             points.append(_Breakpoint(told[-1]["id"], targets))
         self._by_line[real(path)] = points
@@ -133,7 +133,7 @@ class Stops:
         self._in_script.clear()
         told = []
         for line in lines:
-            told.append(self._answer([], "no event stands here") | {"line": line})
+            told.append(self._answer([], "this line has no event") | {"line": line})
             if line in self._script_lines:
                 self._in_script[line] = told[-1]["id"]
                 told[-1] |= {"verified": True, "message": "stops before this event"}
@@ -158,7 +158,7 @@ class Stops:
         self._by_value.clear()
         told = []
         for name in names:
-            told.append(self._answer([], f"{name} is no part of the state that changes"))
+            told.append(self._answer([], f"{name} is not part of the state that changes"))
             if name in self._replay.engine.state:
                 self._by_value[name] = told[-1]["id"]
                 told[-1] |= {"verified": True, "message": f"{name} changes"}

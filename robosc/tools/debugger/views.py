@@ -82,7 +82,7 @@ class Views:
         if last is None:
             return self._frame("start", self._model)
         if last.event == WAIT:
-            return self._frame("time has gone by", self._model)
+            return self._frame("time has passed", self._model)
         if last.event == REFUSE:
             return self._frame(self.told(last), self._model)
         event = self.events[last.event]
@@ -100,7 +100,7 @@ class Views:
         return (
             said
             if moment.by is None
-            else f"{said} can't happen: {self._replay.simulation.reason(moment.event, moment.by)}"
+            else f"{said} cannot happen: {self._replay.simulation.reason(moment.event, moment.by)}"
         )
 
     def _frame(self, said: str, element: Any, plant: sct.Plant | None = None) -> Frame:
@@ -145,9 +145,9 @@ class Views:
             ),
             Variable("Times", "", self._times),
             Variable("Can happen", "", self._possible),
-            Variable("Can't happen", "", self._impossible),
+            Variable("Cannot happen", "", self._impossible),
         ]
-        always = ("Components", "Can happen", "Can't happen")
+        always = ("Components", "Can happen", "Cannot happen")
         return [*own, *(scope for scope in scopes if scope.name in always or (scope.children and scope.children()))]
 
     def _of(self, *kinds: sct.PlantKind) -> list[sct.Plant]:

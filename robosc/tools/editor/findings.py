@@ -57,7 +57,7 @@ def published(snapshot: Snapshot, analyses: Iterable[Analysis]) -> dict[Path, li
 def abandoned(why: str) -> types.Diagnostic:
     """Return the diagnostic of a text whose analysis was abandoned."""
     place = types.Range(types.Position(0, 0), types.Position(0, 1))
-    message = f"{why}: the findings of this text are missing\nhint: run `robosc check` on it"
+    message = f"{why}: the findings of this file are missing\nhint: run `robosc check` on it"
     return types.Diagnostic(place, message, severity=types.DiagnosticSeverity.Warning, source="robosc")
 
 
@@ -106,7 +106,7 @@ def code_actions(snapshot: Snapshot, analysis: Analysis, params: types.CodeActio
         certain = safe_edits(analysis, partial(_checked, snapshot, analysis))
         if certain:
             whole = types.WorkspaceEdit({uri: to_edits(text, certain)})
-            found.append(types.CodeAction("Do what all hints say", kind=_MEND_ALL, edit=whole))
+            found.append(types.CodeAction("Apply all hints", kind=_MEND_ALL, edit=whole))
     return found
 
 
@@ -174,7 +174,7 @@ def _library_folders(snapshot: Snapshot, analysis: Analysis, place: types.Range)
         missing = isinstance(name.user, rsc.ImportedComponent) and name.feature == "library" and name.target is None
         if missing and at.start <= place.end and place.start <= at.end:
             for folder in dict.fromkeys(path.parent for path in snapshot.models() if _declares(snapshot, path, name)):
-                title = f"look for libraries in {folder}, too"
+                title = f"also search libraries in {folder}"
                 command = types.Command(title, command=ADD_LIBRARY_FOLDER, arguments=[snapshot.uri(str(folder))])
                 found.append(types.CodeAction(title, kind=types.CodeActionKind.QuickFix, command=command))
     return found

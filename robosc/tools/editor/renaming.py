@@ -48,7 +48,7 @@ def rename(snapshot: Snapshot, analysis: Analysis, params: types.RenameParams) -
         return None
     _require_own(snapshot, analysis, name)
     if not is_name(new):
-        raise _refused(f"`{new}` is no name: it has letters from a to z and A to Z, digits and `_`")
+        raise _refused(f"`{new}` is not a name: it has letters from a to z and A to Z, digits and `_`")
     return rename_everywhere(snapshot, analysis, Renaming(name, new))
 
 
@@ -118,14 +118,14 @@ def _require_same(
         for file in found.reading.files.values():
             skipped = (file.text.content[start:end] for start, end in file.skipped)
             if any(re.search(rf"\b{re.escape(word)}\b", part) for part in skipped):
-                raise _refused(f"mend {file.text.file} first: `{word}` stands in what can't be read")
+                raise _refused(f"correct {file.text.file} first: `{word}` is in an unreadable part")
     after = snapshot.edited(by_path)
     for path, found in analyses.items():
         renamed = after.analysis(path)
         own = {name: by_path[at] for name in found.reading.files if (at := Path(name).resolve()) in by_path}
         why = "" if renamed is None else objection(found, renamed, own, mended if found is analysis else ())
         if why is not None:
-            raise _refused(f"this would change what {path.name} means{why and f': {why}'}")
+            raise _refused(f"this would change the meaning of {path.name}{why and f': {why}'}")
 
 
 def _refused(why: str) -> JsonRpcException:

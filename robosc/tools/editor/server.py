@@ -418,8 +418,8 @@ def _register_commands(server: Server) -> None:
     @server.command(ADD_LIBRARY_FOLDER)
     def add_library_folder(folder: str) -> None:
         server.add_library_folder(folder)
-        said = "until the editor ends; `libraryPaths` or ROBOSC_PATH keeps it"
-        told = f"libraries are looked for in {server.project.path(folder)}, too, {said}"
+        said = "until the editor ends; set `libraryPaths` or ROBOSC_PATH to keep it"
+        told = f"libraries are also searched in {server.project.path(folder)}, {said}"
         server.window_show_message(types.ShowMessageParams(types.MessageType.Info, told))
 
 

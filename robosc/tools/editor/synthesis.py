@@ -28,7 +28,7 @@ COMMAND = (sys.executable, "-m", "robosc.tools.editor.verdict")
 COMMANDS = {"simulate": "robosc.debug", "run": "robosc.run", "verify": "robosc.verify"}
 #: Time limit of synthesis in seconds.
 _LONGEST = 120
-_FAILED = "synthesis failed: `robosc synthesize` tells more"
+_FAILED = "synthesis failed: `robosc synthesize` shows the error"
 RUNNING = "synthesis is running …"
 
 
@@ -134,7 +134,7 @@ class Verdicts:
             answer = (
                 Verdict(**json.loads(said))
                 if process.returncode == 0
-                else "synthesis failed: `robosc synthesize` tells more"
+                else "synthesis failed: `robosc synthesize` shows the error"
             )
         except TimeoutError:
             answer = f"synthesis takes more than {_LONGEST} seconds"

@@ -41,7 +41,7 @@ def verdict(request: Request) -> Verdict:
     except ModelError as error:
         return Verdict(f"no supervisor: {error.diagnostics[0].message}", {}, {})
     except MemoryError:
-        return Verdict("synthesis needs more than 1 GB: `robosc synthesize` tells more", {}, {})
+        return Verdict("synthesis needs more than 1 GB: use `robosc synthesize`", {}, {})
     return _verdict(request.path, model, supervision)
 
 
@@ -55,7 +55,7 @@ def _verdict(path: str, model: sct.SupervisoryControlModel, supervision: Supervi
     for weight in synthesis.weights:
         file, span = place(weight.requirements[0])
         if file == path:
-            forbids = "forbids" if isinstance(weight.requirements[0], sct.StateInvariant) else "forbids something in"
+            forbids = "forbids" if isinstance(weight.requirements[0], sct.StateInvariant) else "restricts the robot in"
             said = f"{forbids} {counted(weight.states, 'state')}" if weight.states else "matters in no state"
             requirements[str(span.line)] = said
     guards: dict[str, list[str]] = {}

@@ -50,19 +50,19 @@ class Choices:
     def fault(self) -> str | None:
         """Return the fault of a name with a hint, or None if all names are valid."""
         if not _ROBOT.fullmatch(self.name):
-            return f"`{self.name}` can't name a robot: letters, digits and single `_` can, such as `Porter`"
+            return f"`{self.name}` cannot name a robot: use letters, digits and single `_`, such as `Porter`"
         names = [*self.sensors, *self.commands, *([self.service] if self.service else [])]
         for name in names:
             if not _COMMUNICATION.fullmatch(name):
-                return f"`{name}` can't name a message or service: small letters, digits and single `_` can"
+                return f"`{name}` cannot name a message or service: use lowercase letters, digits and single `_`"
             if name in ROBOSC_KEYWORDS:
-                return f"`{name}` is a word of the language: take another name"
+                return f"`{name}` is a keyword: use another name"
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice:
-            return f"`{twice}` names two things: give each a name of its own"
+            return f"`{twice}` is used twice: use different names"
         components = [camel(name) for name in self.sensors]
         alike = next((name for name in self.sensors if components.count(camel(name)) > 1), None)
-        return f"`{alike}` is too like another name: give each a name of its own" if alike else None
+        return f"`{alike}` is too similar to another name: use another name" if alike else None
 
 
 def camel(name: str) -> str:

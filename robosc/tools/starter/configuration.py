@@ -17,7 +17,7 @@ def configuration(choices: Choices) -> str:
         "package": {
             "name": choices.package,
             "version": "0.1.0",
-            "description": f"Decides what {choices.robot} may do.",
+            "description": f"Supervisory controller of {choices.robot}.",
         },
     }
     return json.dumps(settings, indent=2) + "\n"

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from robosc.tools.starter.choices import Choices
 
 _SENSOR = """
-  // Says on /{name} whether the robot may {command}. Before it has spoken, it counts as having said no.
+  // Allows or forbids `{command}` on /{name}. Until the first message, it forbids it.
   component {component} {{
     outgoing message {name} with identifier: "/{name}", type: boolean
 
@@ -22,7 +22,7 @@ _SENSOR = """
   }}
 """
 _SERVICE = """
-  // Is called when the robot starts, and again until it succeeds.
+  // The controller calls it at the start, and again until it succeeds.
   component {component} {{
     service {name} with identifier: "/{name}", request: none, response: std_srvs/Trigger
 
@@ -40,7 +40,7 @@ _SERVICE = """
   }}
 """
 _SPEED = """
-  // Metres a second.
+  // Meters per second.
   parameter speed: double(0.0..1.0) = 0.2
 """
 
@@ -58,7 +58,7 @@ def service_component(name: str) -> str:
 def model(choices: Choices) -> str:
     """Return the text of the robot, not yet formatted."""
     parts = [
-        f"// What {choices.robot} may do, and when: `{choices.command}` goes out while all that it needs holds.",
+        f"// The supervisory controller of {choices.robot} sends `{choices.command}` while all conditions hold.",
         f"robot {choices.robot} {{",
         _SPEED if choices.twist else "",
         *(

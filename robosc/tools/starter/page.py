@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 _TEXT = """\
 # {robot}
 
-`{command}` goes out while {condition}.{otherwise}
+The controller sends `{command}` while {condition}.{otherwise}
 
-| file | what it is |
+| file | content |
 |---|---|
-| `{stem}.rscd` | the model: what the robot's components say and do, and what its commands need |
+| `{stem}.rscd` | the model: the components of the robot and the requirements of its commands |
 | `controller-config.json` | settings of the generated node |
 | `test_{stem}.py` | a test: `python -m unittest`, or `pytest` |
 
@@ -29,9 +29,9 @@ _TEXT = """\
 ## Try it
 
 ```sh
-robosc check {stem}.rscd        # what is wrong with the text
-robosc synthesize {stem}.rscd   # when the supervisor allows what
-robosc verify {stem}.rscd       # what is proved of it
+robosc check {stem}.rscd        # errors and warnings
+robosc synthesize {stem}.rscd   # the supervisor: states and guards
+robosc verify {stem}.rscd       # proofs of its properties
 robosc simulate {stem}.rscd     # by hand: `h` lists the commands
 python -m unittest
 ```
@@ -45,10 +45,10 @@ robosc transform {stem}.rscd --to ros{ros}
 {build}
 ```
 {warned}
-## Go on
+## Next steps
 
-Change the names of topics to those of your robot, add states for what your components can be in, and write a
-`requirement` for each thing that must not happen. `robosc rule` lists the rules that a model keeps, each with
+Change the names of topics to those of your robot. Add the states of your components, and write a
+`requirement` for each event that must not happen. `robosc rule` lists the rules of a model, each with
 a wrong and a right model.
 """
 _RUN = """
@@ -69,8 +69,8 @@ cd ~/ros2_ws && colcon build && . install/setup.sh
 ros2 launch {package} {package}.launch.py""",
 }
 _WARNED = """
-`transform` warns that `{stop}` is sent when the node ends, whatever its requirement says:
-`onShutdown` in the configuration asks for that.
+`transform` warns that `{stop}` is sent when the node ends, regardless of its requirement:
+`onShutdown` in the configuration requests it.
 """
 
 
@@ -82,7 +82,7 @@ def page(choices: Choices) -> str:
         ros=choices.ros,
         command=choices.command,
         condition=condition(choices),
-        otherwise=f" Otherwise `{choices.stop}` does." if choices.stop else "",
+        otherwise=f" Otherwise, it sends `{choices.stop}`." if choices.stop else "",
         kind="topic or service" if choices.service else "topic",
         rows="\n".join(_rows(choices)),
         run=_RUN.format(stem=choices.stem) if choices.ros == 2 else "",

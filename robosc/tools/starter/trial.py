@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from robosc.tools.starter.choices import Choices
 
 _TEXT = '''\
-"""{robot} is a sound model, and does what it is meant to: run `python -m unittest` or `pytest` in this folder."""
+"""{robot} is a valid model and behaves as intended: run `python -m unittest` or `pytest` in this folder."""
 
 import json
 import subprocess
@@ -22,14 +22,14 @@ from pathlib import Path
 
 MODEL = Path(__file__).parent / "{stem}.rscd"
 
-#: What is asked for, in order, and whether the supervised robot lets it happen; `robosc simulate` lists all events.
+#: Requested events, in order, and whether the supervised robot allows them; `robosc simulate` lists all events.
 STORY = [
 {story}
 ]
 
 
 def robosc(*arguments: str, given: str = "") -> subprocess.CompletedProcess[str]:
-    """What a command of robosc says about the model."""
+    """Run a command of robosc on the model."""
     command = [sys.executable, "-m", "robosc", *arguments]
     return subprocess.run(command, input=given, capture_output=True, text=True, check=False)
 

@@ -42,9 +42,9 @@ class Live(Moments):
         self._faults.clear()
         try:
             if json.dumps(json_value(text), sort_keys=True) != self._definition:
-                self._faults["definition"] = "The node runs another version of the model: what is shown may be wrong."
+                self._faults["definition"] = "The node runs another version of the model: the page may be wrong."
         except JsonError as error:
-            self._faults["definition"] = f"What the node tells of its model can't be read: {error}."
+            self._faults["definition"] = f"The node's report about its model cannot be read: {error}."
         self._tracker.begin()
         self._say()
 
@@ -54,7 +54,7 @@ class Live(Moments):
             report = json_value(text)
             followed = self._tracker.report(report)
         except (JsonError, ReportError) as error:
-            self._faults["state"] = f"What the node tells can't be shown: {error}."
+            self._faults["state"] = f"The node's report cannot be shown: {error}."
             self._say()
             return
         self._faults.pop("state", None)
@@ -69,7 +69,7 @@ class Live(Moments):
         if self._faults:
             self.status = next(iter(self._faults.values()))
         elif self._publishers > 1:
-            self.status = f"{self._publishers} nodes tell their states, shown here as one: name yours with --node."
+            self.status = f"{self._publishers} nodes report their states, shown here as one: choose one with --node."
         elif self._publishers == 0:
             self.status = f"Waiting for {self._nodes}{'' if self._began is None else ' to come back'}."
         else:

@@ -88,7 +88,7 @@ class Moments:
 
     def do(self, action: Any) -> None:
         """Perform an action of the page. Raises ActionError."""
-        raise ActionError(f"nothing can be done here: {json.dumps(action)}")
+        raise ActionError(f"no action is possible here: {json.dumps(action)}")
 
     # Adding and removing moments
 
@@ -216,7 +216,7 @@ class Moments:
         Raises ActionError if there is no such event.
         """
         if event not in self.events or not self.first <= number < self.length:
-            raise ActionError("there is no such event, or moment")
+            raise ActionError("unknown event or moment")
         state = self._states[number - self.first]
         key = event, state
         if key not in self._explained:

@@ -82,7 +82,7 @@ class Record(Moments):
             case {"action": "restart"}:
                 self._back_to(0)
             case _:
-                raise ActionError(f"an action is one of {', '.join(ACTIONS)}, with what it needs: {json.dumps(action)}")
+                raise ActionError(f"an action is one of {', '.join(ACTIONS)}, with its data: {json.dumps(action)}")
 
     def _wait(self, seconds: float) -> None:
         for moment in self._replay.let_go_by(seconds):
@@ -154,7 +154,7 @@ class Record(Moments):
     def _words(self, moment: Moment) -> str:
         if moment.event == REFUSE:
             return refusal_in_words(self.engine, moment.data["of"]).replace("`", "")
-        return "time goes by" if moment.event == WAIT else self.said(moment.event)
+        return "time passes" if moment.event == WAIT else self.said(moment.event)
 
     def _keep(self, moment: Moment | None) -> None:
         told: dict[str, Any] = {}

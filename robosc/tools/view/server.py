@@ -75,14 +75,14 @@ class _Answers:
         """Return the number of the requested robot. Raises ActionError if there is none."""
         asked = request.query_params.get("robot", "0")
         if asked not in map(str, range(len(self._records))):
-            raise ActionError("there is no such robot")
+            raise ActionError("unknown robot")
         return int(asked)
 
     async def file(self, request: Request) -> Response:
         """Return a file of the page."""
         name = request.path_params.get("name", "index.html")
         if name not in FILES:
-            return PlainTextResponse("there is no such file", 404)
+            return PlainTextResponse("unknown file", 404)
         return Response(self._files[name], media_type=FILES[name])
 
     async def description(self, request: Request) -> Response:
@@ -111,12 +111,12 @@ class _Answers:
     async def do(self, request: Request) -> Response:
         """Perform an action, which must be JSON, because no form of another site can send that."""
         if request.headers.get("content-type") != "application/json":
-            return PlainTextResponse("an action is application/json", 415)
+            return PlainTextResponse("an action must be application/json", 415)
         body = b""
         async for part in request.stream():
             body += part
             if len(body) > _LONGEST_ACTION:
-                return PlainTextResponse("an action is short", 413)
+                return PlainTextResponse("the action is too long", 413)
         try:
             record = self._records[self._robot(request)]
         except ActionError as error:
@@ -180,7 +180,7 @@ class _Guarded:
         if self._token is None and host not in self._hosts:
             return PlainTextResponse("this address is not served here", 421)
         if request.headers.get("origin", f"http://{host}") != f"http://{host}":
-            return PlainTextResponse("another site's page may not ask", 403)
+            return PlainTextResponse("a page of another site has no access", 403)
         if self._token is None:
             return None
         # Cookies do not distinguish ports, so each view on a computer has its own cookie name.

@@ -23,8 +23,8 @@ from tests.run.runtime.fake import FakePort, supervised
 
 PORTER = Path(__file__).parent / "porter.rscd"
 WHY = (
-    "after request to `Door.open`, then request to `Base.enter`, response from `Door.closed` can't be prevented, and"
-    " then `Base` can't get back to a marked state"
+    "after request to `Door.open`, then request to `Base.enter`, response from `Door.closed` cannot be prevented, and"
+    " then `Base` cannot get back to a marked state"
 )
 
 
@@ -108,5 +108,5 @@ def test_and_a_simulation(porter: rosgraph.RosGraph) -> None:
     session = Session(Simulation(porter.model, porter), seed=0)
     session.do("message_open.c_trigger")
     assert session.do("message_enter.c_trigger") == (
-        f"message_enter.c_trigger: forbidden by synthesis, which asks for component_Door.held; otherwise, {WHY}"
+        f"message_enter.c_trigger: forbidden by synthesis, which requires component_Door.held; otherwise, {WHY}"
     )

@@ -71,14 +71,15 @@ def changed(specification: Path, pattern: str, replacement: str) -> tuple[str, l
 def test_without_a_guard_a_variable_leaves_its_range(specification: Path) -> None:
     explanation, way = changed(specification, "edge P.down when [^;]*;", "edge P.down;")
     assert (
-        explanation == "`P.down` brings `n` out of its range in the generated CIF where `P.a and P.n = 0 and R.m = 0`"
+        explanation
+        == "`P.down` sets `n` to a value out of its range in the generated CIF where `P.a and P.n = 0 and R.m = 0`"
     )
     assert way == []
 
 
 def test_the_range_of_a_variable_of_a_requirement_counts_too(specification: Path) -> None:
     explanation, way = changed(specification, r" and R\.m \+ 1 <= 2", "")
-    assert explanation.startswith("`P.up` brings `m` out of its range in the generated CIF where ")
+    assert explanation.startswith("`P.up` sets `m` to a value out of its range in the generated CIF where ")
     assert way.count("P.up") == 2
 
 
@@ -93,7 +94,7 @@ def test_the_range_of_a_variable_of_a_requirement_counts_too(specification: Path
         ("initial; marked;", "initial false; marked;", "the generated CIF starts in other states"),
         ("initial; marked;", "initial;", "the supervisor does not start, or is not marked"),
         ("edge P.go( when [^;]*)?;", "edge P.gone;", "there is no `gone` in `P`"),
-        (r"(?s)supervisor automaton.*", "plant q: location: initial; marked; edge P.go; end", "`P.down` brings `n`"),
+        (r"(?s)supervisor automaton.*", "plant q: location: initial; marked; edge P.go; end", "`P.down` sets `n`"),
         ("location:", "location other; location:", "is wrong: "),
     ],
 )

@@ -36,8 +36,8 @@ def guard(text: str) -> str:
 #: Texts that CIF rejects, with the reason and the position.
 REFUSED = {
     # Its lexical syntax
-    "an umlaut in a comment": (whole("// größer"), "line 1, column 6: '\\xf6' is no ASCII"),
-    "a space that is none": (guard("\u00a0v"), "line 18, column 19: '\\xa0' is no ASCII"),
+    "an umlaut in a comment": (whole("// größer"), "line 1, column 6: '\\xf6' is not ASCII"),
+    "a space that is none": (guard("\u00a0v"), "line 18, column 19: '\\xa0' is not ASCII"),
     "a form feed": (guard("\f v"), "line 18, column 19: Expected"),
     "a number that begins with 0": (guard("x = 02"), "line 18, column 24: Expected"),
     "a number beyond 32 bits": (guard("x < 2147483648"), "line 18, column 23: 2147483648 does not fit 32 bits"),
@@ -104,27 +104,27 @@ REFUSED = {
     # Names
     "two automata of one name": (
         whole(after="plant q: location: initial; end"),
-        "line 21, column 7: there are two of the name 'q'",
+        "line 21, column 7: the name 'q' is declared twice",
     ),
     "two variables of one name": (
         whole(members="  disc bool v = true;"),
-        "line 13, column 13: there are two of the name 'v'",
+        "line 13, column 13: the name 'v' is declared twice",
     ),
     "two events of one name": (
         whole(members="  controllable c_a;"),
-        "line 13, column 16: there are two of the name 'c_a'",
+        "line 13, column 16: the name 'c_a' is declared twice",
     ),
     "an event called like a location": (
         whole(members="  controllable b;"),
-        "line 19, column 12: there are two of the name 'b'",
+        "line 19, column 12: the name 'b' is declared twice",
     ),
-    "two locations of one name": (whole(second="  location a;"), "line 19, column 12: there are two of the name 'a'"),
+    "two locations of one name": (whole(second="  location a;"), "line 19, column 12: the name 'a' is declared twice"),
     "a name with and without its dollar": (
         whole(members="  disc bool $v = true;"),
-        "line 13, column 13: there are two of the name 'v'",
+        "line 13, column 13: the name 'v' is declared twice",
     ),
-    "two literals of one name": (whole("enum F = red;"), "line 2, column 10: there are two of the name 'red'"),
-    "a literal called like an automaton": (whole("enum F = q;"), "line 3, column 7: there are two of the name 'q'"),
+    "two literals of one name": (whole("enum F = red;"), "line 2, column 10: the name 'red' is declared twice"),
+    "a literal called like an automaton": (whole("enum F = q;"), "line 3, column 7: the name 'q' is declared twice"),
     "an undeclared event": (edge("c_c;"), "line 18, column 10: there is no 'c_c'"),
     "an undeclared event elsewhere": (edge("q.c_c;"), "line 18, column 10: there is no 'q.c_c'"),
     "an undeclared automaton": (edge("r.c_a;"), "line 18, column 10: there is no 'r.c_a'"),
@@ -135,18 +135,18 @@ REFUSED = {
         whole(after="requirement v disables p.c_a;"),
         "line 21, column 13: there is no 'v'",
     ),
-    "a literal of its enumeration": (guard("e = E.red"), "line 18, column 23: there is nothing in 'E', so no 'E.red'"),
-    "something in a variable": (guard("v.v"), "line 18, column 19: there is nothing in 'v', so no 'v.v'"),
+    "a literal of its enumeration": (guard("e = E.red"), "line 18, column 23: 'E' has no members, so no 'E.red'"),
+    "something in a variable": (guard("v.v"), "line 18, column 19: 'v' has no members, so no 'v.v'"),
     "an automaton that a member hides": (
         whole(members="  controllable q;"),
-        "line 17, column 10: there is nothing in 'q', so no 'q.u_r'",
+        "line 17, column 10: 'q' has no members, so no 'q.u_r'",
     ),
-    "a location for an event": (edge("a;"), "line 18, column 10: 'a' is no event"),
-    "a variable for a location": (edge("c_a goto x;"), "line 18, column 19: 'x' is no location of 'p'"),
+    "a location for an event": (edge("a;"), "line 18, column 10: 'a' is not an event"),
+    "a variable for a location": (edge("c_a goto x;"), "line 18, column 19: 'x' is not a location of 'p'"),
     "an automaton for a value": (guard("q"), "line 18, column 19: 'q' has no value"),
     "an event for a value": (guard("c_a"), "line 18, column 19: 'c_a' has no value"),
     "an enumeration for a value": (guard("e = E"), "line 18, column 23: 'E' has no value"),
-    "a literal for a type": (whole(members="  disc red f = red;"), "line 13, column 8: 'red' is no enumeration"),
+    "a literal for a type": (whole(members="  disc red f = red;"), "line 13, column 8: 'red' is not an enumeration"),
     "a location without a name beside another": (
         whole(second="  location: edge c_a;"),
         "line 19, column 3: a location without a name is the only one",
@@ -185,7 +185,7 @@ REFUSED = {
         edge("c_a do x := if x: 1 else 2 end;"),
         "line 18, column 25: a condition is bool and this is int[0..3]",
     ),
-    "a range of nothing": (whole(members="  disc int[3..2] y = 3;"), "line 13, column 8: nothing is in int[3..2]"),
+    "a range of nothing": (whole(members="  disc int[3..2] y = 3;"), "line 13, column 8: the range int[3..2] is empty"),
     "a start outside of the range": (
         whole(members="  disc int[0..3] y = 4;"),
         "line 13, column 18: 'y' is int[0..3] and its initial value int[4..4]",
@@ -196,24 +196,24 @@ REFUSED = {
     ),
     "a start that is defined by itself": (
         whole(members="  disc bool w = w;"),
-        "line 13, column 17: 'w' is no constant",
+        "line 13, column 17: 'w' is not a constant",
     ),
     "an assigned value outside of the range": (
         edge("c_a do x := 4;"),
-        "line 18, column 17: 'x' is int[0..3] and what it is to be int[4..4]",
+        "line 18, column 17: 'x' is int[0..3] and its new value int[4..4]",
     ),
     "an assigned value of another type": (
         edge("c_a do x := v;"),
-        "line 18, column 17: 'x' is int[0..3] and what it is to be bool",
+        "line 18, column 17: 'x' is int[0..3] and its new value bool",
     ),
     "an assigned input": (
         whole(members="  input bool i;", first="    edge c_a do i := v;"),
-        "line 18, column 17: 'i' is no variable",
+        "line 18, column 17: 'i' is not a variable",
     ),
-    "an assigned location": (edge("c_a do b := v;"), "line 18, column 17: 'b' is no variable"),
+    "an assigned location": (edge("c_a do b := v;"), "line 18, column 17: 'b' is not a variable"),
     "an assigned variable of another automaton": (
         whole(after="plant r: location: initial; edge p.c_a do p.x := 1; end"),
-        "line 21, column 43: 'p.x' is no variable of 'r'",
+        "line 21, column 43: 'p.x' is not a variable of 'r'",
     ),
     "a variable assigned twice": (edge("c_a do x := 1, x := 2;"), "line 18, column 25: 'x' is assigned twice"),
     # Alphabets, monitors, annotations
@@ -227,9 +227,9 @@ REFUSED = {
     ),
     "no event in the alphabet": (
         whole(after="supervisor s: alphabet p.x; location: initial; marked; end"),
-        "line 21, column 24: 'p.x' is no event",
+        "line 21, column 24: 'p.x' is not an event",
     ),
-    "a monitored event that is no event of the automaton": (
+    "a monitored event that is not an event of the automaton": (
         whole(after="plant r: monitor p.c_b; location: initial; edge p.c_a; end"),
         "line 21, column 1: 'c_b' is monitored and not in the alphabet of 'r'",
     ),
@@ -275,7 +275,7 @@ NEVER_GENERATED = {
         "line 1, column 31: 'p' has another initial location before this one",
     ),
     "a variable without a start": (whole(members="  disc bool w;"), "line 13, column 14: Expected"),
-    "a start by another variable": (whole(members="  disc bool w = v;"), "line 13, column 17: 'v' is no constant"),
+    "a start by another variable": (whole(members="  disc bool w = v;"), "line 13, column 17: 'v' is not a constant"),
     "an event that a plant blocks": (
         whole(after="plant r: alphabet p.c_a; location: initial; marked; end"),
         "line 21, column 1: an event in the alphabet of 'r' has no edge",

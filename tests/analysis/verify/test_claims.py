@@ -57,8 +57,8 @@ def verdict(made: sct.SupervisoryControlModel) -> Verdict:
     [
         (HOME, "from 2 states to `Base.docked`"),
         ("property reachable Base.away", "from 6 states to `Base.away`"),
-        ("property SP2: never Base.docked and Base.away", "6 states, asks for `!(Base.docked and Base.away)`"),
-        ('property "one of the two": always Base.docked or Base.away', "6 states, asks for `Base.docked or Base.away`"),
+        ("property SP2: never Base.docked and Base.away", "6 states, requires `!(Base.docked and Base.away)`"),
+        ('property "one of the two": always Base.docked or Base.away', "6 states, requires `Base.docked or Base.away`"),
     ],
 )
 def test_it_is_proved(tmp_path: Path, claimed: str, evidence: str) -> None:
@@ -117,7 +117,7 @@ def test_it_reads_requirement_automata(tmp_path: Path) -> None:
     [
         ("property Base: never Base.away", "property `Base` has the name of a component (line 11)"),
         ("property reachable 1", "the condition of a property must be boolean, found integer"),
-        ("property reachable Base.away from 1", "the condition behind `from` must be boolean, found integer"),
+        ("property reachable Base.away from 1", "the condition after `from` must be boolean, found integer"),
     ],
 )
 def test_what_is_wrong_is_found(tmp_path: Path, definition: str, finding: str) -> None:

@@ -471,7 +471,7 @@ MUTANTS: list[tuple[Callable[[sct.SupervisoryControlModel], None], str]] = [
     (a_requirement_automaton_stays, "after request to `Platform.drive`, requirement automaton 3 is in"),
     (a_requirement_automaton_forbids_less, "response from `Platform.drive` is forbidden by the text"),
     (never_is_built_as_always, "the condition of an invariant (line 85) holds by the text and does not"),
-    (a_property_is_another, "what a property says can be reached (line 86) holds by the text and does"),
+    (a_property_is_another, "the reachable condition of a property (line 86) holds by the text and does"),
     (it_begins_elsewhere, "`Lidar` (line 38) begins at free by the text, at blind in the model"),
     (two_edges_are_possible_at_once, "several edges with different ends are possible in the plants for"),
 ]

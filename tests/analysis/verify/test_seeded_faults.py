@@ -159,7 +159,7 @@ LOOP: dict[str, Fault] = {
     ),
     "a topic with a slash is another": (
         *(_ROLES, 'plant.topic.removeprefix("/")', "plant.topic", "Pairs"),
-        "response from `First.near`, response from `First.far` come as one by the text, and not so in the controller",
+        "response from `First.near`, response from `First.far` come as one by the text, and not in the controller",
     ),
     "messages of a topic are no batch": (
         *(_ROLES, "if len(events) > 1 and plant_of", "if len(events) > 2 and plant_of", "PersonFollower"),
@@ -167,7 +167,7 @@ LOOP: dict[str, Fault] = {
     ),
     "each message is a source": (
         *(_ROLES, "named = plant.kind == sct.PlantKind.message and plant.topic", "named = False", "Pairs"),
-        "response from `First.near`, response from `First.far` come as one by the text, and not so in the controller",
+        "response from `First.near`, response from `First.far` come as one by the text, and not in the controller",
     ),
     "times of a component are no source": (
         *(_ROLES, "_by_source([*self.incoming, *self.timeouts])", "_by_source(self.incoming)", "Pairs"),
@@ -175,11 +175,11 @@ LOOP: dict[str, Fault] = {
     ),
     "messages to one topic do not exclude each other": (
         *(_ROLES, "_by_source(self.triggers) if len(events) > 1", "_by_source(self.triggers) if False", "Pairs"),
-        "request to `First.left`, request to `First.right` exclude each other in a round by the text, and not so in",
+        "request to `First.left`, request to `First.right` exclude each other in a round by the text, and not in th",
     ),
     "a service starts again in a tick": (
         *(_ROLES, "(sct.PlantKind.service, sct.PlantKind.action)", "()", "Pairs"),
-        "request to `First.help` happens once in a tick by the text, and not so in the controller",
+        "request to `First.help` happens once in a tick by the text, and not in the controller",
     ),
     "the last data is wanted most": (
         *(

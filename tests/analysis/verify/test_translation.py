@@ -269,7 +269,7 @@ def test_without_a_compiler_c_is_skipped(monkeypatch: pytest.MonkeyPatch, tmp_pa
     verdict = validate_c(made, c_of(made))
     assert (verdict.outcome, verdict.explanation) == (
         Outcome.SKIPPED,
-        "there is no C compiler (cc, gcc, clang) to try it with",
+        "no C compiler found (cc, gcc, clang)",
     )
 
 
@@ -298,11 +298,12 @@ def test_what_cannot_be_generated_is_skipped() -> None:
     made.plants[2].variables[0].type.maximum = 2**31 - 2
     verdicts = validate(Models(supervised(made)), Configuration())
     assert verdicts[-1].outcome is Outcome.SKIPPED
-    assert "this can't be said in CIF" in verdicts[-1].explanation
+    assert "CIF cannot express this" in verdicts[-1].explanation
 
 
 IN_MODEL = "can happen in the model and not in the generated CIF"
 IN_CIF = "can happen in the generated CIF and not in the model"
+NEVER_REACHED = "in a state that the robot never reaches"
 CIF_MUTANTS = {
     "a requirement is weaker": (
         r"level < 6",
@@ -383,7 +384,7 @@ CIF_MUTANTS = {
         r" when strokes != 3 goto rest;",
         " goto rest;",
         [],
-        f"`component_Pump.c_tau2` {IN_CIF} where `Pump.run and Pump.strokes = 3`, though nothing leads there",
+        f"`component_Pump.c_tau2` {IN_CIF} where `Pump.run and Pump.strokes = 3`, {NEVER_REACHED}",
     ),
     "the start is another": (
         r"(disc int\[0\.\.7\] level = )3;",
@@ -434,10 +435,10 @@ def test_changed_cif_is_refuted(pattern: str, replacement: str, trace: list[str]
             "there is no 'idle'",
         ),
         (r"goto rest;", "goto nowhere;", "there is no 'nowhere'"),
-        (r"goto rest;", "goto strokes;", "'strokes' is no location of 'component_Pump'"),
+        (r"goto rest;", "goto strokes;", "'strokes' is not a location of 'component_Pump'"),
         (r"strokes != 3", "c_tau1 != 3", "'c_tau1' has no value"),
-        (r"^    edge c_tau2;", "    edge strokes;", "'strokes' is no event"),
-        (r"do level := 3", "do idle := 3", "'idle' is no variable"),
+        (r"^    edge c_tau2;", "    edge strokes;", "'strokes' is not an event"),
+        (r"do level := 3", "do idle := 3", "'idle' is not a variable"),
         (
             r"^    edge c_tau2;",
             "    edge c_tau2; edge c_tau2;",
@@ -451,7 +452,7 @@ def test_changed_cif_is_refuted(pattern: str, replacement: str, trace: list[str]
         (
             r"^  controllable c_tau2;",
             "  controllable c_tau1;",
-            "there are two of the name 'c_tau1'",
+            "the name 'c_tau1' is declared twice",
         ),
         (r"goto rest;", "goto rest", "Expected ';'"),
     ],
@@ -541,7 +542,7 @@ CHOSEN_MUTANTS = {
         r"^requirement (\S+) needs door.shut;$",
         r"plant invariant \1 needs door.shut;",
         [],
-        "the generated CIF without supervisor is wrong: it says what a supervisor does",
+        "the generated CIF without supervisor is wrong: it has statements of a supervisor",
     ),
     "a requirement asks of another event": (
         MODEL_FILE,

@@ -28,7 +28,7 @@ UNREADABLE = {
     '{"value": ' * 101 + "1" + "}" * 101: "nested too deeply",
     f'{{"value": {"9" * 5000}}}': "a number of 5000 digits is too long",
     '{"value": 1e999}': "1e999 is too large a number",
-    '{"value": NaN}': "NaN is no number of JSON",
+    '{"value": NaN}': "NaN is not a JSON number",
     '{"value": ': "Expecting value",
 }
 each_unreadable = pytest.mark.parametrize(("text", "why"), UNREADABLE.items(), ids=lambda text: text[:20])
@@ -110,20 +110,20 @@ LINE = {"time": 1.0, "direction": "in", "event": "e"}
 @pytest.mark.parametrize(
     ("line", "why"),
     [
-        (b"[" * 200_000, "line 2 is no line of an event log"),
-        (b'"\xff"', "line 2 is no UTF-8: invalid start byte at byte 1"),
-        (b"[1]", "line 2 is no line of an event log"),
-        (b"", "line 2 is no line of an event log"),
-        (b"9" * 5000, "line 2 is no line of an event log"),
+        (b"[" * 200_000, "line 2 is not a line of an event log"),
+        (b'"\xff"', "line 2 is not UTF-8: invalid start byte at byte 1"),
+        (b"[1]", "line 2 is not a line of an event log"),
+        (b"", "line 2 is not a line of an event log"),
+        (b"9" * 5000, "line 2 is not a line of an event log"),
         (LINE | {"time": None}, "it has no time"),
         (LINE | {"time": "1"}, "it has no time"),
         (LINE | {"time": 10**400}, "it has no time"),
         (LINE | {"time": float("inf")}, "it has no time"),
         (LINE | {"event": ["e"]}, "it has no direction and event"),
         (LINE | {"direction": {}}, "it has no direction and event"),
-        (LINE | {"data": 3}, '"data" is to be an object with a value'),
-        (LINE | {"data": {}}, '"data" is to be an object with a value'),
-        (LINE | {"message": [3]}, '"message" is to be an object'),
+        (LINE | {"data": 3}, '"data" must be an object with a value'),
+        (LINE | {"data": {}}, '"data" must be an object with a value'),
+        (LINE | {"message": [3]}, '"message" must be an object'),
     ],
     ids=lambda given: str(given)[:80],
 )
@@ -137,7 +137,7 @@ def test_the_player_says_which_line_is_wrong(tmp_path: Path, line: Any, why: str
 
 def test_a_pipe_is_no_trace(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
-    with pytest.raises(TraceError, match="pipe is no regular file"):
+    with pytest.raises(TraceError, match="pipe is not a regular file"):
         read_trace(str(tmp_path / "pipe"))
 
 
@@ -148,8 +148,8 @@ def test_a_pipe_is_no_trace(tmp_path: Path) -> None:
         ("[1, 2, ]", "leave out the comma before `]`"),
         ("{'a': 1}", "double quotes"),
         ("{\"a\": 'b'}", "double quotes"),
-        ('{"a": 1, // one\n"b": 2}', "leave out the comment: JSON has none"),
-        ('{"a": 1 # one\n}', "leave out the comment: JSON has none"),
+        ('{"a": 1, // one\n"b": 2}', "leave out the comment: JSON has no comments"),
+        ('{"a": 1 # one\n}', "leave out the comment: JSON has no comments"),
         ('{"a": True}', "write `true`"),
         ('{"a": None}', "write `null`"),
         ("{a: 1}", 'write the key in double quotes: "a"'),

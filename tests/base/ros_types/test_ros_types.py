@@ -92,8 +92,8 @@ def test_a_message_may_have_a_rule_in_its_comments(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("path", "text", "message"),
     [
-        ("a__msg__A__msg", "int8 x\nint8[2][2] y\n", r"A\.msg: `int8\[2\]\[2\] y` is no field$"),
-        ("a__msg__A__msg", "int8 x\n---\n", r"A\.msg: `---` is no field$"),
+        ("a__msg__A__msg", "int8 x\nint8[2][2] y\n", r"A\.msg: `int8\[2\]\[2\] y` is not a field$"),
+        ("a__msg__A__msg", "int8 x\n---\n", r"A\.msg: `---` is not a field$"),
         ("a__srv__A__srv", "int8 x\n", r"A\.srv: it has 1 sections, expected 2 with `---` between them$"),
         ("a__action__A__action", "---\n---\n---\n", r"A\.action: it has 4 sections, expected 3"),
     ],
@@ -252,5 +252,5 @@ def test_a_folder_that_is_too_large_is_searched_in_part(tmp_path: Path, monkeypa
     assert types.distributions[0].fields("p39", "Found", Section.MESSAGE) is None
     message, hint, _ = types.why_unknown("p39", "Found", Section.MESSAGE)
     assert message == "the package `p39` is unknown"
-    assert hint.endswith("give a folder nearer to the package with --interface-path")
-    assert "give the folder of its package" in RosTypes([tmp_path / "p39"]).why_unknown("q", "X", Section.MESSAGE)[1]
+    assert hint.endswith("use --interface-path with a folder nearer to the package")
+    assert "add the folder of its package" in RosTypes([tmp_path / "p39"]).why_unknown("q", "X", Section.MESSAGE)[1]

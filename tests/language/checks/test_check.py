@@ -291,7 +291,7 @@ def test_a_librarys_component_mentions_itself_only(tmp_path: Path) -> None:
     """
     findings = found(tmp_path, robot, doors=doors)
     assert places(findings) == [("doors.rscd", line, "unresolved-reference") for line in (10, 11, 12)]
-    assert {finding.hint for finding in findings} == {"a library's component speaks of its own members only"}
+    assert {finding.hint for finding in findings} == {"a component of a library reads only its own members"}
 
 
 def test_repairs_escape_keywords(tmp_path: Path) -> None:

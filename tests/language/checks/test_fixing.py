@@ -251,7 +251,7 @@ def test_no_brace_goes_behind_another_error(brace: str) -> None:
     found = checked(content)
     surplus = [finding for finding in found.findings if "one too many" in finding.message]
     assert [finding.edits for finding in surplus] == [()] * len(surplus)
-    assert {finding.hint for finding in surplus} <= {"mend the error in line 3 first"}
+    assert {finding.hint for finding in surplus} <= {"correct the error in line 3 first"}
     assert Counter(fixed(content))[brace] == Counter(content)[brace]
 
 
@@ -281,20 +281,20 @@ DOORS = """robot R {
 @pytest.mark.parametrize(
     ("old", "new", "keyword"),
     [
-        ("action fold", "actionfold", "behind `action`"),
-        ("component Door", "componentDoor", "behind `component`"),
-        ("datatype enum", "datatypeenum", "behind `datatype`"),
-        ("initial marked", "initialmarked", "behind `initial`"),
-        ("request to togo", "requesttotogo", "behind `request`"),
-        ("goto idle", "gotos", "behind `goto`"),
-        ("feedback: none", "feedback0.5 none", "behind `feedback`"),
+        ("action fold", "actionfold", "after `action`"),
+        ("component Door", "componentDoor", "after `component`"),
+        ("datatype enum", "datatypeenum", "after `datatype`"),
+        ("initial marked", "initialmarked", "after `initial`"),
+        ("request to togo", "requesttotogo", "after `request`"),
+        ("goto idle", "gotos", "after `goto`"),
+        ("feedback: none", "feedback0.5 none", "after `feedback`"),
         ("type: none\n    behaviour", "type: none nonebehaviour", "before `behaviour`"),
     ],
 )
 def test_no_keyword_takes_the_place_of_a_longer_word(old: str, new: str, keyword: str) -> None:
     content = DOORS.replace(old, new)
     assert content != DOORS
-    assert f"is a blank missing {keyword}?" in {finding.hint for finding in checked(content).findings}
+    assert f"is a space missing {keyword}?" in {finding.hint for finding in checked(content).findings}
     assert fixed(content) == content
 
 
@@ -362,7 +362,7 @@ def at(content: str, old: str, new: str) -> Edit:
         ("state moving", "state idle", "line 6: "),
         ("robot", "/* robot */ robot", "a comment would change"),
         ("go with", 'go with identifier: "go", ', None),
-        ("message go", "message went", "`go` would stand for something else"),
+        ("message go", "message went", "`go` would refer to something else"),
         ("    incoming", "    /* incoming */ incoming", "a comment would change"),
     ],
 )

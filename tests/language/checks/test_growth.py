@@ -15,7 +15,7 @@ COMPONENT = """component A {
   incoming message go with type: none
   behaviour { variable k: integer(0..9) = 0 on response from m do k := value initial marked state a { } }
 }"""
-TOO_LARGE = "this has more than 20000 parts when names are written out"
+TOO_LARGE = "this has more than 20000 parts after names are expanded"
 
 
 def doubled(head: str, first: str, step: str, use: str) -> str:

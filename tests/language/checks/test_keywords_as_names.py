@@ -129,7 +129,7 @@ def test_one_finding_and_its_edit(kind: str) -> None:
             assert found.findings
             continue
         (finding,) = found.findings
-        assert finding.hint == f"write `^{word}` where a keyword is used as a name", (word, finding)
+        assert finding.hint == f"write `^{word}` to use a keyword as a name", (word, finding)
         assert len(finding.edits) == len(finding.related) + 1
         for _ in range(5):  # The first of several in one item is reported.
             text = found.reading.file.text.after(edit for finding in found.findings for edit in finding.edits)

@@ -139,7 +139,11 @@ def test_types_of_one_name_are_told_apart() -> None:
         (ex.UnaryMinus(operand=ex.IntegerLiteral(value=3)), DOUBLE, "write `-3.0`"),
         (ex.DoubleLiteral(value=4.0), INTEGER, "write `4`"),
         (ex.UnaryMinus(operand=ex.DoubleLiteral(value=4.0)), INTEGER, "write `-4`"),
-        (ex.DoubleLiteral(value=4.5), INTEGER, "write a whole number or declare it double: a double is never rounded"),
+        (
+            ex.DoubleLiteral(value=4.5),
+            INTEGER,
+            "write a whole number or declare it double: RoboSC never rounds implicitly",
+        ),
         (ex.IntegerLiteral(value=1), BOOLEAN, "write `true`"),
         (ex.IntegerLiteral(value=0), BOOLEAN, "write `false`"),
         (ex.UnaryMinus(operand=ex.IntegerLiteral(value=1)), BOOLEAN, "compare it, such as `(…) > 0`"),

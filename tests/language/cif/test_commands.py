@@ -82,7 +82,7 @@ def test_a_guard_too_long_to_read_is_not_written_out(tmp_path: Path, monkeypatch
     assert (guard["guard"], guard["added_by_synthesis"], guard["ever_enabled"]) == (None, None, True)
     assert guard["guard_nodes"] > 1
     said = CliRunner().invoke(main, ["synthesize", str(path)]).stdout
-    assert f"guard: too long to write out: a decision diagram of {guard['guard_nodes']} nodes" in said
+    assert f"guard: too long to print: a decision diagram of {guard['guard_nodes']} nodes" in said
 
 
 def test_inputs_of_cif_are_counted_at_any_rate(specification: str) -> None:
@@ -145,7 +145,7 @@ def test_a_guard_keeps_what_it_is_copied_to_in_its_range(tmp_path: Path) -> None
     path.write_text(_OVERFLOW)
     told = CliRunner().invoke(main, ["synthesize", str(path)]).stdout
     assert "P.up\n    guard: P.n + 1 <= 3\n" in told
-    assert "`range of n: edge up do n := n + 1` (line 1)\n    forbids something in 1 state\n" in told
+    assert "`range of n: edge up do n := n + 1` (line 1)\n    restricts the robot in 1 state\n" in told
     answer = json.loads(CliRunner().invoke(main, ["synthesize", str(path), "--json"]).stdout)
     assert [event["guard"] for event in answer["events"]] == ["P.n + 1 <= 3"]
     CliRunner().invoke(main, ["transform", str(path), "--to", "cif", "-o", str(tmp_path)])
@@ -202,7 +202,7 @@ def test_the_written_specification_imports_its_own_from_where_it_is(specificatio
     assert 'import "../../motor.cif";' in written.read_text()
     checked = CliRunner().invoke(main, ["check", str(written)])
     # All its parts can be read: the only finding is that synthesis does not support supervisors.
-    assert "can't be read" not in checked.output
+    assert "cannot be read" not in checked.output
     assert "synthesis does not take supervisor automata" in checked.output
 
 
@@ -224,7 +224,7 @@ def test_one_model_that_the_tool_fails_at_does_not_hide_the_others(
     result = CliRunner().invoke(main, ["check", specification, str(failing), str(wrong)])
     assert result.exit_code == 70
     assert "there is no `u_fial` here" in result.output
-    assert "a fault of robosc itself, please report it: KeyError" in result.output
+    assert "internal error of robosc, please report it: KeyError" in result.output
 
 
 def test_a_saved_model_is_the_same(specification: str, tmp_path: Path) -> None:
@@ -322,7 +322,7 @@ def test_the_supervisor_in_c_goes_step_by_step(specification: str, tmp_path: Pat
 def test_what_needs_ros_or_a_control_loop_does_not_take_it(command: list[str], specification: str) -> None:
     result = CliRunner().invoke(main, [command[0], specification, *command[1:]])
     assert result.exit_code == 2
-    assert "is CIF, which stands for no ROS and no control loop" in result.output
+    assert "is CIF, which has no ROS graph and no control loop" in result.output
 
 
 @pytest.mark.parametrize("command", [["simulate", "--random", "1"], ["verify"], ["transform", "--to", "supervisor"]])
@@ -332,7 +332,7 @@ def test_what_runs_a_supervisor_learns_too_late_what_an_input_is(command: list[s
     output = ["--output", str(tmp_path / "out")] if command[0] == "transform" else []
     result = CliRunner().invoke(main, [*command, str(path), *output])
     assert result.exit_code == 1
-    assert "input.cif:1:12: error: whether `x` can happen depends on its data" in result.output
+    assert "input.cif:1:12: error: `x` depends on its data" in result.output
     assert not (tmp_path / "out").exists()
 
 

@@ -73,9 +73,9 @@ WRONG = {
         [("2:1", None)],
     ),
     "a supervisor": ("controllable c;\n" + _P + _P.replace("plant p", "supervisor q"), [("3:1", None)]),
-    "no plant": ("controllable c;\n", [("1:1", "name one automaton `plant` at least")]),
-    "nothing": ("// nothing", [("1:1", "name one automaton `plant` at least")]),
-    "no initial location": ("controllable c;\nplant p: location; end", [("2:1", "write `initial;` in one")]),
+    "no plant": ("controllable c;\n", [("1:1", "write `plant` before at least one automaton")]),
+    "nothing": ("// nothing", [("1:1", "write `plant` before at least one automaton")]),
+    "no initial location": ("controllable c;\nplant p: location; end", [("2:1", "write `initial;` in one location")]),
     "the variable of another automaton": (
         "controllable c; plant q: disc bool b; location: initial; end\n"
         + _P.replace("edge c", "edge c do q.b := true"),
@@ -99,7 +99,7 @@ WRONG = {
     "a number": ("controllable c;\n" + _P + "requirement 99999999999 > 1;", [("3:13", None)]),
     "too deep statements of a function whose head is not closed": (
         "controllable c;\n" + _P + f"func int f([): {'while true: ' * 500}return 1; {'end ' * 500}end",
-        [("1:1", "take statements of its functions apart")],
+        [("1:1", "split the statements of its functions")],
     ),
     "too long": (
         "controllable c; alg bool a0 = p.a, "
@@ -107,7 +107,7 @@ WRONG = {
         + ";\n"
         + _P
         + "requirement a30;",
-        [("1:268", "give parts of it to automata with variables")],
+        [("1:268", "move parts of it to automata with variables")],
     ),
     "too long by what is looked at": (
         "controllable c; alg int[0..2] a0 = 1, "
@@ -115,7 +115,7 @@ WRONG = {
         + ";\n"
         + _P
         + "requirement a30 = 1;",
-        [("1:495", "give parts of it to automata with variables")],
+        [("1:495", "move parts of it to automata with variables")],
     ),
     "too long all in all": (
         "controllable c; alg bool a0 = p.a, "
@@ -123,7 +123,7 @@ WRONG = {
         + ";\n"
         + _P
         + "requirement a10;" * 60,
-        [("3:749", "give parts of it to automata with variables")],
+        [("3:749", "move parts of it to automata with variables")],
     ),
     "a plant invariant over too much": (
         "controllable c;\n"
@@ -132,7 +132,7 @@ WRONG = {
             for n in range(9)
         )
         + f"\nplant invariant {' and '.join(f'p{n % 9}.x < 1' for n in range(60))};",
-        [("3:17", "state it by guards")],
+        [("3:17", "write it as guards")],
     ),
 }
 
@@ -215,7 +215,7 @@ def test_statements_of_functions_that_are_nested_too_deep_are_found_at_their_pla
     ]
     fine, *deep = on_small_stack(lambda: [findings(text) for text in texts])
     assert all("functions" in message for _, message, _ in fine)
-    message, hint = f"this is nested more than {DEEPEST} levels deep", "take statements of its functions apart"
+    message, hint = f"this is nested more than {DEEPEST} levels deep", "split the statements of its functions"
     assert deep == [[(f"{3 + 60 + 2 + DEEPEST - 2}:1", message, hint)]] * 2
 
 
@@ -267,7 +267,7 @@ def test_a_namespace_and_an_automaton_do_not_share_a_name() -> None:
     root = "import 'leaf.cif'; namespace a; plant b: controllable e; location: initial; marked; edge e; end"
     found = reading(main=root.replace("'", '"'), leaf="namespace a.b.c; plant p: location: initial; end")
     assert [(finding.rule, finding.message) for finding in found.findings] == [
-        ("cif-declaration", "there are two of the name `b`")
+        ("cif-declaration", "the name `b` is declared twice")
     ]
 
 
@@ -335,8 +335,8 @@ _COMPUTED = "write an algebraic variable"
 #: Constructs outside of CIF's synthesis: the text (`{}` of the plant: a declaration or a part of its edge), the
 #: construct's name, and the hint, with CIF's own transformation if there is one.
 OUTSIDE = [
-    ("cont x der 1.0; {}", "continuous variables", "leave them to simulation"),
-    ("cont x; {location a: equation x' = 1.0;}", "continuous variables", "leave them to simulation"),
+    ("cont x der 1.0; {}", "continuous variables", "use them only in simulation"),
+    ("cont x; {location a: equation x' = 1.0;}", "continuous variables", "use them only in simulation"),
     ("{} requirement p.a';", "derivatives", _COMPUTED),
     ("{edge c when time > 1}", "time", "by events"),
     ("func int f(int x): while x > 1: x := x - 1; end return x; end {}", "functions", _COMPUTED),
@@ -366,8 +366,8 @@ OUTSIDE = [
         "conditional updates",
         "cif2cif -t elim-if-updates",
     ),
-    ("{disc bool x; edge c do x := sample x}", "distributions", "a value of the type"),
-    ("{} requirement <int>1.0 > 1;", "casts", "a value of the type"),
+    ("{disc bool x; edge c do x := sample x}", "distributions", "a value of the required type"),
+    ("{} requirement <int>1.0 > 1;", "casts", "a value of the required type"),
     ("{} requirement 4 / 2 = 2;", "the operator `/`", ""),
     ("{edge tau}", "edges without an event", "cif2cif -t elim-tau-event"),
     ("{edge when true goto a}", "edges without an event", "cif2cif -t elim-tau-event"),

@@ -94,7 +94,7 @@ def test_all_is_optional(tmp_path: Path) -> None:
         ('{"package": []}', 1, 2, '"package" must be an object'),
         ('{"package": {"name": "Robot"}}', 1, 14, '"package.name" must match pattern'),
         ('{"supervisor": {"controller": {"launch": {"file": "x"}}}}', 1, 32, "launch.packageName"),
-        ('{"retryMs": 1, "é": {}, "retryMs": 2}', 1, 25, 'the key "retryMs" stands twice'),
+        ('{"retryMs": 1, "é": {}, "retryMs": 2}', 1, 25, 'the key "retryMs" occurs twice'),
         ("[]", 1, 1, "the file must be an object"),
         ('{"retryMs": 1,\n}', 2, 1, "not JSON"),
         ("", 1, 1, "not JSON"),
@@ -120,7 +120,7 @@ def test_all_faults_at_once(tmp_path: Path) -> None:
         read(tmp_path, '{"retryMs": 1, "retryMs": "x", "colour": 1, "periodMs": 5, "package": {"versoin": "1"}}')
     messages = {diagnostic.message: diagnostic.hint for diagnostic in raised.value.diagnostics}
     assert messages == {
-        'the key "retryMs" stands twice': None,
+        'the key "retryMs" occurs twice': None,
         '"retryMs" must be a valid integer': None,
         'unknown key "colour"': f"known here: {', '.join(EVERYTHING)}",
         'unknown key "package.versoin"': 'did you mean "version"?',

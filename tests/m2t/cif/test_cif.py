@@ -280,12 +280,12 @@ def test_a_negative_range_is_shifted_and_says_so() -> None:
         (expression("a * b > c", a="0..99", b="0..99", c="0..2"), None),
         (
             expression("a * b * c > 0", a="0..99", b="0..99", c="0..99"),
-            "it would have to be split into 10000 cases; 1024 are the most",
+            "it needs 10000 cases; the maximum is 1024",
         ),
         (updated("0..5000", "a - 1", a="0..5000"), None),
         (
             updated("0..5000", "a * b", a="0..5000", b="0..5000"),
-            "it would have to be split into 5001 cases; 1024 are the most",
+            "it needs 5001 cases; the maximum is 1024",
         ),
         (expression("a + a > 3", a="0..2147483646"), None),
         (expression("a - 3 + a > 3", a="0..2147483646"), "its numbers do not fit 32 bits"),
@@ -305,7 +305,7 @@ def test_what_cannot_be_said_is_an_error_at_its_place(given: sct.SupervisoryCont
         return
     [finding] = found
     assert (finding.file, finding.span, finding.rule) == ("robot.rscd", Span(7, 5, 8, 9), "cif")
-    assert (finding.severity, finding.message) == (Severity.ERROR, f"this can't be said in CIF: {message}")
+    assert (finding.severity, finding.message) == (Severity.ERROR, f"CIF cannot express this: {message}")
 
 
 def test_what_cannot_be_said_in_a_guard_stands_at_its_event() -> None:
@@ -325,7 +325,7 @@ def test_what_cannot_be_said_in_a_guard_stands_at_its_event() -> None:
 def test_expressions_of_too_large_a_number_draw_nothing_further() -> None:
     given = expression("a + 3 > 3", a="-2..2147483646")
     assert [precondition.message for precondition in cif.preconditions(Models(given), Configuration())] == [
-        "this can't be said in CIF: its range does not fit 32 bits"
+        "CIF cannot express this: its range does not fit 32 bits"
     ]
 
 

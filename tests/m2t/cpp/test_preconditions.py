@@ -67,19 +67,19 @@ def test_nothing_against_a_good_model(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [
-        ({"package": "NavMsgs"}, 'cart.rscd:2: "NavMsgs" is no name of a ROS package'),
-        ({"package": "nav__msgs"}, 'cart.rscd:2: "nav__msgs" is no name of a ROS package'),
-        ({"type": "odometry"}, 'cart.rscd:2: "odometry" is no name of a ROS type'),
-        ({"topic": "/base/"}, 'cart.rscd:6: "/base/" is no name of a ROS topic'),
-        ({"topic": "/base odometry"}, 'cart.rscd:6: "/base odometry" is no name of a ROS topic'),
-        ({"topic": "/base//odometry"}, 'cart.rscd:6: "/base//odometry" is no name of a ROS topic'),
-        ({"topic": "/base/1"}, 'cart.rscd:6: "/base/1" is no name of a ROS topic'),
-        ({"topic": '/b\\n\\"); exit(1); (\\"'}, 'cart.rscd:6: "/b\n"); exit(1); ("" is no name of a ROS topic'),
-        ({"field": "_x"}, 'cart.rscd:11: "_x" is no name of a field in ROS'),
-        ({"robot": "_Cart"}, 'cart.rscd:1: "_cart_controller" is no name of a ROS package'),
+        ({"package": "NavMsgs"}, 'cart.rscd:2: "NavMsgs" is not a name of a ROS package'),
+        ({"package": "nav__msgs"}, 'cart.rscd:2: "nav__msgs" is not a name of a ROS package'),
+        ({"type": "odometry"}, 'cart.rscd:2: "odometry" is not a name of a ROS type'),
+        ({"topic": "/base/"}, 'cart.rscd:6: "/base/" is not a name of a ROS topic'),
+        ({"topic": "/base odometry"}, 'cart.rscd:6: "/base odometry" is not a name of a ROS topic'),
+        ({"topic": "/base//odometry"}, 'cart.rscd:6: "/base//odometry" is not a name of a ROS topic'),
+        ({"topic": "/base/1"}, 'cart.rscd:6: "/base/1" is not a name of a ROS topic'),
+        ({"topic": '/b\\n\\"); exit(1); (\\"'}, 'cart.rscd:6: "/b\n"); exit(1); ("" is not a name of a ROS topic'),
+        ({"field": "_x"}, 'cart.rscd:11: "_x" is not a name of a field in ROS'),
+        ({"robot": "_Cart"}, 'cart.rscd:1: "_cart_controller" is not a name of a ROS package'),
         (
             {"more": 'service reset with identifier: "re-set", request: none, response: none'},
-            'cart.rscd:7: "re-set" is no name of a ROS service',
+            'cart.rscd:7: "re-set" is not a name of a ROS service',
         ),
         (
             {"more": 'incoming message tell with identifier: "base/odometry", type: boolean'},
@@ -102,11 +102,11 @@ def test_names_and_kinds(tmp_path: Path, changes: dict[str, str], expected: str)
     [
         (
             '{\n\n "onShutdown": ["where"]}',
-            'controller-config.json:3: "onShutdown": where is no message that the node sends',
+            'controller-config.json:3: "onShutdown": where is not a message that the node sends',
         ),
         (
             '{\n "onWithheld": ["where"]}',
-            'controller-config.json:2: "onWithheld": where is no message that the node sends',
+            'controller-config.json:2: "onWithheld": where is not a message that the node sends',
         ),
         (
             '{\n "waitFor": ["where"]}',
@@ -114,7 +114,7 @@ def test_names_and_kinds(tmp_path: Path, changes: dict[str, str], expected: str)
         ),
         (
             '{"package": {\n "maintainer": "A\\") execute_process(COMMAND id) (\\""}}',
-            "controller-config.json:2: the maintainer would break the package's build",
+            "controller-config.json:2: the maintainer has characters that break the build of the package",
         ),
     ],
 )
@@ -162,8 +162,8 @@ def test_services_and_actions_are_welcome(tmp_path: Path) -> None:
 def test_what_goes_out_in_spite_of_requirements_is_listed(tmp_path: Path) -> None:
     settings = '{"onShutdown": ["halt",\n "Base.go"]}'
     assert found(tmp_path, settings, Severity.WARNING, more=MORE) == [
-        'controller-config.json:1: "onShutdown": halt is sent then in spite of "requirement Eye.open disables halt"',
-        'controller-config.json:2: "onShutdown": Base.go is sent then in spite of "requirement Eye.open disables go"',
+        'controller-config.json:1: "onShutdown": halt is then sent regardless of "requirement Eye.open disables halt"',
+        'controller-config.json:2: "onShutdown": Base.go is then sent regardless of "requirement Eye.open disables go"',
     ]
     assert found(tmp_path, settings, Severity.ERROR, more=MORE) == []
 
@@ -171,11 +171,11 @@ def test_what_goes_out_in_spite_of_requirements_is_listed(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("settings", "expected"),
     [
-        ("{}", '1: "onShutdown" is not set: when the node ends, the robot goes on as it was told last'),
+        ("{}", '1: "onShutdown" is not set: when the node ends, the robot continues with its last command'),
         ('{"onShutdown": []}', None),
         (
             '{"onShutdown": [],\n "watchdogStops": true}',
-            '2: "watchdogStops" only holds commands back: "onShutdown" names nothing that stops the robot',
+            '2: "watchdogStops" only holds commands back: "onShutdown" names no message that stops the robot',
         ),
     ],
 )
@@ -206,8 +206,8 @@ DOUBLES = """incoming message drive with type: double
 )
 def test_what_may_be_no_number_has_something_in_its_place(tmp_path: Path, provided: str, outside: bool) -> None:
     said = (
-        "cart.rscd:18: drive is not sent where its data is no finite number, nor is anything"
-        " else: the robot goes on as it was told last"
+        "cart.rscd:18: drive is not sent where its data is not a finite number, and no other"
+        " message is: the robot continues with its last command"
     )
     more = DOUBLES % provided
     assert found(tmp_path, '{"onShutdown": []}', Severity.WARNING, more=more) == ([said] if outside else [])
@@ -236,12 +236,12 @@ KEPT = """incoming message drive with identifier: "drive", type: %s
 @pytest.mark.parametrize(
     ("kind", "provided", "what"),
     [
-        ("sensor_msgs/JointState", "Eye.last", "data holds what is no"),
-        ("sensor_msgs/JointState", "{ position: Eye.speeds }", "position holds what is no"),
-        ("sensor_msgs/JointState", "{ position: [0.0, Eye.speeds[1]] }", "position holds what is no"),
+        ("sensor_msgs/JointState", "Eye.last", "data has a value that is not a"),
+        ("sensor_msgs/JointState", "{ position: Eye.speeds }", "position has a value that is not a"),
+        ("sensor_msgs/JointState", "{ position: [0.0, Eye.speeds[1]] }", "position has a value that is not a"),
         ("sensor_msgs/JointState", "{ name: Eye.names, position: [0.0, 1.0] }", None),
         ("sensor_msgs/JointState", "{ header: Eye.last.header }", None),
-        ("geometry_msgs/Vector3", "{ x: min(Eye.speeds) }", "x is no"),
+        ("geometry_msgs/Vector3", "{ x: min(Eye.speeds) }", "x is not a"),
     ],
 )
 def test_what_is_handed_on_may_hold_what_is_not_finite(
@@ -249,7 +249,7 @@ def test_what_is_handed_on_may_hold_what_is_not_finite(
 ) -> None:
     more = KEPT % (kind, provided)
     warnings = found(tmp_path, '{"onShutdown": []}', Severity.WARNING, more=more)
-    end = " finite number, nor is anything else: the robot goes on as it was told last"
+    end = " finite number, and no other message is: the robot continues with its last command"
     assert warnings == ([f"cart.rscd:20: drive is not sent where its {what}{end}"] if what else [])
     assert found(tmp_path, '{"onShutdown": [], "onWithheld": []}', Severity.WARNING, more=more) == []
 

@@ -242,75 +242,78 @@ def _another_models_literal(given: Any) -> None:
 
 
 BROKEN: list[tuple[Callable[[Any], None], list[str]]] = [
-    (_rename, ["the name 'p' is given twice"]),
+    (_rename, ["the name 'p' is used twice"]),
     (
         _rename_members,
-        ["the name 'red' is given twice", *(f"the name '{name}' is given twice" for name in ("c", "n", "one"))],
+        ["the name 'red' is used twice", *(f"the name '{name}' is used twice" for name in ("c", "n", "one"))],
     ),
-    (_name_no_identifier, ["'name' is to be an identifier, which '2nd' is not"]),
-    (_two_initial, ["plant 'p' has 2 initial locations; it starts in exactly one"]),
-    (_none_initial, ["plant 'p' has no initial locations; it starts in exactly one"]),
+    (_name_no_identifier, ["'name' must be an identifier, found '2nd'"]),
+    (_two_initial, ["plant 'p' has 2 initial locations, expected exactly one"]),
+    (_none_initial, ["plant 'p' has no initial locations, expected exactly one"]),
     (_second_edge, ["location 'one' has two edges for 'c', one without guard"]),
     (_unused_event, ["no plant has an edge for the event 'u_error'"]),
-    (_foreign_target, ["the target 'one' is another plant's location"]),
-    (_foreign_update, ["the variable 'x' is another plant's"]),
+    (_foreign_target, ["the target 'one' is a location of another plant"]),
+    (_foreign_update, ["the variable 'x' belongs to another plant"]),
     (_updated_twice, ["the variable 'n' is updated twice"]),
-    (_wrong_update, ["this is of boolean, but integer is wanted"]),
-    (_guard_no_boolean, ["this is of integer, but boolean is wanted"]),
-    (_condition_no_boolean, ["this is of integer, but boolean is wanted"]),
-    (_part_no_boolean, ["this is of integer, but boolean is wanted"]),
+    (_wrong_update, ["this is of boolean, expected integer"]),
+    (_guard_no_boolean, ["this is of integer, expected boolean"]),
+    (_condition_no_boolean, ["this is of integer, expected boolean"]),
+    (_part_no_boolean, ["this is of integer, expected boolean"]),
     (
         _input_in_guard,
-        ["an input is read in guards and updates of edges, and in requirements, only", "an initial value is a literal"],
+        [
+            "an input can be read only in guards and updates of edges, and in requirements",
+            "an initial value must be a literal",
+        ],
     ),
     (_input_of_another_event, ["'c' does not carry the input 'i'"]),
-    (_carried_from_elsewhere, ["the input 'i' is another plant's"]),
-    (_unbounded, ["both bounds of an integer are given in an sct model"]),
+    (_carried_from_elsewhere, ["the input 'i' belongs to another plant"]),
+    (_unbounded, ["an integer in an sct model must have both bounds"]),
     (_reversed, ["the range -2..-9 is reversed", "-1 is outside -2..-9"]),
     (_initial_outside, ["-3 is outside -2..5"]),
-    (_initial_computed, ["an initial value is a literal"]),
-    (_initial_wrong, ["this is of integer, but boolean is wanted"]),
+    (_initial_computed, ["an initial value must be a literal"]),
+    (_initial_wrong, ["this is of integer, expected boolean"]),
     (
         _double,
         [
-            "this is of boolean, but double is wanted",
-            "this is of double, but boolean is wanted",
-            "DoubleType has no place in an sct model",
-            "DoubleLiteral has no place in an sct model",
-            "an initial value is a literal",
+            "this is of boolean, expected double",
+            "this is of double, expected boolean",
+            "DoubleType is not allowed in an sct model",
+            "DoubleLiteral is not allowed in an sct model",
+            "an initial value must be a literal",
         ],
     ),
     (_mixed, ["the operands are of integer and boolean, not of one type"]),
-    (_compared_booleans, ["numbers are wanted, not boolean"]),
-    (_joined_numbers, ["this is of integer, but boolean is wanted"]),
+    (_compared_booleans, ["expected numbers, found boolean"]),
+    (_joined_numbers, ["this is of integer, expected boolean"]),
     (
         _uneven_choice,
-        ["this is of integer, but boolean is wanted", "the operands are of boolean and integer, not of one type"],
+        ["this is of integer, expected boolean", "the operands are of boolean and integer, not of one type"],
     ),
     (_negative_literal, ["a literal has no sign; the sign is a UnaryMinus around it"]),
-    (_access, ["Access belongs in a robosc model only"]),
+    (_access, ["Access is allowed only in a robosc model"]),
     (
         _older_action,
         [
             (
-                "the action 'Base.drive' ends where it is canceled, as in older models; make this model anew from its"
-                " text: `robosc transform MODEL.rscd --to xmi`"
+                "the action 'Base.drive' ends where it is canceled, as in older models; generate this model"
+                " again from its text: `robosc transform MODEL.rscd --to xmi`"
             )
         ],
     ),
-    (_function_of_arrays, ["this call of 'max' has no place in an sct model"]),
+    (_function_of_arrays, ["this call of 'max' is not allowed in an sct model"]),
     (_unknown_function, ["there is no function 'median'"]),
-    (_no_argument, ["'min' has another number of arguments"]),
-    (_restricted_response, ["the event 'u' is uncontrollable: nothing can restrict it"]),
+    (_no_argument, ["'min' has a wrong number of arguments"]),
+    (_restricted_response, ["the event 'u' is uncontrollable: no requirement can restrict it"]),
     (_no_guard, ["the event 'p.c' has no guard"]),
-    (_foreign_requirement, ["a requirement of this guard is not one on 'c'"]),
+    (_foreign_requirement, ["a requirement of this guard does not restrict 'c'"]),
     (_two_guards, ["the event 'c' has more than one guard", "the event 'c' has more than one guard"]),
-    (_another_models_event, ["the event 'c' is another model's"]),
+    (_another_models_event, ["the event 'c' belongs to another model"]),
     (
         _another_models_literal,
         [
             "the operands are of enumeration E and enumeration E, not of one type",
-            "the literal 'red' is another model's",
+            "the literal 'red' belongs to another model",
         ],
     ),
 ]
@@ -402,16 +405,16 @@ def graph() -> rosgraph.RosGraph:
 
 
 GRAPHS: list[tuple[str, Any, str]] = [
-    ("interfaces[0].kind", rosgraph.InterfaceKind.service, "'String' is a service, but a message is wanted"),
-    ("interfaces[0].package", "a/b", "'a/b' is no name of a ROS package"),
-    ("interfaces[0].type", "a b", "'type' is to be an identifier, which 'a b' is not"),
-    ("variables[0].initial", ex.IntegerLiteral(value=1), "this is of integer, but string is wanted"),
-    ("conversions[0].rules[0].condition", ex.StringLiteral(value=""), "this is of string, but boolean is wanted"),
-    ("conversions[0].default", ex.EnumerationLiteral(name="blue"), "'blue' is no literal of E"),
+    ("interfaces[0].kind", rosgraph.InterfaceKind.service, "'String' is a service, expected a message"),
+    ("interfaces[0].package", "a/b", "'a/b' is not a name of a ROS package"),
+    ("interfaces[0].type", "a b", "'type' must be an identifier, found 'a b'"),
+    ("variables[0].initial", ex.IntegerLiteral(value=1), "this is of integer, expected string"),
+    ("conversions[0].rules[0].condition", ex.StringLiteral(value=""), "this is of string, expected boolean"),
+    ("conversions[0].default", ex.EnumerationLiteral(name="blue"), "'blue' is not a literal of E"),
     (
         "subscriptions[0].receptions[0].inputs[0].value.type",
         ex.DoubleType(),
-        "this is of double, but boolean is wanted",
+        "this is of double, expected boolean",
     ),
     (
         "subscriptions[0].receptions[0].inputs[0].input",
@@ -421,16 +424,16 @@ GRAPHS: list[tuple[str, Any, str]] = [
     (
         "subscriptions[0].receptions[0].inputs[0].value.steps[0].name",
         "x;",
-        "'name' is to be an identifier, which 'x;' is not",
+        "'name' must be an identifier, found 'x;'",
     ),
-    ("reactions[0].guard", ex.IntegerLiteral(value=1), "this is of integer, but boolean is wanted"),
+    ("reactions[0].guard", ex.IntegerLiteral(value=1), "this is of integer, expected boolean"),
     ("reactions[0].assignments[0].value.steps[1].index", -1, "an index counts from 0"),
     (
         "publishers[0].sendings[0].alternatives[0].fields[0].type",
         ex.BooleanType(),
-        "this is of string, but boolean is wanted",
+        "this is of string, expected boolean",
     ),
-    ("reactions[0].assignments[0].value", ex.BooleanLiteral(value=True), "this is of boolean, but string is wanted"),
+    ("reactions[0].assignments[0].value", ex.BooleanLiteral(value=True), "this is of boolean, expected string"),
 ]
 
 
@@ -452,11 +455,11 @@ def test_rosgraph_references() -> None:
     given.reactions[0].assignments.clear()
     given.publishers[0].sendings[0].alternatives[0].fields[0].path.append("a.b")
     assert sorted(messages(given)) == [
-        "'one' is no location of a data plant",
-        "'path' is to be an identifier, which 'a.b' is not",
+        "'one' is not a location of a data plant",
+        "'path' must be an identifier, found 'a.b'",
         "'u' does not carry the input 'i'",
-        "the event 'u' is another model's",
-        "the locations are of several plants",
+        "the event 'u' belongs to another model",
+        "the locations belong to several plants",
     ]
 
 
@@ -469,8 +472,8 @@ def test_rosgraph_references() -> None:
             "an access reads either an item or the value of the event",
         ),
         (robosc.IndexSegment(index=-1), "an index counts from 0"),
-        (robosc.Interface(name="i", type="T", package="a b"), "'a b' is no name of a ROS package"),
-        (robosc.State(name="s t"), "'name' is to be an identifier, which 's t' is not"),
+        (robosc.Interface(name="i", type="T", package="a b"), "'a b' is not a name of a ROS package"),
+        (robosc.State(name="s t"), "'name' must be an identifier, found 's t'"),
         (ex.DoubleLiteral(value=-1.0), "a literal has no sign; the sign is a UnaryMinus around it"),
     ],
 )

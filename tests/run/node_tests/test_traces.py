@@ -209,7 +209,7 @@ def test_what_can_not_be_played_is_said(case: Case) -> None:
     line = case.trace[number - 1]
     del line["message"]
     line["data"]["value"] = "foggy"
-    with pytest.raises(TraceError, match=f"line {number} can't be played: no message is known .* as foggy"):
+    with pytest.raises(TraceError, match=f"line {number} cannot be played: no known message is read as foggy"):
         case.play()
 
 
@@ -241,7 +241,7 @@ def test_an_error_has_its_reason_and_its_result(
 def test_a_reason_that_no_server_brings_about(case: Case, reason: str) -> None:
     failed = {"direction": "in", "event": "action_go.u_error", "data": {"value": {"code": 0}, "reason": reason}}
     case.traces = [[case.trace[0], case.trace[0] | failed]]
-    with pytest.raises(TraceError, match=f"line 2 can't be played: no test server lets /go fail because {reason}"):
+    with pytest.raises(TraceError, match=f"line 2 cannot be played: no test server lets /go fail because {reason}"):
         case.play()
 
 
@@ -256,7 +256,7 @@ def test_a_call_fails_for_its_reason(case: Case, reason: str) -> None:
     if reason == "timeout":
         case.play()
         return
-    fault = f"line {before + 2} can't be played: no test server lets /lift fail because {reason}"
+    fault = f"line {before + 2} cannot be played: no test server lets /lift fail because {reason}"
     with pytest.raises(TraceError, match=fault):
         case.play()
 
@@ -278,7 +278,7 @@ def test_a_stopped_node_ends_a_trace(case: Case) -> None:
 
 def test_a_log_of_a_layer_is_refused(case: Case) -> None:
     case.trace[3]["direction"] = "blocked"
-    with pytest.raises(TraceError, match="line 4 is of a supervisory layer"):
+    with pytest.raises(TraceError, match="line 4 comes from a supervisory layer"):
         case.play()
 
 
@@ -343,7 +343,7 @@ def test_wrong_data_is_noticed(case: Case) -> None:
     speed = move.alternatives[0].fields[0].value
     assert isinstance(speed, ex.DoubleLiteral)
     speed.value = 0.25
-    with pytest.raises(TraceError, match=r"says out message_move.c_trigger .*0\.2.* but the node sent .*0\.25"):
+    with pytest.raises(TraceError, match=r"has out message_move.c_trigger .*0\.2.* but the node sent .*0\.25"):
         case.play()
 
 
@@ -356,7 +356,7 @@ def test_data_that_changes_on_its_way_is_noticed(case: Case, monkeypatch: pytest
         node.sent[put["topic"]].put = lambda _: None  # type: ignore[method-assign]
 
     monkeypatch.setattr(InProcessNode, "connect", connect)
-    with pytest.raises(TraceError, match=r"the node logs out message_halt.c_trigger .* but nothing arrives"):
+    with pytest.raises(TraceError, match=r"the node logs out message_halt.c_trigger .* but no message arrives"):
         case.play()
 
 
@@ -365,7 +365,7 @@ def test_a_node_that_forgets_is_noticed(case: Case) -> None:
     for location in lidar.locations:
         for edge in edges_from(location):
             edge.updates.clear()
-    with pytest.raises(TraceError, match=r"does not do what the trace says|but the node did"):
+    with pytest.raises(TraceError, match=r"does not follow the trace|but the node did"):
         case.play()
 
 

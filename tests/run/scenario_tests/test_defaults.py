@@ -129,8 +129,8 @@ def test_a_trace_names_the_defaults_that_only_one_ros_has() -> None:
         ('{"pose": {"position": {"x": 2.0}}}', ""),
         ('{"pose": {"orientation": {"w": 1.0}}}', ""),
         ('{"pose": {"position": {"x": 3.0}}}', "was sent with other data"),
-        ('{"pose": {"positon": {"x": 2.0}}}', "`pose.positon` of the request to `Mission.go` can't be compared"),
-        ('{"header": {"stamp": {"sec": 1}}}', "`header.stamp` of the request to `Mission.go` can't be compared"),
+        ('{"pose": {"positon": {"x": 2.0}}}', "`pose.positon` of the request to `Mission.go` cannot be compared"),
+        ('{"header": {"stamp": {"sec": 1}}}', "`header.stamp` of the request to `Mission.go` cannot be compared"),
     ],
 )
 def test_what_is_handed_on_is_compared(expected: str, fault: str) -> None:

@@ -153,7 +153,7 @@ def test_a_pause_follows_a_failure() -> None:
 def test_a_late_answer_after_a_lost_goal_changes_nothing() -> None:
     text = 'scenario "one"\n  error from go because lost\n  response from go\n  expect Base.unknown\n'
     ((line, message, _),) = findings(text)
-    assert (line, "can't come now" in message) == (3, True)
+    assert (line, "cannot come now" in message) == (3, True)
 
 
 @pytest.mark.parametrize(
@@ -161,12 +161,12 @@ def test_a_late_answer_after_a_lost_goal_changes_nothing() -> None:
     [
         (
             "error from go because failed",
-            "the error from `Base.go` can't have the reason `failed`",
+            "the error from `Base.go` cannot have the reason `failed`",
             "`aborted`, `canceled`, `lost`",
         ),
         (
             "error from lift because lost",
-            "the error from `Base.lift` can't have the reason `lost`",
+            "the error from `Base.lift` cannot have the reason `lost`",
             "`failed`, `timeout`, `unavailable` and `unreadable`",
         ),
         (
@@ -175,8 +175,8 @@ def test_a_late_answer_after_a_lost_goal_changes_nothing() -> None:
             "leave out `because lost`",
         ),
         ("stop because lost", "only the error of a service or an action has a reason", "leave out `because lost`"),
-        ('error from go because lost with {"code": 3}', "an error with the reason `lost` brings no data", "leave out"),
-        ("error from lift because timeout with 3", "an error with the reason `timeout` brings no data", "leave out"),
+        ('error from go because lost with {"code": 3}', "an error with the reason `lost` has no data", "leave out"),
+        ("error from lift because timeout with 3", "an error with the reason `timeout` has no data", "leave out"),
         ("refuse cancel of lift", "there is no event `lift.canceled`", ""),
         ("error from go because", "this is neither a step nor an expectation", ""),
         ('error from go with {"code": "x"}', 'value.code is "x", expected an integer', ""),
@@ -194,7 +194,7 @@ def test_a_late_answer_after_a_lost_goal_changes_nothing() -> None:
         ('error from lift with {"heights": [true]}', "value.heights[0] is true, expected a number", ""),
         ('stop with "false"', 'value is "false", expected a boolean', ""),
         ("stop with 0.5", "value is 0.5, expected a boolean", ""),
-        ("stop with null", "`null` is no data", "leave out `with null`"),
+        ("stop with null", "`null` is not data", "leave out `with null`"),
     ],
 )
 def test_steps_that_cannot_be(step: str, message: str, hint: str) -> None:
@@ -208,7 +208,7 @@ def test_steps_that_cannot_be(step: str, message: str, hint: str) -> None:
 @pytest.mark.parametrize(
     ("steps", "message"),
     [
-        ("feedback from go\n  error from go because rejected", "the goal has been accepted: it can't fail with `rej"),
+        ("feedback from go\n  error from go because rejected", "the goal has been accepted: it cannot fail with `rej"),
         ("feedback from go\n  wait 10 s\n  error from go because unavailable", "the goal has been accepted"),
         ("feedback from go\n  wait 10 s\n  error from go because timeout", "the goal has been accepted"),
         # The goal was accepted after its time had expired.
@@ -218,7 +218,7 @@ def test_steps_that_cannot_be(step: str, message: str, hint: str) -> None:
         ("stop with true\n  refuse cancel of go\n  error from go because timeout", "the goal has been accepted"),
         ("stop with true\n  error from go because rejected", None),
         ("stop with true\n  error from go because timeout", None),
-        ("stop with true\n  error from go because unavailable", "a goal that is canceled before a server is there"),
+        ("stop with true\n  error from go because unavailable", "a goal that is canceled without a server"),
         ("feedback from go\n  error from go because aborted", None),
         ("feedback from go\n  error from go because lost", None),
     ],
@@ -247,16 +247,16 @@ def test_a_second_goal_is_accepted_anew() -> None:
     [
         (
             'stop with true\n  canceled from go with {"code": 3}\n  error from lift with {"heights": [0.0, 1.0]}',
-            "the node can read this data: it is that of the response from `Base.lift`",
+            "the node can read this data: write it at the response from `Base.lift`",
             "",
         ),
         (
             'error from go because unreadable with {"path": [1.0]}',
-            "the node can read this data: it is that of the response from `Base.go`",
+            "the node can read this data: write it at the response from `Base.go`",
             "",
         ),
         ("canceled from go", "the controller has not canceled this goal", "write `error from go because canceled`"),
-        ("error from lift", "the error from `Base.lift` can't come now: nothing that it ends is under way", ""),
+        ("error from lift", "the error from `Base.lift` cannot come now: it ends no running call or goal", ""),
         ("refuse cancel of go", "`go` is not being canceled", ""),
         (
             "stop with true\n  error from go because canceled",

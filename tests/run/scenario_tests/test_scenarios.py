@@ -167,7 +167,7 @@ def test_data_of_ros_is_played_as_it_is(folder: Path, line: str, state: str) -> 
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("lamp with true", "true is data of ROS in the place of a literal"),
+        ("lamp with true", "true is ROS data instead of a literal"),
         ('frame with "\\ud800"', "expected a text that UTF-8 can encode"),
     ],
 )
@@ -182,9 +182,9 @@ def test_data_that_is_not_played(folder: Path, line: str, message: str) -> None:
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("expect Lidar.free) or (true", "this is not one condition"),
-        ("expect Lidar.free /* later", "this is not one condition"),
-        ("expect scan sent", "the response from `Lidar.scan` comes from the robot: the controller does not send it"),
+        ("expect Lidar.free) or (true", "this is not a single condition"),
+        ("expect Lidar.free /* later", "this is not a single condition"),
+        ("expect scan sent", "the response from `Lidar.scan` comes from the robot, not from the controller"),
         ("expect Lidar.far > 0.3", "the supervisor needs it, expected boolean, an integer with a range or an enum"),
     ],
 )
@@ -210,7 +210,7 @@ def test_what_can_not_come() -> None:
     text = f'scenario "one"\n{failing}scenario "two"\n  expect Dock.docked\n'
     told = findings(text)
     assert [line for line, _, _ in told] == [3, 6]
-    assert told[0][2].endswith("can't come now: nothing that it ends is under way")
+    assert told[0][2].endswith("cannot come now: it ends no running call or goal")
 
 
 def test_all_faults_are_told_in_one_run() -> None:
@@ -234,7 +234,7 @@ scenario docks
 
 
 def test_a_scenario_without_expectations() -> None:
-    assert findings('scenario "one"\n  wait 1 s\n') == [(1, 1, "nothing is expected in this scenario")]
+    assert findings('scenario "one"\n  wait 1 s\n') == [(1, 1, "the scenario has no expectation")]
 
 
 @pytest.mark.parametrize("text", ["", "\n// the start\n"])

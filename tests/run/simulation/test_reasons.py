@@ -116,13 +116,13 @@ def test_a_reason_that_an_event_cannot_have(line: str, possible: tuple[str, ...]
         ("response from go because lost", "only the error of a service or an action has a reason"),
         ('action_go.u_canceled {"reason": "canceled"}', "only the error of a service or an action has a reason"),
         ("error from og", "there is no event `og.error`"),
-        ("error from go because", "this is no step of a scenario"),
-        ("error of go", "this is no step of a scenario"),
+        ("error from go because", "this is not a step of a scenario"),
+        ("error of go", "this is not a step of a scenario"),
         ("refuse cancel of lift", "there is no event `lift.canceled`"),
-        ("error from go with message 3", "a message is an object with fields"),
+        ("error from go with message 3", "a message must be an object with fields"),
         ("go", "there is no event `go`"),
-        ('error from go because lost with {"rest": 2.0}', "an error with the reason `lost` brings no data"),
-        ('error from lift because timeout with {"heights": []}', "an error with the reason `timeout` brings no data"),
+        ('error from go because lost with {"rest": 2.0}', "an error with the reason `lost` has no data"),
+        ('error from lift because timeout with {"heights": []}', "an error with the reason `timeout` has no data"),
         ('{"event": "action_go.u_error", "reason": "lost"}', "`reason` is part of the data"),
         ('{"event": "action_go.u_error", "data": {"reason": "lost"}, "value": {"rest": 2.0}}', "`value` is part of"),
     ],
@@ -159,7 +159,7 @@ def test_a_literal_of_an_error_that_brings_no_data(tmp_path: Path) -> None:
         done = CliRunner().invoke(main, ["simulate", str(model), "--script", "-"], input=lines, catch_exceptions=False)
         assert done.exit_code == (state is None), done.stderr
         if state is None:
-            assert 'brings no data, but value.mode is "positive"' in done.stderr
+            assert 'has no data, but value.mode is "positive"' in done.stderr
         else:
             assert json.loads(done.stdout.splitlines()[-1])["state"]["component_Base"] == state
 
@@ -211,7 +211,7 @@ def test_an_answer_that_can_be_read_by_hand(crane: Any) -> None:
     assert told == "action_go.u_error: the node can read this data, so it counts as action_go.u_response"
     told = session.do('action_go.u_error {"value": {"code": "x"}}')
     assert told == 'action_go.u_error: value.code is "x", expected an integer'
-    assert session.do("error from go with null") == "`null` is no data (leave out `with null`)"
+    assert session.do("error from go with null") == "`null` is not data (leave out `with null`)"
 
 
 def test_the_place_of_data_that_is_no_json() -> None:
@@ -258,7 +258,7 @@ def test_the_loop_takes_steps_in_words() -> None:
     }
     assert answers[4]["by"] == "plant"
     (found,) = faults("request to go", options=("--loop",))
-    assert "`action_go.c_trigger` is no line of a script with the control loop" in found
+    assert "`action_go.c_trigger` is not a line of a script with the control loop" in found
 
 
 def test_a_refused_cancel_changes_nothing() -> None:
@@ -292,7 +292,7 @@ def test_by_hand(crane: Any) -> None:
     session.do("request to go")
     assert "component_Base = unknown" in session.do("error from go because lost")
     assert session.do("error from go because failed").startswith("action_go.u_error: the reason is")
-    assert "this is no step of a scenario" in session.do("error from")
+    assert "this is not a step of a scenario" in session.do("error from")
 
 
 def test_what_the_node_keeps(crane: Any) -> None:

@@ -252,7 +252,7 @@ def test_a_script_in_another_encoding(tmp_path: Path, standard_input: bool) -> N
     name, lines = ("-", script.read_bytes()) if standard_input else (str(script), b"")
     done = simulate("--script", name, lines=lines)
     assert done.exit_code == 1
-    assert ":1:3: error: the byte 0xff is no UTF-8 [script]" in done.stderr
+    assert ":1:3: error: the byte 0xff is not UTF-8 [script]" in done.stderr
 
 
 def test_a_line_that_is_nested_too_deeply() -> None:
@@ -262,10 +262,10 @@ def test_a_line_that_is_nested_too_deeply() -> None:
 
 def test_lines_of_the_other_kind_of_script() -> None:
     (tick,) = faults("tick")
-    assert "`tick` is no line of a script without the control loop" in tick
+    assert "`tick` is not a line of a script without the control loop" in tick
     done = simulate("--loop", "--script", "-", lines="message_refill.c_trigger")
     assert done.exit_code == 1
-    assert "`message_refill.c_trigger` is no line of a script with the control loop" in done.stderr
+    assert "`message_refill.c_trigger` is not a line of a script with the control loop" in done.stderr
 
 
 def test_a_log_is_a_script() -> None:

@@ -114,10 +114,10 @@ JSON = st.recursive(
     [
         ({"robot": "Other"}, "the robot `Other`, the model is `LineFollower`"),
         ({"transitions": ["no.event"]}, "no event `no.event`"),
-        ({"transitions": None}, "`transitions` is no list"),
+        ({"transitions": None}, "`transitions` is not a list"),
         ({"time": "now"}, "`time`"),
         ({"time": float("inf")}, "`time`"),
-        ({"components": {}}, "does not tell the state of `LineDetector`"),
+        ({"components": {}}, "has no state of `LineDetector`"),
         ({"components": {**GATE["components"], "Lidar": {"state": "none", "variables": {}}}}, "Lidar"),
     ],
 )

@@ -54,7 +54,7 @@ def test_says_which_ros_is_missing(tmp_path: Path) -> None:
     command = [sys.executable, "-I", "-c", BLOCKED, str(SIMULATOR.parent)]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 2
-    assert done.stderr.startswith("error: ROS 2 can't be used: ")
+    assert done.stderr.startswith("error: ROS 2 cannot be used: ")
 
 
 #: Starts the simulator in a Python without rclpy.

@@ -160,4 +160,4 @@ def test_only_texts_are_fixed(run: Run, tmp_path: Path) -> None:
     (tmp_path / "model.cif").write_text("automaton a: location: initial; marked; end")
     answer = run("check", tmp_path / "model.cif", "--fix")
     assert answer.exit_code == 2
-    assert "only a text can be mended" in answer.output
+    assert "--fix edits only text" in answer.output

@@ -80,7 +80,7 @@ def test_a_file_that_is_no_text_is_left_alone(run: Run, tmp_path: Path) -> None:
     (tmp_path / "latin.rscd").write_bytes(b"robot R{} // \xe9")
     answer = run("format", "latin.rscd")
     assert answer.exit_code == 1
-    assert "latin.rscd:1:14: error: the byte 0xe9 is no UTF-8" in answer.stderr
+    assert "latin.rscd:1:14: error: the byte 0xe9 is not UTF-8" in answer.stderr
     assert (tmp_path / "latin.rscd").read_bytes() == b"robot R{} // \xe9"
 
 

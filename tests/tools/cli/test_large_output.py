@@ -40,7 +40,7 @@ def test_errors_are_shown_before_warnings() -> None:
     shown = as_text.render([*found, Diagnostic("b", span, Severity.ERROR, "y", "wrong")], {})
     assert shown.count("warning:") == as_text.MOST - 1
     assert shown.index("warning:") < shown.index("b:1:1: error: wrong")
-    assert shown.endswith("\n1 more are not shown: `robosc check --format json` tells all\n")
+    assert shown.endswith("\n1 more are not shown: `robosc check --format json` prints all\n")
 
 
 def test_a_long_message_is_cut() -> None:

@@ -1,5 +1,6 @@
 """Behavior of all commands: help that loads no packages, versions, wrong calls, faults of the tool itself."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -17,21 +18,21 @@ from .conftest import Run
 COMMANDS = [
     "new",
     "check",
-    "transform",
+    "format",
+    "rule",
+    "diagram",
     "synthesize",
     "explain",
     "verify",
     "report",
-    "test",
     "simulate",
     "view",
-    "dap",
+    "test",
+    "transform",
     "run",
     "interfaces",
-    "format",
-    "rule",
     "lsp",
-    "diagram",
+    "dap",
 ]
 
 
@@ -66,8 +67,9 @@ def test_check_loads_nothing_that_generates(door: Path) -> None:
 def test_help_names_all_commands(run: Run) -> None:
     answer = run("--help")
     assert answer.exit_code == 0
-    listed = answer.stdout.partition("Commands:\n")[2].splitlines()
-    assert [line.split()[0] for line in listed] == COMMANDS
+    groups, _, epilog = answer.stdout.partition("\nWrite models:\n")[2].partition("\n\n  `robosc COMMAND --help`")
+    assert [line.split()[0] for line in groups.splitlines() if re.match(r"  \S", line)] == COMMANDS
+    assert {"docs/index.md", "Shell completion:"} <= set(re.findall(r"docs/index\.md|Shell completion:", epilog))
 
 
 def test_a_command_that_is_not_there_is_named_with_the_one_meant(run: Run) -> None:

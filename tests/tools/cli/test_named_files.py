@@ -201,7 +201,7 @@ def test_a_shipped_library_has_its_bare_name_wherever_it_is_installed(
 def test_a_diagram_spares_its_model_and_devices(run: Run, door: Path) -> None:
     for call in (["diagram", door, "-o", door], ["verify", door, "--junit", door]):
         answer = run(*call)
-        assert (answer.exit_code, "what is read is not written over" in answer.stderr) == (2, True), answer.output
+        assert (answer.exit_code, "an input file is not overwritten" in answer.stderr) == (2, True), answer.output
     assert door.read_text() == DOOR
     null = Path(os.devnull).stat()
     assert run("diagram", door, "-o", os.devnull).exit_code == 0
@@ -219,7 +219,7 @@ def test_a_saved_model_is_not_written_over_by_what_comes_from_it(run: Run, door:
     assert run("transform", saved, "--to", "xmi", "-o", "out").exit_code == 0  # no file changes
     saved.write_bytes(before.replace(b"  <", b" <"))
     answer = run("transform", saved, "--to", "xmi", "-o", "out")
-    assert (answer.exit_code, "what is read is not written over" in answer.stderr) == (2, True)
+    assert (answer.exit_code, "an input file is not overwritten" in answer.stderr) == (2, True)
 
 
 def test_a_session_is_not_saved_over_its_model(door: Path) -> None:
@@ -233,7 +233,7 @@ def test_a_session_is_not_saved_over_its_model(door: Path) -> None:
         check=False,
     )
     assert done.returncode == 0
-    assert "what is read is not written over" in done.stdout
+    assert "an input file is not overwritten" in done.stdout
     assert "only regular files are read" in done.stdout
     assert done.stdout.count("embedded null byte") == 2
     assert done.stdout.count("0 events in trace") == 2

@@ -93,7 +93,7 @@ def test_nothing_is_written_over(run: Run, tmp_path: Path) -> None:
     kept.write_text("mine")
     answer = run("new", "Porter")
     assert answer.exit_code == 2
-    assert answer.stderr == "Error: porter is there already: nothing is written over; -o names another folder\n"
+    assert answer.stderr == "Error: porter exists already and is not overwritten; choose another folder with -o\n"
     assert [path.name for path in kept.parent.iterdir()] == ["notes.txt"]
     (tmp_path / "file").write_text("")
     (tmp_path / "link").symlink_to("nowhere")
@@ -106,13 +106,13 @@ def test_nothing_is_written_over(run: Run, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("call", "said"),
     [
-        (["../up"], "can't name a robot"),
-        (["4wd"], "can't name a robot"),
-        (["Porter", "--command", "Drive"], "can't name a message or service"),
-        (["Porter", "--sensor", "a__b"], "can't name a message or service"),
-        (["Porter", "--command", "goto"], "is a word of the language"),
-        (["Porter", "--command", "clear"], "`clear` names two things"),
-        (["Porter", "--sensor", "a_1", "--sensor", "a1"], "is too like another name"),
+        (["../up"], "cannot name a robot"),
+        (["4wd"], "cannot name a robot"),
+        (["Porter", "--command", "Drive"], "cannot name a message or service"),
+        (["Porter", "--sensor", "a__b"], "cannot name a message or service"),
+        (["Porter", "--command", "goto"], "is a keyword"),
+        (["Porter", "--command", "clear"], "`clear` is used twice"),
+        (["Porter", "--sensor", "a_1", "--sensor", "a1"], "is too similar to another name"),
     ],
 )
 def test_names_that_will_not_do(run: Run, tmp_path: Path, call: list[str], said: str) -> None:

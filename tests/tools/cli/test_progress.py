@@ -85,7 +85,7 @@ def test_how_far_a_synthesis_is(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize(
-    ("variable", "hint"), [("0..9", "integers smaller ranges"), ("bool", "describe the robot with fewer states")]
+    ("variable", "hint"), [("0..9", "integers smaller ranges"), ("bool", "use fewer states in the model")]
 )
 def test_too_little_memory(variable: str, hint: str) -> None:
     """The hint mentions integers only if the model has some."""

@@ -19,4 +19,4 @@ def test_no_such_rule(run: Run) -> None:
     answer = run("rule", "marked-stat")
     assert answer.exit_code == 2
     assert "did you mean 'marked-state'?" in answer.stderr
-    assert "`robosc rule` lists all" in run("rule", "xyz").stderr
+    assert "`robosc rule` lists all rules" in run("rule", "xyz").stderr

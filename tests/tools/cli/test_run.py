@@ -23,7 +23,7 @@ def run(*arguments: str | Path, blocked: str = "") -> subprocess.CompletedProces
 def test_a_node_of_ros_1_is_generated() -> None:
     done = run(MODEL, "--ros1")
     assert done.returncode == 2
-    assert "for ROS 1 generate one with `transform --to ros1`" in done.stderr
+    assert "for ROS 1, generate a node with `transform --to ros1`" in done.stderr
 
 
 @pytest.mark.slow
@@ -31,7 +31,7 @@ def test_a_node_of_ros_1_is_generated() -> None:
 def test_names_the_repair_where_ros_is_missing(options: list[str]) -> None:
     done = run(MODEL, *options, blocked="rclpy")
     assert done.returncode == 2
-    assert "ROS 2 is not there for this Python" in done.stderr
+    assert "this Python has no ROS 2" in done.stderr
     assert "pip install -e '.[ros2]' in robosc's repository" in done.stderr
     assert "Traceback" not in done.stderr
 

@@ -105,7 +105,7 @@ def test_memory_is_bounded(run: Run, long: Path, command: tuple[str, ...]) -> No
     assert answer.stdout == ""
     assert answer.stderr == (
         "Error: the model is too large: synthesis needs more than 1 MiB for its decision diagrams: "
-        "let `synthesize` or `transform` have more `--memory`, or give integers smaller ranges\n"
+        "raise `--memory` of `synthesize` or `transform`, or give integers smaller ranges\n"
     )
     assert sorted(Path.cwd().iterdir()) == [long]
 
@@ -214,7 +214,7 @@ def test_the_text_tells_what_the_robot_does(run: Run, tmp_path: Path) -> None:
         "\nSensor changes by itself: night to day\n"
         "    guard: true\n"
         "\n`requirement light needs Sensor.night` (line 16)\n"
-        "    forbids something in 4 states\n"
+        "    restricts the robot in 4 states\n"
     )
     names = [event["name"] for event in json.loads(run("synthesize", file, "--json").stdout)["events"]]
     assert {"data_light.c_none", "component_Sensor.c_tau1"} <= {*names}
@@ -268,7 +268,7 @@ def test_errors_come_first(run: Run, broken: Path) -> None:
 def test_a_library_has_no_supervisor(run: Run, library: Path) -> None:
     answer = run("synthesize", library)
     assert answer.exit_code == 2
-    assert "holds a library" in answer.stderr
+    assert "has a library" in answer.stderr
 
 
 def test_warnings_of_synthesis_leave_the_status_alone(run: Run, courier: Path) -> None:

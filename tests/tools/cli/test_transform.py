@@ -110,7 +110,7 @@ def test_nothing_is_written_where_something_is_wrong(
 def test_unknown_targets(run: Run, door: Path, targets: str) -> None:
     answer = run("transform", door, "--to", targets)
     assert answer.exit_code == 2
-    assert "is none of cif, supervisor, ros1, ros2, ros2-layer, xmi" in answer.stderr
+    assert "expected one of cif, supervisor, ros1, ros2, ros2-layer, xmi" in answer.stderr
 
 
 def test_targets_one_by_one(run: Run, door: Path) -> None:
@@ -303,7 +303,7 @@ def test_what_a_package_includes(run: Run, door: Path, tmp_path: Path) -> None:
     [
         (["--to", "cif", "--into", "x"], "--into is for one of supervisor, ros1, ros2"),
         (["--to", "ros1,ros2", "--into", "x"], "--into is for one of supervisor, ros1, ros2"),
-        (["--to", "ros1", "--into", "x)"], "names neither a package nor a target"),
+        (["--to", "ros1", "--into", "x)"], "is not a name of a package or a target"),
     ],
 )
 def test_what_nothing_can_include(run: Run, door: Path, arguments: list[str], said: str) -> None:

@@ -82,7 +82,7 @@ def test_a_table_and_a_count(run: Run, door: Path) -> None:
         ["non-blocking", "proved", "2 states, 2 of them marked"],
         ["controllability", "proved", "2 states, 0 uncontrollable events"],
         ["input-enabledness", "proved", "2 states, 0 events"],
-        ["requirement open needs Leaf.closed (line 17)", "proved", "happens in 1 state, asks for `Leaf.closed`"],
+        ["requirement open needs Leaf.closed (line 17)", "proved", "happens in 1 state, requires `Leaf.closed`"],
         ["no dead events", "proved", "2 states, 2 events"],
         ["maximal permissiveness", "proved", "2 states, 2 controllable events"],
         ["finite response", "proved", "2 states, 0 silent events"],
@@ -96,7 +96,7 @@ def test_a_table_and_a_count(run: Run, door: Path) -> None:
     assert answer.stdout.endswith(
         "\nc-translation: no C compiler is here\n\n"
         "Trusted, not examined: the reading of the text itself, the ROS node around the control loop, the C compiler, "
-        "RoboSC itself; docs/verify.md says more.\n\n"
+        "RoboSC itself; see docs/verify.md.\n\n"
         "Door: 12 proved, 1 skipped\n"
     )
 

@@ -110,7 +110,7 @@ def test_a_saved_model_forges_no_lines(run: Run, tmp_path: Path, door: Path, fea
     saved.write_text(text, encoding="utf-8")
     answer = run("explain", saved, "--event", "open")
     assert answer.exit_code == 1
-    assert f"'{feature}' is to be one line" in answer.output
+    assert f"'{feature}' must be one line" in answer.output
     assert not hidden(answer.output)
     assert not re.search(r"^forged", answer.output, re.MULTILINE)
 

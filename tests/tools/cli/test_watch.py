@@ -40,7 +40,7 @@ def changing(path: Path, old: str, new: str) -> Step:
 
 def rounds(said: str) -> list[list[str]]:
     """Return the output of each round, without its first and last line."""
-    parts = said.split("waiting for changes, Ctrl-C ends\n")
+    parts = said.split("waiting for changes; stop with Ctrl-C\n")
     assert parts[-1] == ""
     return [part.splitlines() for part in parts[:-1]]
 
@@ -123,5 +123,5 @@ def test_ctrl_c_ends_it_without_a_word(door: Path) -> None:
         os.kill(process.pid, signal.SIGINT)
         rest = process.stderr.read()
     assert process.returncode == 130
-    assert said[-1] == "waiting for changes, Ctrl-C ends\n"
+    assert said[-1] == "waiting for changes; stop with Ctrl-C\n"
     assert rest == ""

@@ -112,7 +112,7 @@ def test_a_stream_that_is_no_protocol_ends_the_session(tmp_path: Path) -> None:
             check=False,
         )
     assert (done.returncode, done.stdout) == (2, b"")
-    assert done.stderr == b"Error: this is no Debug Adapter Protocol: a header has no Content-Length\n"
+    assert done.stderr == b"Error: this is not the Debug Adapter Protocol: a header has no Content-Length\n"
 
 
 def test_malformed_requests_are_answered(program: Program) -> None:
@@ -122,25 +122,25 @@ def test_malformed_requests_are_answered(program: Program) -> None:
         assert answer is not None
         assert (answer["type"], answer["request_seq"], answer["command"]) == ("response", number, command)
         assert not answer["success"]
-        assert answer["message"].startswith("a message is no ")
+        assert answer["message"].startswith("a message is not ")
     program.do("disconnect")
 
 
 def test_requests_out_of_order(session: Client, door: Path) -> None:
     for command in ("next", "continue", "stackTrace", "configurationDone", "pause", "stepBack", "evaluate"):
-        assert session.refused(command) == "nothing is launched yet"
-    assert session.refused("attach") == "the request `attach` is not known to robosc"
+        assert session.refused(command) == "no robot is launched yet"
+    assert session.refused("attach") == "the request `attach` is unknown"
     answer = session.ask("initialize", [1])
     assert answer["message"] == "`arguments` are no object"
     session.launch(door)
     model = {"path": str(door)}
     wrong: list[tuple[str, dict[str, Any], str]] = [
         ("setBreakpoints", {}, "`source` needs a `path`"),
-        ("setBreakpoints", {"source": model, "breakpoints": [{"line": "1"}]}, "`line` has to be a number"),
-        ("setBreakpoints", {"source": model, "breakpoints": 3}, "a list of objects is wanted"),
-        ("setFunctionBreakpoints", {"breakpoints": ["open"]}, "a list of objects is wanted"),
+        ("setBreakpoints", {"source": model, "breakpoints": [{"line": "1"}]}, "`line` must be a number"),
+        ("setBreakpoints", {"source": model, "breakpoints": 3}, "expected a list of objects"),
+        ("setFunctionBreakpoints", {"breakpoints": ["open"]}, "expected a list of objects"),
         ("scopes", {"frameId": 99}, "there is no such frame"),
-        ("variables", {"variablesReference": 0}, "there is no such variable any more: the robot has gone on"),
+        ("variables", {"variablesReference": 0}, "this variable does not exist any more: the robot has continued"),
         ("exceptionInfo", {}, "the robot has stopped for another reason"),
     ]
     for command, arguments, message in wrong:
@@ -171,11 +171,11 @@ def test_what_can_not_be_launched(program: Program, tmp_path: Path) -> None:
         ({"program": "door.rscd", "script": "x", "counterexample": True}, "exclude each other"),
         ({"program": "door.rscd", "script": "missing.script"}, "missing.script: No such file or directory"),
         ({"program": "door.rscd", "script": "bad.script"}, "bad.script: not JSON"),
-        ({"program": "door.rscd", "counterexample": True}, "nothing is refuted: there is no counterexample"),
+        ({"program": "door.rscd", "counterexample": True}, "no property is refuted, so there is no counterexample"),
         ({"program": "door.rscd", "counterexample": "nonblocking"}, "did you mean `non-blocking`?"),
         ({"program": "broken.rscd"}, "broken.rscd:17:"),
         ({"program": "stuck.rscd"}, "the supervisor is empty"),
-        ({"program": "library.rscd"}, "holds a library"),
+        ({"program": "library.rscd"}, "has a library"),
     ]
     for arguments, message in wrong:
         assert message in session.refused("launch", **arguments)
@@ -333,7 +333,7 @@ def test_no_request_is_a_fault_of_the_adapter(asked: list[tuple[str, Any]]) -> N
     asyncio.run(session())
     answers = [message for message in heard.sent if message["type"] == "response"]
     assert [answer["request_seq"] for answer in answers] == list(range(1, len(asked) + 3))
-    assert [answer["message"] for answer in answers if "a fault of robosc itself" in answer.get("message", "")] == []
+    assert [answer["message"] for answer in answers if "internal error of robosc" in answer.get("message", "")] == []
 
 
 def test_the_page_tells_of_all_there_is() -> None:

@@ -96,9 +96,9 @@ def test_a_script_step_by_step(program: Program, yard: Path) -> None:
     stopped = session.go("next")
     assert stopped["reason"] == "exception"
     told = session.do("exceptionInfo", threadId=1)["description"]
-    assert told == "request to `Cart.go` can't happen: the robot is not ready for it"
+    assert told == "request to `Cart.go` cannot happen: the robot is not ready for it"
     assert session.go()["description"] == (
-        "request to `Gate.open` can't happen: forbidden by requirement open needs Cart.standing and Gate.carts < 2"
+        "request to `Gate.open` cannot happen: forbidden by requirement open needs Cart.standing and Gate.carts < 2"
     )
     session.do("continue", threadId=1)
     assert session.event("exited") == {"exitCode": 0}
@@ -118,12 +118,12 @@ def test_back_and_forth(session: Client, yard: Path) -> None:
     assert told == ["step"] * 6
     assert session.frames()[0]["name"] == "request to `Gate.open`"
     assert session.go("stepBack")["description"] == "one step back"
-    assert session.go("stepBack")["description"] == "this is where the robot began"
+    assert session.go("stepBack")["description"] == "this is the start of the robot"
     assert session.go()["description"] == "the script is at its end"
     session.do("setFunctionBreakpoints", breakpoints=[{"name": "go"}])
     assert session.go("reverseContinue")["description"] == "request to `Cart.go`"
     assert session.frames()[-1]["name"] == "next: line 4 of yard.script"
-    assert session.go("reverseContinue")["description"] == "this is where the robot began"
+    assert session.go("reverseContinue")["description"] == "this is the start of the robot"
 
 
 def test_breakpoints_by_line(session: Client, yard: Path) -> None:
@@ -212,13 +212,13 @@ def test_what_is_seen(session: Client, yard: Path) -> None:
         "component_Gate.u_after1",
         "message_go.c_trigger",
     ]
-    blocked = session.scope("Can't happen")
+    blocked = session.scope("Cannot happen")
     assert blocked["message_stop.c_trigger"]["value"] == "the robot is not ready for it"
     # The output of `explain`: the failing part of the requirement, and the remedy.
     session.console("go")
     session.console("wait 2.5")
     session.console("stop")
-    reason = session.scope("Can't happen")[GO]
+    reason = session.scope("Cannot happen")[GO]
     assert reason["value"] == "forbidden by requirement SR1: go needs Gate.ajar"
     why = session.children(reason)
     (requirement,) = [reason for name, reason in why.items() if name.endswith(f":{line('requirement SR1')}:3")]
@@ -229,7 +229,7 @@ def test_what_is_seen(session: Client, yard: Path) -> None:
     assert why["shortest way"]["value"] == "request to `Gate.open`"
     # References from before the robot's last step are invalid.
     session.go("stepBack")
-    assert "the robot has gone on" in session.refused("variables", variablesReference=reason["variablesReference"])
+    assert "the robot has continued" in session.refused("variables", variablesReference=reason["variablesReference"])
 
 
 def test_synthesis_as_the_reason(session: Client, tmp_path: Path) -> None:
@@ -239,12 +239,12 @@ def test_synthesis_as_the_reason(session: Client, tmp_path: Path) -> None:
     (tmp_path / "porter.rscd").write_text(text.partition("```")[0])
     session.launch("porter.rscd")
     session.console("open")
-    reason = session.scope("Can't happen")["message_enter.c_trigger"]
-    assert reason["value"].startswith("forbidden by synthesis, which asks for component_Door.held; otherwise, after")
+    reason = session.scope("Cannot happen")["message_enter.c_trigger"]
+    assert reason["value"].startswith("forbidden by synthesis, which requires component_Door.held; otherwise, after")
     why = session.children(reason)
-    assert "`Base` can't get back to a marked state" in why["otherwise"]["value"]
+    assert "`Base` cannot get back to a marked state" in why["otherwise"]["value"]
     assert why["would help"]["value"] == "`Door` goes from `ajar` to `held` by request to `Door.hold`"
-    assert "The request to `Base.enter` can't happen here: no requirement forbids it" in session.console("why enter")
+    assert "The request to `Base.enter` cannot happen here: no requirement forbids it" in session.console("why enter")
 
 
 def test_the_debug_console(session: Client, yard: Path) -> None:
@@ -260,10 +260,10 @@ def test_the_debug_console(session: Client, yard: Path) -> None:
         "false",
     ]
     assert session.do("evaluate", expression="Cart", context="hover")["result"] == "standing"
-    assert "is no component" in session.refused("evaluate", expression="open", context="hover")
+    assert "is not a component" in session.refused("evaluate", expression="open", context="hover")
     refusals = {
-        "open": "request to `Gate.open` can't happen: the robot is not ready for it",
-        "seen {": "the data can't be read: not JSON",
+        "open": "request to `Gate.open` cannot happen: the robot is not ready for it",
+        "seen {": "the data cannot be read: not JSON",
         'seen "many"': 'value is "many", expected an integer',
         "opne": "there is no event `opne`; did you mean `open`?",
         "wait long": "`wait` needs a number of seconds",
@@ -300,7 +300,7 @@ def test_a_script_in_the_words_of_scenarios(session: Client, tmp_path: Path) -> 
     told = [session.go("next")["description"] for _ in steps]
     assert told == [
         "request to `Base.go`",
-        "refusal to cancel `Base.go` can't happen: its goal is not being canceled",
+        "refusal to cancel `Base.go` cannot happen: its goal is not being canceled",
         "response from `Button.stop`",
         "cancel of `Base.go`",
         "refusal to cancel `Base.go`",
@@ -315,7 +315,7 @@ def test_the_debug_console_takes_steps_of_scenarios(session: Client) -> None:
     session.launch(CRANE)
     session.console("request to go")
     refusals = {
-        "refuse cancel of go": "refusal to cancel `Base.go` can't happen: its goal is not being canceled",
+        "refuse cancel of go": "refusal to cancel `Base.go` cannot happen: its goal is not being canceled",
         "error from go because failed": 'the reason is "failed", expected one of aborted, canceled, lost',
         "error from og": "there is no event `og.error`",
         "error from": "there is no event `error`",
@@ -334,7 +334,7 @@ def test_a_step_into_a_chosen_event(session: Client, yard: Path) -> None:
     assert list(targets) == ["message_seen.u_response", "message_open.c_trigger"]
     stopped = session.go("stepIn", targetId=targets["message_open.c_trigger"])
     assert stopped["description"] == "request to `Gate.open`"
-    assert "can't happen here" in session.refused("stepIn", targetId=targets["message_open.c_trigger"])
+    assert "cannot happen here" in session.refused("stepIn", targetId=targets["message_open.c_trigger"])
     assert session.refused("stepIn", targetId=99) == "there is no such target"
 
 
@@ -395,7 +395,7 @@ def test_a_run_at_random_is_the_same_for_the_same_seed(session: Client, yard: Pa
 def test_a_run_that_nothing_stops_is_paused(session: Client, yard: Path) -> None:
     session.launch(yard, most=1_000_000_000)
     session.do("continue", threadId=1)
-    assert session.refused("stackTrace", threadId=1) == "the robot is running: pause it first"
+    assert session.refused("stackTrace", threadId=1) == "the robot runs: pause it first"
     assert session.do("threads")["threads"] == [{"id": 1, "name": "Yard"}]
     assert session.do("setFunctionBreakpoints", breakpoints=[]) == {"breakpoints": []}
     session.do("pause", threadId=1)
@@ -413,8 +413,8 @@ def test_nothing_can_happen(session: Client, tmp_path: Path) -> None:
     )
     session.launch("once.rscd")
     stopped = session.go()
-    assert (stopped["reason"], stopped["description"]) == ("exception", "nothing can happen any more")
-    assert session.go("next")["description"] == "nothing can happen any more"
+    assert (stopped["reason"], stopped["description"]) == ("exception", "no event can happen any more")
+    assert session.go("next")["description"] == "no event can happen any more"
 
 
 def test_a_model_from_cif(session: Client, tmp_path: Path) -> None:

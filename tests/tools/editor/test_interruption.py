@@ -89,7 +89,7 @@ def test_work_that_takes_too_long_is_abandoned_and_said(monkeypatch: pytest.Monk
         server.project.snapshot().analysis(path)
     assert error.value.code == types.LSPErrorCodes.RequestFailed
     (finding,) = server._findings(server.project.snapshot())[path]
-    assert "the findings of this text are missing" in finding.message
+    assert "the findings of this file are missing" in finding.message
     server.shutdown()
 
 

@@ -352,7 +352,7 @@ async def test_rename_over_the_protocol(client: Editor, folder: Path) -> None:
     assert ready.placeholder == "Door"
     answer = await client.text_document_rename_async(types.RenameParams(**where, new_name="Gate"))
     assert [edit.new_text for edit in answer.changes[uri]] == ["Gate", "Gate"]
-    with pytest.raises(JsonRpcException, match="would change what rename"):
+    with pytest.raises(JsonRpcException, match="would change the meaning of rename"):
         await client.text_document_rename_async(types.RenameParams(**where, new_name="Base"))
     close(client, uri)
 
@@ -452,7 +452,7 @@ async def test_a_library_elsewhere_in_the_project_is_offered(client: Editor, fol
     (action,) = await client.text_document_code_action_async(
         _about(uri, types.CodeActionParams, range=finding.range, context=types.CodeActionContext([finding]))
     )
-    assert action.title == f"look for libraries in {folder / 'shared'}, too"
+    assert action.title == f"also search libraries in {folder / 'shared'}"
     # The client mistakes a code action with a command for a command.
     command = types.ExecuteCommandParams(ADD_LIBRARY_FOLDER, [(folder / "shared").as_uri()])
     await client.workspace_execute_command_async(command)

@@ -60,10 +60,10 @@ def test_a_keyword_gets_its_mark(project: Project) -> None:
 @pytest.mark.parametrize(
     ("marker", "new", "why"),
     [
-        ("open {", "closed", "this would change what cart.rscd means"),
-        ("Door {", "Base", "this would change what cart.rscd means"),
-        ("open {", "2nd", "`2nd` is no name"),
-        ("open {", "on foot", "`on foot` is no name"),
+        ("open {", "closed", "this would change the meaning of cart.rscd"),
+        ("Door {", "Base", "this would change the meaning of cart.rscd"),
+        ("open {", "2nd", "`2nd` is not a name"),
+        ("open {", "on foot", "`on foot` is not a name"),
     ],
 )
 def test_what_would_break_the_model_is_refused(project: Project, marker: str, new: str, why: str) -> None:
@@ -84,14 +84,14 @@ def test_a_name_that_another_one_would_take_is_refused(project: Project, tmp_pat
 """
     project.put((tmp_path / "view.rscd").as_uri(), 1, text)
     assert renamed(project, text, "near", "close")["view"] == text.replace("near", "close")
-    with pytest.raises(JsonRpcException, match="change what view"):
+    with pytest.raises(JsonRpcException, match="change the meaning of view"):
         renamed(project, text, "near", "seen")
 
 
 def test_what_can_not_be_read_is_no_basis(project: Project, tmp_path: Path) -> None:
     text = ROBOT.replace("drive with 0.5", "drive wth Door.open")
     project.put((tmp_path / "cart.rscd").as_uri(), 2, text)
-    with pytest.raises(JsonRpcException, match=r"mend .*cart\.rscd first: `drive` stands in what can't be read"):
+    with pytest.raises(JsonRpcException, match=r"correct .*cart\.rscd first: `drive` is in an unreadable part"):
         renamed(project, text, "drive needs", "go")
 
 

@@ -34,7 +34,7 @@ def test_what_synthesis_says() -> None:
     said = verdict(Request(ROBOT_PATH, TEXTS, (), ()))
     assert said.robot == "8 states under its supervisor, 8 without requirements"
     line = str(position(ROBOT, "requirement").line + 1)
-    assert said.requirements == {line: "forbids something in 4 states"}
+    assert said.requirements == {line: "restricts the robot in 4 states"}
     assert said.guards == {"Base.drive": ["request: Door.open"]}
 
 
@@ -84,7 +84,7 @@ async def test_a_process_that_fails_is_told() -> None:
     about = asked(ROBOT)
     assert [lens.command.title for lens in lenses(about, found.ask(about, (), ()))] == [RUNNING]
     await asyncio.wait_for(news.wait(), LONGEST)
-    assert found.ask(about, (), ()) == "synthesis failed: `robosc synthesize` tells more"
+    assert found.ask(about, (), ()) == "synthesis failed: `robosc synthesize` shows the error"
 
 
 def test_lenses_stand_at_names() -> None:
@@ -119,7 +119,7 @@ async def test_over_the_protocol(tmp_path: Path) -> None:
     assert [lens.command.title for lens in await client.text_document_code_lens_async(about)] == [RUNNING]
     await asyncio.wait_for(client.refreshed.wait(), LONGEST)
     titles = [lens.command.title for lens in await client.text_document_code_lens_async(about)]
-    assert titles == ["8 states under its supervisor, 8 without requirements", "forbids something in 4 states"]
+    assert titles == ["8 states under its supervisor, 8 without requirements", "restricts the robot in 4 states"]
     hover = await client.text_document_hover_async(types.HoverParams(**at(uri, position(ROBOT, "drive needs", 1))))
     assert "The supervisor allows its\n- request: Door.open" in hover.contents.value
     replace(client, uri, 2, ROBOT.replace("needs Door.open", "needs Door.open or Door.closed"))

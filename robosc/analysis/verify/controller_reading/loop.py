@@ -56,7 +56,7 @@ class LoopComparison:
                 raise DifferenceError(f"{self._shown(name)} is {ours} by the text, and {role} in the controller")
         for name in self._controller.text.events:
             if sum(name == other for other, _ in executed) != 1:
-                raise DifferenceError(f"{self._shown(name)} does not stand once in the controller")
+                raise DifferenceError(f"{self._shown(name)} does not occur exactly once in the controller")
         for tried in _ORDERED:
             theirs = [name for name, role in executed if role == tried]
             for first, other in zip(self._controller.events(tried), theirs, strict=True):
@@ -96,10 +96,10 @@ class LoopComparison:
         for names in ours:
             ordered = names[0].plant.kind == "message"
             if not any(list(names) == list(other) or (not ordered and {*names} == {*other}) for other in theirs):
-                raise DifferenceError(f"{self._listed(names)} {verb} by the text, and not so in the controller")
+                raise DifferenceError(f"{self._listed(names)} {verb} by the text, and not in the controller")
         for names in theirs:
             if {*names} not in [{*other} for other in ours]:
-                raise DifferenceError(f"{self._listed(names)} {verb} in the controller, and not so by the text")
+                raise DifferenceError(f"{self._listed(names)} {verb} in the controller, and not by the text")
 
     def _compare_choices(self) -> None:
         choices = {

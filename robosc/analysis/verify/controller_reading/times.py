@@ -101,7 +101,7 @@ class TimeComparison:
         for name in dict.fromkeys([*ours, *theirs]):
             if ours.count(name) != theirs.count(name):
                 where_not = "in the controller" if name in ours else "in the text"
-                raise DifferenceError(f"{self._shown(name)} does not stand once {where_not}")
+                raise DifferenceError(f"{self._shown(name)} does not occur exactly once {where_not}")
         for first, other in zip(ours, theirs, strict=True):
             if first != other:
                 order = f"{self._shown(first)} comes before {self._shown(other)}"

@@ -170,9 +170,9 @@ class _Reading:
             if isinstance(claimed, sct.InvariantProperty):
                 self.claim("the condition of a property", claimed.condition, claimed)
             elif isinstance(claimed, sct.ReachabilityProperty):
-                self.claim("what a property says can be reached", claimed.condition, claimed)
+                self.claim("the reachable condition of a property", claimed.condition, claimed)
                 origin = claimed.premise or ex.BooleanLiteral(value=True)
-                self.claim("where a property begins", origin, claimed)
+                self.claim("the start condition of a property", origin, claimed)
 
     def claim(self, what: str, expression: ex.Expression, source: ex.Located) -> None:
         self.machine.conditions.append(Claim(what, self.condition(expression), True, source))

@@ -317,7 +317,7 @@ class _Reading:
                 raise UnlikeError(f"the text reads `{read}`, which the plants do not have", expression)
             if isinstance(found, Data):
                 said = "".join(found.words)
-                raise UnlikeError(f"the text reads `{said}`, which no input of the plants tells", expression)
+                raise UnlikeError(f"the text reads `{said}`, for which the plants have no input", expression)
             return found
 
         return compiled(written, meaning)
@@ -334,7 +334,7 @@ class _Reading:
                 self.machine.events[name].inputs[carried.name] = BOOLEANS
                 return self.names.leaf(Told(carried.name))
         if name.name in _ENDS and "[" in words:
-            raise UnlikeError(f"no input of the plants tells whether `{''.join(words)}` can be read", value)
+            raise UnlikeError(f"the plants have no input for whether `{''.join(words)}` can be read", value)
         return None
 
     def told(self, part: ex.Expression, name: EventName, assigned: Slot | None) -> Generator[Any, Any, ex.Expression]:
@@ -350,7 +350,7 @@ class _Reading:
                 # Inputs of the same text differ in their range.
                 alike = {input_name: domain for input_name, domain in alike.items() if domain == kept}
             if not alike:
-                raise UnlikeError("the plants have another range for what is computed of data", part)
+                raise UnlikeError("the plants have another range for a value computed from data", part)
             told = next(iter(alike))
             domain = _REASONS[name.plant.kind] if words == ("error",) else alike[told]
             self.machine.events[name].inputs[told] = domain
@@ -532,9 +532,9 @@ class _Reading:
                 wanted = claimed.kind == robosc.InvariantKind.always
                 self.claim("the condition of a property", claimed.condition, within, wanted, claimed)
             elif isinstance(claimed, robosc.ReachabilityProperty):
-                self.claim("what a property says can be reached", claimed.condition, within, True, claimed)
+                self.claim("the reachable condition of a property", claimed.condition, within, True, claimed)
                 start = claimed.premise or ex.BooleanLiteral(value=True)
-                self.claim("where a property begins", start, within, True, claimed)
+                self.claim("the start condition of a property", start, within, True, claimed)
 
     def claim(
         self, what: str, expression: ex.Expression, within: Instance | None, wanted: bool, source: ex.Located

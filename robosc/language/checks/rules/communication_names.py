@@ -53,7 +53,7 @@ def _describe(port: PortInstance) -> str:
 def _new_name(first: PortInstance, second: PortInstance, base: rsc.Base) -> Hint:
     own = [port for port in (second, first) if port.instance.unit is base]
     if not own:
-        return "import only one of these components: names that come from libraries can't be changed here"
+        return "import only one of these components: names that come from libraries cannot be changed here"
     name = own[0].communication.name
     new = f"{name}_2" if first.instance is second.instance else f"{name}_{own[0].instance.name.lower()}"
     renamed = own[0].communication
@@ -95,7 +95,7 @@ def unique_topic(base: rsc.Base) -> Iterator[Finding]:
             yield Finding(
                 _place(second, base),
                 f"message `{message.name}` of `{second.instance.name}` and `{first.communication.name}` of"
-                f" `{first.instance.name}` share the topic `{topic}`, expected one each: what either component sends"
+                f" `{first.instance.name}` share the topic `{topic}`, expected one each: data of either component"
                 " arrives as both",
                 _own_topic(second, base),
             )
@@ -138,8 +138,8 @@ def _own_topic(port: PortInstance, base: rsc.Base) -> Hint:
     name = port.communication.name
     topic = f"/{port.instance.name.lower()}/{name}"
     if port.instance.unit is base:
-        return _identified(f'give it a topic of its own, such as `identifier: "{topic}"`', port.communication, topic)
-    hint = f'give it a topic of its own, such as `with {{ {name}: "{topic}" }}` after the import'
+        return _identified(f'use a separate topic, such as `identifier: "{topic}"`', port.communication, topic)
+    hint = f'use a separate topic, such as `with {{ {name}: "{topic}" }}` after the import'
     imported = port.instance.component.type
     assert isinstance(imported, rsc.ImportedComponent)
     place = _place(port, base)

@@ -32,8 +32,8 @@ def data_type(base: rsc.Base) -> Iterator[Finding]:
             if _has_failure(declared, set()):
                 yield Finding(
                     declared,
-                    f"`{communication.name}` carries `{FAILURE}`, expected data of ROS: the controller finds out itself"
-                    " why a service or an action has failed",
+                    f"`{communication.name}` carries `{FAILURE}`, expected data of ROS: the controller itself"
+                    " detects why a service or an action fails",
                     "read `error` at `on error from …` instead",
                 )
             if isinstance(declared, rsc.Array):
@@ -49,9 +49,9 @@ def data_type(base: rsc.Base) -> Iterator[Finding]:
             through = f" in its property `{'.'.join(path)}`" if path else ""
             yield Finding(
                 sent,
-                f"`{communication.name}` sends an enum{through}, expected the type of the ROS data: there is no way"
-                " back from an enum value to the data that it stands for",
-                _sent_as(sent) if not path else "declare an object without the enum for what is sent",
+                f"`{communication.name}` sends an enum{through}, expected the type of the ROS data: an enum value"
+                " cannot be converted back to its data",
+                _sent_as(sent) if not path else "declare an object without the enum for the sent data",
             )
 
 
@@ -67,7 +67,7 @@ def _has_failure(declared: rsc.DataType | None, seen: set[rsc.ObjectDataType]) -
 
 
 def _sent_as(sent: rsc.DataType) -> Hint:
-    hint = "write the type that the enum is from, and provide a value of that type"
+    hint = "write the source type of the enum, and provide a value of that type"
     while isinstance(sent, rsc.Array):
         sent = sent.type
     assert isinstance(sent, rsc.ComplexDataTypeReference)

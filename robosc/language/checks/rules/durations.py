@@ -38,9 +38,9 @@ def duration(base: rsc.Base) -> Iterator[Finding]:
             if not transition.without:
                 yield Finding(
                     transition,
-                    f"every state of `{component.name}` has this `after`, and a time that runs in all of them never"
-                    " starts anew, expected `without` and a message",
-                    "write it in the state whose time is meant, or `after … without message`",
+                    f"every state of `{component.name}` has this `after`, so its time never restarts,"
+                    " expected `without` and a message",
+                    "write it in the intended state, or write `after … without message`",
                 )
     for meaning in meanings(base):
         for transition in of_kind(rsc.TimedTransition, [transition for _, transition in transitions(meaning)]):

@@ -26,7 +26,7 @@ def enum_default(base: rsc.Base) -> Iterator[Finding]:
         if not defaults:
             yield Finding(
                 enum,
-                f"enum `{enum.name}` has no default rule, expected one for data that no other rule matches",
+                f"enum `{enum.name}` has no default rule, expected one for data that matches no other rule",
                 Insertion(
                     "add a last rule, such as `default -> other`",
                     " default -> other",
@@ -96,7 +96,7 @@ def _repair_overlap(value: rsc.EnumValue, state: rsc.State, own_value: bool, own
         return Renaming(f"rename the value, such as `{name}`", value, name)
     if own_state:
         return Renaming(f"rename the state, such as `is_{state.name}`", state, f"is_{state.name}")
-    return "import only one of these libraries: names that come from libraries can't be changed here"
+    return "import only one of these libraries: names that come from libraries cannot be changed here"
 
 
 def _values(base: rsc.Base) -> Iterator[rsc.EnumValue]:

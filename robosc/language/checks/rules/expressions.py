@@ -41,12 +41,12 @@ from robosc.model.semantics.typing import value_type as value_type_in
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-_GUARD = Place(None, "a guard reads what the component remembers, and `value` is the data of one event")
-_REQUIREMENT = Place(None, "a requirement reads what components remember, and `value` is the data of one event")
-_PROVIDE = Place(None, "provided data is read from what components remember, and `value` is the data of one event")
+_GUARD = Place(None, "a guard reads states and variables, and `value` is the data of one event")
+_REQUIREMENT = Place(None, "a requirement reads states and variables, and `value` is the data of one event")
+_PROVIDE = Place(None, "provided data comes from states and variables, and `value` is the data of one event")
 _FUNCTION = Place(None, "a function computes its value from its parameters", Restriction.FUNCTION)
-_TIMED = Place(None, "a time that is up brings no data")
-_SILENT = Place(None, "a silent transition has no event that could carry data")
+_TIMED = Place(None, "an expired time has no data")
+_SILENT = Place(None, "a silent transition has no event and no data")
 
 
 @rule("type")
@@ -77,18 +77,18 @@ def _requirements(base: rsc.Base) -> Iterator[Finding]:
     for requirement in statements(rsc.CommunicationRequirement, base):
         yield from _boolean(requirement.condition, "the condition of a requirement", _REQUIREMENT)
     for invariant in statements(rsc.StateInvariant, base):
-        yield from _boolean(invariant.condition, f"the condition behind `{invariant.kind.name}`", _REQUIREMENT)
+        yield from _boolean(invariant.condition, f"the condition after `{invariant.kind.name}`", _REQUIREMENT)
     for count in statements(rsc.CountRequirement, base):
-        yield from _constant(count.bound, INTEGER, "the number behind `at most`")
+        yield from _constant(count.bound, INTEGER, "the number after `at most`")
     for claimed in statements(rsc.Property, base):
         yield from _boolean(claimed.condition, "the condition of a property", _REQUIREMENT)
         if isinstance(claimed, rsc.ReachabilityProperty):
-            yield from _boolean(claimed.premise, "the condition behind `from`", _REQUIREMENT)
+            yield from _boolean(claimed.premise, "the condition after `from`", _REQUIREMENT)
     for automaton in statements(rsc.AutomatonRequirement, base):
         for transition in (transition for state in automaton.states for transition in state.transitions):
             has_reason = transition.event is not None and is_error(meant(transition.event))
             place = replace(_REQUIREMENT, has_reason=has_reason)
-            yield from _boolean(transition.guard, "the condition behind `if`", place)
+            yield from _boolean(transition.guard, "the condition after `if`", place)
 
 
 def _named(named: rsc.NamedExpression) -> Iterator[Finding]:

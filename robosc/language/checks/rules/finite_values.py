@@ -59,7 +59,7 @@ def variable_type(base: rsc.Base) -> Iterator[Finding]:
         if found == NONE:
             yield Finding(
                 variable,
-                f"variable `{variable.name}` holds no value, expected data",
+                f"variable `{variable.name}` has no value, expected data",
                 Choice(
                     "leave it out, or declare it boolean to remember that something happened",
                     (
@@ -83,7 +83,9 @@ def variable_type(base: rsc.Base) -> Iterator[Finding]:
                 yield Finding(
                     variable,
                     message,
-                    Removal(f"write `do {variable.name} := value` where it comes in, or leave it out", variable),
+                    Removal(
+                        f"write `do {variable.name} := value` at the event that carries it, or leave it out", variable
+                    ),
                 )
     yield from supervised_faults(base, _without_domain)
     yield from supervised_faults(base, function_faults)
@@ -115,7 +117,7 @@ def _stored(base: rsc.Base) -> set[rsc.Variable]:
 
 
 #: Repair for a variable of the node with too many values.
-_KEPT_REPAIR = "let a variable remember what matters of it, such as `do some := size(value.…) > 0`"
+_KEPT_REPAIR = "store the relevant part in a variable, such as `do some := size(value.…) > 0`"
 
 
 def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
@@ -141,8 +143,8 @@ def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
             yield Fault(
                 access,
                 reading.reason,
-                f"{_needed(reading)} is computed from {kind}, `{RoboscPrinter()(access)}`, and from what changes beside"
-                " it, expected data that is compared with literals, constants and other data only",
+                f"{_needed(reading)} is computed from {kind}, `{RoboscPrinter()(access)}`, and from changing"
+                " values, expected data that is compared only with literals, constants and other data",
                 _enum_repair(
                     types[0].definition.name if isinstance(types[0], ObjectType) and is_array else str(types[-1])
                 ),
@@ -156,7 +158,7 @@ def _needed(reading: Reading) -> str:
 
 def _enum_repair(base: str) -> str:
     enum = f"datatype enum … from {base} to {{ value … -> … default -> … }}"
-    return f"turn it into an enum, `{enum}`, as the type of the data"
+    return f"convert it to an enum, `{enum}`, as the type of the data"
 
 
 @rule("integer-range")
@@ -191,7 +193,7 @@ def _parameters(meaning: Meaning) -> Iterator[Finding]:
         if meaning.made is None and declared_type(parameter.type) == INTEGER and _is_unranged(parameter.type):
             yield Finding(
                 parameter.type,
-                f"parameter `{parameter.name}` is an integer without range, expected what may be set",
+                f"parameter `{parameter.name}` is an integer without range, expected the values that can be set",
                 Replacement(
                     "write a range, such as `integer(0..100)`", "integer(0..100)", parameter.type, is_choice=True
                 ),
@@ -210,7 +212,7 @@ def _parameters(meaning: Meaning) -> Iterator[Finding]:
                 )
                 yield meaning.finding(lowest, message, Together(f"write `double({high}..{low})`", swapped))
             elif isinstance(value, float) and parameter.value is not None and not low <= value <= high:
-                message = f"{value} is not in the range {low}..{high} of `{parameter.name}`, expected a value that is"
+                message = f"{value} is not in the range {low}..{high} of `{parameter.name}`, expected a value in it"
                 nearest = low if value < low else high
                 way = Replacement(f"write `{nearest}`, or widen it", f"{nearest}", parameter.value, is_choice=True)
                 yield meaning.finding(parameter.value, message, way)
@@ -264,7 +266,7 @@ def _without_range(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
         if not isinstance(told, Computed) or told.type != INTEGER or told.bounds is not None:
             continue
         element: ex.Located = reading.part
-        hint: Hint = "compare it with a literal, or assign it as it is to a variable, whose range it takes"
+        hint: Hint = "compare it with a literal, or assign it unchanged to a variable, which limits its range"
         path = property_path(reading.part) if isinstance(reading.part, rsc.Access) else None
         declared = None if path is None else Data(told.port, told.event, path).type
         if _has_wrong_bounds(declared):
@@ -275,7 +277,7 @@ def _without_range(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
             element = field if isinstance(field, rsc.ObjectProperty) else declared
             hint = (
                 Replacement(
-                    "write a range, such as `integer(0..100)`: what lies outside becomes the nearest bound",
+                    "write a range, such as `integer(0..100)`: other values become the nearest bound",
                     "integer(0..100)",
                     declared,
                     is_choice=True,
@@ -354,7 +356,7 @@ def _outside(
     if type(value) is int and type(low) is int and type(high) is int and not low <= value <= high and low <= high:
         yield meaning.finding(
             constant,
-            f"{value} is not in the range {low}..{high} of `{name}`, expected a value that is",
+            f"{value} is not in the range {low}..{high} of `{name}`, expected a value in it",
             Replacement(
                 f"write `{low if value < low else high}`, or widen the range of `{name}`",
                 f"{low if value < low else high}",

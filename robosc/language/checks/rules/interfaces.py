@@ -46,9 +46,9 @@ def interface_link(base: rsc.Base) -> Iterator[Finding]:
 def _reason(communication: rsc.CommunicationType, types: list[Type]) -> str | None:
     named = next((kind for kind in types if isinstance(kind, ObjectType)), None)
     if named is not None:
-        return f"its data is {named}, and only an interface says which ROS type that is"
+        return f"its data is {named}, and only an interface names its ROS type"
     if isinstance(communication, rsc.Action):
-        return "no ROS action type is meant by itself"
+        return "an action has no ROS type of its own"
     if isinstance(communication, rsc.Service) and any(kind not in {NONE, UNKNOWN} for kind in types):
         return "only a service whose request and response are `none` has a ROS type of its own, `std_srvs/Empty`"
     return None
@@ -110,8 +110,8 @@ def interface_unknown(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]
                 what = f"{reference.package}/{reference.rosType}"
                 yield Finding(
                     reference,
-                    f"{what} is a type of kind message and one of kind {' and '.join(others)}, expected one meaning:"
-                    " the message is taken",
+                    f"{what} is a type of kind message and one of kind {' and '.join(others)}, expected one kind:"
+                    " the message is used",
                     OWN_OBJECT,
                 )
 
@@ -198,7 +198,7 @@ def interface_mix(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
                     data.declared if unit is base else _import_of(base, unit),
                     f"`{data.communication.name}` fits {others[0]} only and `{other.communication.name}` {ros} only,"
                     " expected that one ROS fits both: a controller runs in one of them",
-                    f"use what both have, or leave one of them out: in {ros}, {reason}",
+                    f"use only features of both, or leave one of them out: in {ros}, {reason}",
                 )
                 return
 

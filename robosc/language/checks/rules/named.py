@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 _ARGUMENT = replace(CONSTANT, what="an argument", instead="")
-_ENUM_ARGUMENT = replace(_ARGUMENT, instead="; a parameter of the node stands alone")
+_ENUM_ARGUMENT = replace(_ARGUMENT, instead="; a parameter of the node must be the only operand")
 
 
 @rule("cyclic-definition")
@@ -45,7 +45,7 @@ def cyclic_definition(base: rsc.Base) -> Iterator[Finding]:
         names = [step.name for step in (*circle, circle[0])]
         yield Finding(
             definition,
-            f"`{names[0]}` is defined by itself: {' -> '.join(names)}",
+            f"`{names[0]}` is defined in terms of itself: {' -> '.join(names)}",
             "leave one of these uses out, or write a value in its place",
         )
     yield from _too_large(base)
@@ -68,8 +68,8 @@ def _too_large(base: rsc.Base) -> Iterator[Finding]:
     for expression in instances(base).expanded.too_large:
         yield Finding(
             expression,
-            f"this has more than {LARGEST} parts when names are written out",
-            "let a variable remember what the condition says",
+            f"this has more than {LARGEST} parts after names are expanded",
+            "store the condition in a variable",
         )
 
 
@@ -181,7 +181,7 @@ def _given(
                 names = [parameter.name for parameter in parameters]
                 yield _wrong_number(argument, definition.name, len(given), names)
                 return
-            message = "an argument without name stands behind one with a name"
+            message = "an argument without name follows one with a name"
             yield Finding(argument, message, _naming(argument, parameters, found, given))
         elif parameter in found:
             message = f"parameter `{parameter.name}` has an argument already{on_line(found[parameter])}"
@@ -301,7 +301,7 @@ def _defaults(base: rsc.Base) -> Iterator[Finding]:
             if parameter.default is not None:
                 message = f"parameter `{parameter.name}` of a function has a default value"
                 hint = Removal(
-                    "leave it out: each call gives all arguments",
+                    "leave it out: each call has all arguments",
                     part_of(parameter.default).preceded_by("="),
                     is_choice=False,
                 )
@@ -322,7 +322,7 @@ def unused_template(base: rsc.Base) -> Iterator[Finding]:
             if component.parameters and isinstance(component.type, rsc.LocalComponent) and component not in made:
                 yield Finding(
                     component,
-                    f"nothing is made of the template `{component.name}`, so that it is no part of the robot",
+                    f"the template `{component.name}` has no instance, so it is not part of the robot",
                     Removal(f"write `component ... is {component.name}(...)`, or leave the template out", component),
                     relies_on=base,
                 )
@@ -373,9 +373,7 @@ def _unreadable(meaning: Meaning) -> Iterator[Finding]:
         if unreadable is None or (unreadable and inside):
             waiting += inside
         elif unreadable and not isinstance(part, rsc.Access) and (meaning.made is None or is_unreadable(part) is None):
-            yield meaning.finding(
-                part, "this rounds what is no number, and so has no value", "write another expression"
-            )
+            yield meaning.finding(part, "this rounds a value that is not a number", "write another expression")
 
 
 def _may_round(part: ex.Located) -> bool:

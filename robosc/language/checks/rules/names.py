@@ -159,7 +159,7 @@ def single_behaviour(base: rsc.Base) -> Iterator[Finding]:
             yield Finding(
                 other,
                 f"`{component.name}` has another behaviour already{on_line(every[0])}, expected one",
-                "move its states, variables and transitions to the first one, or to a component of their own",
+                "move its states, variables and transitions to the first one, or to a new component",
                 related=every[0],
             )
 

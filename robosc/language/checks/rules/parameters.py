@@ -28,7 +28,7 @@ def _read(instances: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
             yield Fault(
                 access,
                 Reason(access, where.within, where.variable),
-                f"parameter `{access.item.name}` is set on the robot, and what the supervisor allows is proven for"
-                " each of its values, expected no parameter in what it evaluates",
-                "compare it with `value` where data comes in, or declare a `constant`",
+                f"parameter `{access.item.name}` is set on the robot, and the supervisor is proven for each of its"
+                " values, expected no parameter in expressions of the supervisor",
+                "compare it with `value` when data arrives, or declare a `constant`",
             )

@@ -35,9 +35,8 @@ def requirement_event(base: rsc.Base) -> Iterator[Finding]:
             if isinstance(communication, rsc.Message) and communication.direction == rsc.MessageDirection.outgoing:
                 yield Finding(
                     named,
-                    f"`{communication.name}` comes from its component whenever that sends it, expected a request or an"
-                    " answer",
-                    "restrict what the controller does about it",
+                    f"`{communication.name}` comes from its component at any time, expected a request or an answer",
+                    "restrict the reaction of the controller",
                 )
     if any(True for _ in statements(rsc.AutomatonRequirement, base)):
         yield from _readers(base)
@@ -48,7 +47,7 @@ def _sent_on_change(base: rsc.Base) -> Iterator[Finding]:
     """Report requirements and transitions on messages that are sent on change: these have no defined moment."""
     for message in communications(base):
         if isinstance(message, rsc.Message) and message.onChange and message.direction == rsc.MessageDirection.outgoing:
-            what = f"`{message.name}` comes from its component whenever that sends it, expected an incoming message"
+            what = f"`{message.name}` comes from its component at any time, expected an incoming message"
             yield Finding(
                 message, f"{what} before `send: change`", _with_every_tick("leave `, send: change` out", message)
             )
@@ -99,7 +98,6 @@ def _reading(expression: ex.Expression | None, expanded: ex.Expression | None, w
         name = f"{written(read.eContainer().name)}.{written(read.name)}"
         yield Finding(
             expression,
-            f"{what} reads `{name}`, a state of a requirement, expected states and variables of components: the robot"
-            " does not know what is required of it",
-            "say it in a requirement, or remember it in a state of a component",
+            f"{what} reads `{name}`, a state of a requirement, expected states and variables of components only",
+            "write it as a requirement, or store it in a state of a component",
         )

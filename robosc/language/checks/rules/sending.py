@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 #: Part of a hint for users who confuse the directions of messages.
 _DIRECTIONS = (
-    "or, if the controller sends it, declare it as `incoming message {}`: incoming is what a component receives"
+    "or, if the controller sends it, declare it as `incoming message {}`: a component receives incoming messages"
 )
 _NAMELESS = "name what it restricts, or leave the requirement out"
 
@@ -48,7 +48,7 @@ def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
             yield Finding(
                 statement.data or statement,
                 f"data is provided to `{communication.name}`, expected none: {what} is declared with the type `none`",
-                Removal("leave the provide statement out: there is no data to send along", statement, is_choice=False),
+                Removal("leave the provide statement out: it has no data to send", statement, is_choice=False),
             )
 
 
@@ -74,10 +74,10 @@ def requirement_target(base: rsc.Base) -> Iterator[Finding]:
             if communication is not None and sent(communication) is None:
                 yield Finding(
                     reference,
-                    f"`{communication.name}` comes from its component whenever that sends it, expected a communication"
+                    f"`{communication.name}` comes from its component at any time, expected a communication"
                     " that the controller starts: an incoming message, a service or an action",
                     Choice(
-                        f"restrict what the controller does about it; {_DIRECTIONS.format(communication.name)}",
+                        f"restrict the reaction of the controller; {_DIRECTIONS.format(communication.name)}",
                         (_as_incoming(communication),),
                     ),
                 )

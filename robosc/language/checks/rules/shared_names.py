@@ -26,8 +26,8 @@ def topic_types(base: rsc.Base) -> Iterator[Finding]:
         yield Finding(
             _place(second),
             f"{_described(second)} has the type `{_type(second)}` on the topic `{_name(second)}`, on which"
-            f" {_described(first)} has the type `{_type(first)}`: ROS keeps the two apart",
-            "give both one type, or one of them a topic of its own",
+            f" {_described(first)} has the type `{_type(first)}`: ROS does not connect them",
+            "use one type for both, or a separate topic for one of them",
             related=first.communication,
         )
 
@@ -40,8 +40,8 @@ def shared_server(base: rsc.Base) -> Iterator[Finding]:
             yield Finding(
                 _place(second),
                 f"{_described(second)} has the type `{_type(second)}`, and {_described(first)} of the same name"
-                f" `{_name(second)}` has the type `{_type(first)}`: only one of them can ever be answered",
-                "give both one type, or one of them a name of its own",
+                f" `{_name(second)}` has the type `{_type(first)}`: only one of them can be answered",
+                "use one type for both, or a separate name for one of them",
                 related=first.communication,
             )
 
@@ -65,7 +65,7 @@ def indistinct_commands(base: rsc.Base) -> Iterator[Finding]:
             yield Finding(
                 _place(second),
                 f"{_described(first)} and {_described(second)} go to the topic `{_name(second)}` and {why}: the robot"
-                " can't tell them apart",
+                " cannot tell them apart",
                 f"provide other data with `{written(second.communication.name)}`, or use one message for both",
                 related=first.communication,
             )

@@ -84,7 +84,7 @@ def _silences(transition: rsc.TimedTransition) -> Iterator[Finding]:
             yield Finding(
                 reference,
                 f"`without` names the {kind} `{communication.name}`, expected an outgoing message",
-                "write a message that a component sends; that no answer comes from a service or action is its `error`",
+                "write a message from a component; without an answer, a service or action has an `error`",
             )
 
 
@@ -148,10 +148,10 @@ def _never_taken(
     if state is not other:
         return (
             f"{says}expected one transition for it",
-            "leave one of the two out: a transition outside the states is one of every state",
+            "leave one of the two out: a transition outside the states belongs to every state",
         )
     return (
-        f"{says}whatever holds, so that this transition is never taken",
+        f"{says}in all cases, so this transition is never taken",
         "leave one of the two out, or give the earlier one a condition: `on … if … goto …`",
     )
 
@@ -175,7 +175,7 @@ def idle_transition(base: rsc.Base) -> Iterator[Finding]:
         if transition.target is None or transition.target is owner:
             yield Finding(
                 transition,
-                "the silent transition changes nothing, so the controller takes it again and again",
+                "the silent transition changes nothing, so the controller takes it forever",
                 Removal("leave it out, or write `do …` or `goto …`; an event begins with `on`", transition),
             )
 
@@ -188,10 +188,10 @@ def assignment_on_message_to_node(base: rsc.Base) -> Iterator[Finding]:
             name = transition.communicationType.communicationType.name
             yield Finding(
                 transition.assignments[0],
-                f"`{component.name}` assigns a value when it is sent `{name}`, expected no assignment: a message"
-                " to a component brings no data back",
+                f"`{component.name}` assigns a value on `{name}`, expected no assignment: a message"
+                " to a component returns no data",
                 Removal(
-                    "leave `do …` out; a state that the transition goes to can remember that the message was sent",
+                    "leave `do …` out; the target state of the transition can store that the message was sent",
                     _assignments(transition),
                 ),
             )
@@ -228,7 +228,7 @@ def repeated_assignment(base: rsc.Base) -> Iterator[Finding]:
                     assignment,
                     f"`{variable.name}` is assigned a value by this transition already, expected one: the last one"
                     " counts",
-                    Choice("leave out the one that is not meant: assignments of one transition are simultaneous", ways),
+                    Choice("leave out the unintended one: the assignments of a transition are simultaneous", ways),
                 )
             elif variable is not None:
                 assigned[variable] = assignment

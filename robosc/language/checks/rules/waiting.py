@@ -65,7 +65,7 @@ def _states_without_end(known: Instances, places: Places) -> Iterator[Finding]:
                 yield Finding(
                     place,
                     f"`cancel from {name}` leads to `{instance.name}.{transition.target.name}`{onwards},"
-                    f" which does not wait for the end of `{name}`: the controller has only asked the server to cancel,"
+                    f" which does not wait for the end of `{name}`: the controller has only requested the cancel,"
                     " and the robot may still move",
                     f"go to a state `stopping` that `canceled from {name}`, `response from {name}` and"
                     f" `error from {name}` leave",
@@ -105,7 +105,7 @@ def _forbidden_ends(known: Instances, places: Places) -> Iterator[Finding]:
                 yield Finding(
                     place,
                     f"`cancel from {name}` leads to `{state}`, which forbids the {missing[0]} of `{name}`: the"
-                    " controller has only asked the server to cancel, and the goal ends later",
+                    " controller has only requested the cancel, and the goal ends later",
                     f"let `{written(state)}` allow `{missing[0]} from {name}`",
                     related=None if place is transition else transition,
                 )
@@ -130,8 +130,8 @@ def _variables_read(known: Instances, places: Places) -> Iterator[Finding]:
                     name = written(port.communication.name)
                     yield Finding(
                         place,
-                        f"`{variable.name}` changes when the controller asks to cancel `{name}`, and a requirement on"
-                        f" another command reads it: the robot may still move",
+                        f"`{variable.name}` changes when the controller requests the cancel of `{name}`, and a"
+                        " requirement on another command reads it: the robot may still move",
                         f"assign it `on canceled from {name}`, or read `{name}.running` in the requirement",
                         related=others[0],
                     )
@@ -174,8 +174,8 @@ def answer_unheard(base: rsc.Base) -> Iterator[Finding]:
                 name = written(port.communication.name)
                 yield Finding(
                     place,
-                    f"`{instance.name}` goes to `{target.name}` with the request to `{name}`, and nothing waits for the"
-                    f" answer of `{name}`: what `{target.name}` allows may begin before `{name}` has ended",
+                    f"`{instance.name}` goes to `{target.name}` with the request to `{name}`, and no transition waits"
+                    f" for its answer: events that `{target.name}` allows may begin before `{name}` has ended",
                     f"go to a state that `on response from {name} goto {written(target.name)}` leaves, and give it"
                     f" `on error from {name}`, too",
                 )
@@ -272,7 +272,7 @@ def failure_unheard(base: rsc.Base) -> Iterator[Finding]:
                     place,
                     f"`{instance.name}` leaves `{state.name}` at the response of `{name}`, and does not react to {ends}"
                     f" there: it may wait forever",
-                    f"let `{written(state.name)}` react to {ends}: with `goto` it gives up, without it may try again",
+                    f"let `{written(state.name)}` react to {ends}: with `goto` it gives up, without it tries again",
                 )
 
 

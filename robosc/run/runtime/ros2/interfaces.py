@@ -80,9 +80,9 @@ def build(folders: Iterable[Path], out: Path) -> list[str]:
                 if any(path for kind in CONVERTERS for path in root.glob(f"{kind}/*.{kind}")):
                     sources.setdefault(name, root)
     if not sources:
-        raise BuildError("no package with msg/*.msg, srv/*.srv or action/*.action is there")
+        raise BuildError("no package has msg/*.msg, srv/*.srv or action/*.action")
     if not (SHARE / "rosidl_generator_c").is_dir():
-        raise BuildError("this ROS 2 does not come from wheels: build the packages with its own tool, colcon")
+        raise BuildError("this ROS 2 is not installed from wheels: build the packages with colcon")
     out.mkdir(parents=True, exist_ok=True)
     # The generators print the files that they read and write.
     with tempfile.TemporaryDirectory(prefix=".robosc-", dir=out) as temporary, redirect_stdout(StringIO()):
@@ -117,7 +117,7 @@ def _ordered(packages: Mapping[str, _Package]) -> list[str]:
     for package in packages.values():
         for other in sorted(package.named - packages.keys()):
             if not any((SHARE / other).glob("*/*.idl")):
-                raise BuildError(f"{package.name} names types of {other}, which is neither installed nor given")
+                raise BuildError(f"{package.name} uses types of {other}, which is neither installed nor in the call")
     try:
         return [
             *TopologicalSorter(
@@ -125,7 +125,7 @@ def _ordered(packages: Mapping[str, _Package]) -> list[str]:
             ).static_order()
         ]
     except CycleError as error:
-        raise BuildError(f"these packages name types of each other: {', '.join(sorted(set(error.args[1])))}") from None
+        raise BuildError(f"these packages use types of each other: {', '.join(sorted(set(error.args[1])))}") from None
 
 
 def _needed(package: _Package, packages: Mapping[str, _Package]) -> tuple[list[str], list[str]]:
@@ -199,7 +199,7 @@ def _build(package: _Package, packages: Mapping[str, _Package], out: Path, work:
     try:
         _generate(package, packages, out, work)
     except Exception as error:
-        raise BuildError(f"the generators of ROS 2 can't make modules of {name}: {error}") from error
+        raise BuildError(f"the generators of ROS 2 cannot make modules of {name}: {error}") from error
     generated = [work / generator for generator in ("rosidl_generator_c", "rosidl_typesupport_c", *SUPPORTS)]
     folders = [*generated, out, sysconfig.get_path("include"), numpy.get_include()]
     folders += [*sorted((PREFIX / "include").iterdir()), PREFIX / "include"]
@@ -253,8 +253,6 @@ def _run(compiler: str, *arguments: str | Path) -> None:
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own words and files
     except FileNotFoundError:
-        raise BuildError(
-            f"{compiler} is not there: compilers of C and C++ are needed (Debian: apt install g++)"
-        ) from None
+        raise BuildError(f"{compiler} not found: install compilers of C and C++ (Debian: apt install g++)") from None
     if done.returncode != 0:
-        raise BuildError(f"{compiler} refuses what was generated:\n{done.stderr[-2000:]}")
+        raise BuildError(f"{compiler} rejects the generated code:\n{done.stderr[-2000:]}")

@@ -48,9 +48,9 @@ try:
         from rclpy.qos_event import PublisherEventCallbacks, SubscriptionEventCallbacks
 except ImportError as error:
     raise StartError(
-        f"ROS 2 is not there for this Python: {error}",
-        "pip install -e '.[ros2]' in robosc's repository brings it; or start robosc with the Python of a ROS 2"
-        " installation, with its setup",
+        f"this Python has no ROS 2: {error}",
+        "run pip install -e '.[ros2]' in robosc's repository, or start robosc with the Python of a ROS 2"
+        " installation after its setup",
     ) from error
 
 from robosc.run.runtime.ros2.actions import LateAnswer, Ros2ActionProxy, SentGoal, settle
@@ -111,7 +111,7 @@ class Ros2Node(Node):
             check_for_type_support(found)
         except (NoTypeSupportImportedException, ImportError) as error:
             what = f"{interface.package}/{interface.type}"
-            raise StartError(f"{what} is there, but not built for this Python: {error}", self.type_hint) from None
+            raise StartError(f"{what} is not built for this Python: {error}", self.type_hint) from None
         return found
 
     # The node's life

@@ -79,16 +79,15 @@ class Layer : public GuardedNode<rclcpp::Node> {
   explicit Layer(const rclcpp::NodeOptions& options = rclcpp::NodeOptions())
       : GuardedNode("usher_layer", options),
         log_(parameter<std::string>(*this, "event_log", "",
-            "A file that gets a line of JSON for each event; empty: none.")) {
+            "File for the event log, with a line of JSON for each event; empty: none.")) {
     const auto service_timeout =
         std::chrono::milliseconds(parameter(*this, "service_timeout_ms", 2000, 1, 86400000,
-        "After this time without an answer a call has failed."));
+        "A call fails after this time without an answer."));
     const auto action_timeout =
         std::chrono::milliseconds(parameter(*this, "action_timeout_ms", 2000, 1, 86400000,
-        "After this time without acceptance a goal has failed."));
+        "A goal fails after this time without acceptance."));
     const auto period =
-        std::chrono::milliseconds(parameter(*this, "period_ms", 100, 1, 86400000,
-        "Time from one report of the state to the next."));
+        std::chrono::milliseconds(parameter(*this, "period_ms", 100, 1, 86400000, "Period of reports of the state."));
 
     blocked_report_.open(*this, "~/blocked");
     state_report_.open(*this, "~/state");
@@ -96,7 +95,7 @@ class Layer : public GuardedNode<rclcpp::Node> {
     definition_report_.publish_text(kDefinition);
     const auto report_period =
         std::chrono::milliseconds(parameter(*this, "diagnostics_ms", 1000, 0, 86400000,
-        "From one report on /diagnostics to the next; 0: none."));
+        "Period of reports on /diagnostics; 0: none."));
     report_pace_.open(report_period, period);
     if (report_period.count() > 0) diagnostics_report_.open(*this, "/diagnostics");
 

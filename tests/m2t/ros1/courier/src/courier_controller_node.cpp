@@ -100,20 +100,19 @@ class Controller : public ControllerNode {
       : ControllerNode(node),
           log_(parameter<std::string>(private_, "event_log",
           default_log(ros::this_node::getName(), "courier_controller"),
-          "A file that gets a line of JSON for each event; empty: none.")) {
+          "File for the event log, with a line of JSON for each event; empty: none.")) {
     courier_settings settings = courier_default_settings;
     settings.events_per_tick =
         static_cast<std::uint16_t>(parameter(private_, "events_per_tick", settings.events_per_tick, 0, 65535,
-        "Most events sent in a tick; 0: no limit."));
+        "Maximum number of events sent in a tick; 0: no limit."));
     settings.reactions_per_tick =
         static_cast<std::uint16_t>(parameter(private_, "reactions_per_tick", settings.reactions_per_tick, 0, 65535,
-        "Most events started by the data of one topic between two ticks."));
+        "Maximum number of events that data of one topic starts between two ticks."));
     settings.react_immediately =
         parameter<bool>(private_, "react_immediately", settings.react_immediately,
-        "Whether incoming data may start events at once.");
+        "Whether incoming data may start events at once, before the next tick.");
     const auto period =
-        std::chrono::milliseconds(parameter(private_, "period_ms", 100, 1, 86400000,
-        "Time from one tick to the next."));
+        std::chrono::milliseconds(parameter(private_, "period_ms", 100, 1, 86400000, "Period of ticks."));
 
     target_publisher_ = advertise<geometry_msgs::PoseStamped>("target");
     sum_publisher_ = advertise<std_msgs::UInt8>("sum");
@@ -125,7 +124,7 @@ class Controller : public ControllerNode {
     definition_report_.publish_text(kDefinition);
     const auto report_period =
         std::chrono::milliseconds(parameter(private_, "diagnostics_ms", 1000, 0, 86400000,
-        "From one report on /diagnostics to the next; 0: none."));
+        "Period of reports on /diagnostics; 0: none."));
     report_pace_.open(report_period, period);
     if (report_period.count() > 0) diagnostics_report_.open(node_, "/diagnostics");
 
@@ -140,17 +139,19 @@ class Controller : public ControllerNode {
 
     watchdog_stops_ =
         parameter<bool>(private_, "watchdog_stops", false,
-        "Whether a silent topic holds commands back and cancels actions. It sends nothing: what the robot was told last stands.");
-    scan_watchdog_.emplace(parameter(private_, "watchdog_ms/scan", 0, 0, 86400000, "Longest silence of /scan; 0: any."),
+        "Whether a silent topic holds commands back and cancels actions. It sends nothing: the robot continues with its last command.");
+    scan_watchdog_.emplace(parameter(private_, "watchdog_ms/scan", 0, 0, 86400000,
+        "Longest silence of /scan; 0: no limit."),
         [this](const auto& watchdog) { on_silence("/scan", watchdog); }, node_);
     scan_subscription_ = subscribe<sensor_msgs::LaserScan>("/scan", [this](const auto& message) { on_scan(message); });
     scan_watchdog_->start();
     count_watchdog_.emplace(parameter(private_, "watchdog_ms/count", 0, 0, 86400000,
-        "Longest silence of count; 0: any."),
+        "Longest silence of count; 0: no limit."),
         [this](const auto& watchdog) { on_silence("count", watchdog); }, node_);
     count_subscription_ = subscribe<std_msgs::Int16>("count", [this](const auto& message) { on_count(message); });
     count_watchdog_->start();
-    word_watchdog_.emplace(parameter(private_, "watchdog_ms/word", 0, 0, 86400000, "Longest silence of word; 0: any."),
+    word_watchdog_.emplace(parameter(private_, "watchdog_ms/word", 0, 0, 86400000,
+        "Longest silence of word; 0: no limit."),
         [this](const auto& watchdog) { on_silence("word", watchdog); }, node_);
     word_subscription_ = subscribe<std_msgs::String>("word", [this](const auto& message) { on_word(message); });
     word_watchdog_->start();
@@ -397,9 +398,9 @@ class Controller : public ControllerNode {
   void warn_of_no_stop() {
     if (watchdog_stops_)
         ROS_WARN("%s",
-        "watchdog_stops holds commands back and does not stop the robot: onShutdown names no message, it goes on as it was told last");
+        "watchdog_stops holds commands back and does not stop the robot: onShutdown names no message, the robot continues with its last command");
     if (!watchdog_stops_)
-        ROS_WARN("%s", "onShutdown names no message: when this node ends, the robot goes on as it was told last");
+        ROS_WARN("%s", "onShutdown names no message: when this node ends, the robot continues with its last command");
   }
 
   // Publishes the state after each change, at most once in a period, and for each new subscriber.

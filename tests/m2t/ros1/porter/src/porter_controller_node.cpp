@@ -84,29 +84,28 @@ class Controller : public ControllerNode {
   explicit Controller(const ros::NodeHandle& node)
       : ControllerNode(node),
           log_(parameter<std::string>(private_, "event_log", "",
-          "A file that gets a line of JSON for each event; empty: none.")) {
+          "File for the event log, with a line of JSON for each event; empty: none.")) {
     porter_settings settings = porter_default_settings;
     settings.events_per_tick =
         static_cast<std::uint16_t>(parameter(private_, "events_per_tick", settings.events_per_tick, 0, 65535,
-        "Most events sent in a tick; 0: no limit."));
+        "Maximum number of events sent in a tick; 0: no limit."));
     settings.reactions_per_tick =
         static_cast<std::uint16_t>(parameter(private_, "reactions_per_tick", settings.reactions_per_tick, 0, 65535,
-        "Most events started by the data of one topic between two ticks."));
+        "Maximum number of events that data of one topic starts between two ticks."));
     settings.react_immediately =
         parameter<bool>(private_, "react_immediately", settings.react_immediately,
-        "Whether incoming data may start events at once.");
+        "Whether incoming data may start events at once, before the next tick.");
     const auto period =
-        std::chrono::milliseconds(parameter(private_, "period_ms", 100, 1, 86400000,
-        "Time from one tick to the next."));
+        std::chrono::milliseconds(parameter(private_, "period_ms", 100, 1, 86400000, "Period of ticks."));
     const auto service_timeout =
         std::chrono::milliseconds(parameter(private_, "service_timeout_ms", 3000, 1, 86400000,
-        "After this time without an answer a call has failed."));
+        "A call fails after this time without an answer."));
     const auto action_timeout =
         std::chrono::milliseconds(parameter(private_, "action_timeout_ms", 2000, 1, 86400000,
-        "After this time without acceptance a goal has failed."));
+        "A goal fails after this time without acceptance."));
     const auto retry =
         std::chrono::milliseconds(parameter(private_, "retry_ms", 500, 1, 86400000,
-        "From the failure of a service or action to its reset."));
+        "Time from the failure of a service or action to its reset."));
 
     cmd_vel_publisher_ = advertise<geometry_msgs::Twist>("cmd_vel");
     state_report_.open(private_, "state");
@@ -114,7 +113,7 @@ class Controller : public ControllerNode {
     definition_report_.publish_text(kDefinition);
     const auto report_period =
         std::chrono::milliseconds(parameter(private_, "diagnostics_ms", 1000, 0, 86400000,
-        "From one report on /diagnostics to the next; 0: none."));
+        "Period of reports on /diagnostics; 0: none."));
     report_pace_.open(report_period, period);
     if (report_period.count() > 0) diagnostics_report_.open(node_, "/diagnostics");
 
@@ -146,12 +145,12 @@ class Controller : public ControllerNode {
         parameter<bool>(private_, "watchdog_stops", true,
         "Whether a silent topic holds commands back, cancels actions and sends halt.");
     order_watchdog_.emplace(parameter(private_, "watchdog_ms/order", 0, 0, 86400000,
-        "Longest silence of order; 0: any."),
+        "Longest silence of order; 0: no limit."),
         [this](const auto& watchdog) { on_silence("order", watchdog); }, node_);
     order_subscription_ = subscribe<std_msgs::Float32>("order", [this](const auto& message) { on_order(message); });
     order_watchdog_->start();
     stop_watchdog_.emplace(parameter(private_, "watchdog_ms/stop", 400, 0, 86400000,
-        "Longest silence of /stop; 0: any."),
+        "Longest silence of /stop; 0: no limit."),
         [this](const auto& watchdog) { on_silence("/stop", watchdog); }, node_);
     stop_subscription_ = subscribe<std_msgs::Empty>("/stop", [this](const auto& message) { on_stop(message); });
     stop_watchdog_->start();

@@ -342,10 +342,10 @@ class Controller : public ControllerNode<rclcpp::Node> {
   void warn_of_no_stop() {
     if (watchdog_stops_)
         RCLCPP_WARN(get_logger(), "%s",
-        "watchdog_stops holds commands back and does not stop the robot: onShutdown names no message, it goes on as it was told last");
+        "watchdog_stops holds commands back and does not stop the robot: onShutdown names no message, the robot continues with its last command");
     if (!watchdog_stops_)
         RCLCPP_WARN(get_logger(), "%s",
-        "onShutdown names no message: when this node ends, the robot goes on as it was told last");
+        "onShutdown names no message: when this node ends, the robot continues with its last command");
   }
 
   // Publishes the state after each change, at most once in a period, and for each new subscriber.
@@ -473,19 +473,18 @@ class Controller : public ControllerNode<rclcpp::Node> {
     log_ =
         EventLog(parameter<std::string>(*this, "event_log",
         default_log(get_fully_qualified_name(), "courier_controller"),
-        "A file that gets a line of JSON for each event; empty: none."));
+        "File for the event log, with a line of JSON for each event; empty: none."));
     courier_settings settings = courier_default_settings;
     settings.events_per_tick =
         static_cast<std::uint16_t>(parameter(*this, "events_per_tick", settings.events_per_tick, 0, 65535,
-        "Most events sent in a tick; 0: no limit."));
+        "Maximum number of events sent in a tick; 0: no limit."));
     settings.reactions_per_tick =
         static_cast<std::uint16_t>(parameter(*this, "reactions_per_tick", settings.reactions_per_tick, 0, 65535,
-        "Most events started by the data of one topic between two ticks."));
+        "Maximum number of events that data of one topic starts between two ticks."));
     settings.react_immediately =
         parameter<bool>(*this, "react_immediately", settings.react_immediately,
-        "Whether incoming data may start events at once.");
-    const auto period =
-        std::chrono::milliseconds(parameter(*this, "period_ms", 100, 1, 86400000, "Time from one tick to the next."));
+        "Whether incoming data may start events at once, before the next tick.");
+    const auto period = std::chrono::milliseconds(parameter(*this, "period_ms", 100, 1, 86400000, "Period of ticks."));
 
     courier_hooks hooks = {};
     hooks.context = this;
@@ -507,26 +506,29 @@ class Controller : public ControllerNode<rclcpp::Node> {
     definition_report_.publish_text(kDefinition);
     const auto report_period =
         std::chrono::milliseconds(parameter(*this, "diagnostics_ms", 1000, 0, 86400000,
-        "From one report on /diagnostics to the next; 0: none."));
+        "Period of reports on /diagnostics; 0: none."));
     report_pace_.open(report_period, period);
     if (report_period.count() > 0) diagnostics_report_.open(*this, "/diagnostics");
 
     watchdog_stops_ =
         parameter<bool>(*this, "watchdog_stops", false,
-        "Whether a silent topic holds commands back and cancels actions. It sends nothing: what the robot was told last stands.");
-    scan_watchdog_.emplace(parameter(*this, "watchdog_ms.scan", 0, 0, 86400000, "Longest silence of /scan; 0: any."),
-        [this](const auto& watchdog) { on_silence("/scan", watchdog); }, *this, guard_);
+        "Whether a silent topic holds commands back and cancels actions. It sends nothing: the robot continues with its last command.");
+    scan_watchdog_.emplace(parameter(*this, "watchdog_ms.scan", 0, 0, 86400000,
+        "Longest silence of /scan; 0: no limit."), [this](const auto& watchdog) { on_silence("/scan", watchdog); },
+        *this, guard_);
     scan_subscription_ = subscribe<sensor_msgs::msg::LaserScan>(
         "/scan", rclcpp::SensorDataQoS().keep_last(20).reliable(), rclcpp::SensorDataQoS().keep_last(20).reliable()
             .transient_local(),
         [this](const auto& message) { on_scan(message); });
-    count_watchdog_.emplace(parameter(*this, "watchdog_ms.count", 0, 0, 86400000, "Longest silence of count; 0: any."),
-        [this](const auto& watchdog) { on_silence("count", watchdog); }, *this, guard_);
+    count_watchdog_.emplace(parameter(*this, "watchdog_ms.count", 0, 0, 86400000,
+        "Longest silence of count; 0: no limit."), [this](const auto& watchdog) { on_silence("count", watchdog); },
+        *this, guard_);
     count_subscription_ = subscribe<std_msgs::msg::Int16>(
         "count", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
         [this](const auto& message) { on_count(message); });
-    word_watchdog_.emplace(parameter(*this, "watchdog_ms.word", 0, 0, 86400000, "Longest silence of word; 0: any."),
-        [this](const auto& watchdog) { on_silence("word", watchdog); }, *this, guard_);
+    word_watchdog_.emplace(parameter(*this, "watchdog_ms.word", 0, 0, 86400000,
+        "Longest silence of word; 0: no limit."), [this](const auto& watchdog) { on_silence("word", watchdog); }, *this,
+        guard_);
     word_subscription_ = subscribe<std_msgs::msg::String>(
         "word", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
         [this](const auto& message) { on_word(message); });

@@ -558,28 +558,27 @@ class Controller : public ControllerNode<rclcpp::Node> {
   void configure() {
     log_ =
         EventLog(parameter<std::string>(*this, "event_log", "",
-        "A file that gets a line of JSON for each event; empty: none."));
+        "File for the event log, with a line of JSON for each event; empty: none."));
     porter_settings settings = porter_default_settings;
     settings.events_per_tick =
         static_cast<std::uint16_t>(parameter(*this, "events_per_tick", settings.events_per_tick, 0, 65535,
-        "Most events sent in a tick; 0: no limit."));
+        "Maximum number of events sent in a tick; 0: no limit."));
     settings.reactions_per_tick =
         static_cast<std::uint16_t>(parameter(*this, "reactions_per_tick", settings.reactions_per_tick, 0, 65535,
-        "Most events started by the data of one topic between two ticks."));
+        "Maximum number of events that data of one topic starts between two ticks."));
     settings.react_immediately =
         parameter<bool>(*this, "react_immediately", settings.react_immediately,
-        "Whether incoming data may start events at once.");
-    const auto period =
-        std::chrono::milliseconds(parameter(*this, "period_ms", 100, 1, 86400000, "Time from one tick to the next."));
+        "Whether incoming data may start events at once, before the next tick.");
+    const auto period = std::chrono::milliseconds(parameter(*this, "period_ms", 100, 1, 86400000, "Period of ticks."));
     const auto service_timeout =
         std::chrono::milliseconds(parameter(*this, "service_timeout_ms", 3000, 1, 86400000,
-        "After this time without an answer a call has failed."));
+        "A call fails after this time without an answer."));
     const auto action_timeout =
         std::chrono::milliseconds(parameter(*this, "action_timeout_ms", 2000, 1, 86400000,
-        "After this time without acceptance a goal has failed."));
+        "A goal fails after this time without acceptance."));
     const auto retry =
         std::chrono::milliseconds(parameter(*this, "retry_ms", 500, 1, 86400000,
-        "From the failure of a service or action to its reset."));
+        "Time from the failure of a service or action to its reset."));
 
     porter_hooks hooks = {};
     hooks.context = this;
@@ -619,20 +618,22 @@ class Controller : public ControllerNode<rclcpp::Node> {
     definition_report_.publish_text(kDefinition);
     const auto report_period =
         std::chrono::milliseconds(parameter(*this, "diagnostics_ms", 1000, 0, 86400000,
-        "From one report on /diagnostics to the next; 0: none."));
+        "Period of reports on /diagnostics; 0: none."));
     report_pace_.open(report_period, period);
     if (report_period.count() > 0) diagnostics_report_.open(*this, "/diagnostics");
 
     watchdog_stops_ =
         parameter<bool>(*this, "watchdog_stops", true,
         "Whether a silent topic holds commands back, cancels actions and sends halt.");
-    order_watchdog_.emplace(parameter(*this, "watchdog_ms.order", 0, 0, 86400000, "Longest silence of order; 0: any."),
-        [this](const auto& watchdog) { on_silence("order", watchdog); }, *this, guard_);
+    order_watchdog_.emplace(parameter(*this, "watchdog_ms.order", 0, 0, 86400000,
+        "Longest silence of order; 0: no limit."), [this](const auto& watchdog) { on_silence("order", watchdog); },
+        *this, guard_);
     order_subscription_ = subscribe<std_msgs::msg::Float32>(
         "order", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
         [this](const auto& message) { on_order(message); });
-    stop_watchdog_.emplace(parameter(*this, "watchdog_ms.stop", 400, 0, 86400000, "Longest silence of /stop; 0: any."),
-        [this](const auto& watchdog) { on_silence("/stop", watchdog); }, *this, guard_);
+    stop_watchdog_.emplace(parameter(*this, "watchdog_ms.stop", 400, 0, 86400000,
+        "Longest silence of /stop; 0: no limit."), [this](const auto& watchdog) { on_silence("/stop", watchdog); },
+        *this, guard_);
     stop_subscription_ = subscribe<std_msgs::msg::Empty>(
         "/stop", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
         [this](const auto& message) { on_stop(message); });
