@@ -51,5 +51,5 @@ def test_the_standard_library_is_what_the_page_says() -> None:
     for file in files:
         text = file.read_text(encoding="utf-8")
         for kind in ("library", "component", "message"):
-            for name in re.findall(rf"\b{kind} (\w+)", text):
+            for name in re.findall(rf"^ *{kind} (\w+)", text, re.MULTILINE):
                 assert f"`{name}`" in page

@@ -15,6 +15,7 @@ def test_every_regular_expression_takes_linear_time(part: int) -> None:
     assert not faults, "\n".join(faults)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", ["BuiltIn", "Quantifier", "LoneString", "LoneInteger", "Comment", "String"])
 def test_the_words_of_the_grammar_take_linear_time(rule: str) -> None:
     assert slow(Expression(f"grammar/robosc.tx: {rule}", pattern(rule), re.MULTILINE, frozenset({"match"}))) is None
@@ -34,6 +35,7 @@ def test_all_of_them_are_collected() -> None:
         assert any(place.startswith(file) for place in places), file
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("expression", "is_slow"),
     [

@@ -27,6 +27,7 @@ NAMED = """robot {word} {{
 }}"""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("word", WORDS)
 def test_a_new_word_is_a_name_elsewhere(word: str) -> None:
     """A new word is a keyword only if the next tokens form its construct."""

@@ -46,6 +46,7 @@ def suggestions(findings: Iterable[Diagnostic], file: str) -> Iterator[Diagnosti
             yield finding
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mistyped", MISTYPED)
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda path: path.stem)
 def test_a_name_in_a_model_is_replaced_whole(robot: Path, mistyped: str) -> None:

@@ -36,6 +36,7 @@ def count_row(name: str, path: Path) -> Row:
     return name, costs["operations"], costs["nodes"]
 
 
+@pytest.mark.slow
 def test_robots_of_the_families(golden: Golden, tmp_path: Path) -> None:
     path = tmp_path / "robot.rscd"
 

@@ -80,6 +80,7 @@ def test_comments_do_not_change_what_is_found() -> None:
             assert [found.rule for found in before] == [found.rule for found in after], name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BROKEN)
 def test_no_way_to_mend_a_finding_changes_a_comment(name: str) -> None:
     content = baited(BROKEN[name])
@@ -90,6 +91,7 @@ def test_no_way_to_mend_a_finding_changes_a_comment(name: str) -> None:
             assert comments(before.reading.file.text.after(edits)) == kept, (finding.message, edits)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BROKEN)
 def test_edits_that_do_no_harm_leave_no_more_syntax_errors(name: str) -> None:
     content = BROKEN[name]
@@ -105,6 +107,7 @@ def test_edits_that_do_no_harm_leave_no_more_syntax_errors(name: str) -> None:
                 assert left <= counts
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BROKEN)
 def test_automatic_edits_make_nothing_worse(name: str) -> None:
     assert_no_worse(baited(BROKEN[name], 3), PATHS[name])
@@ -149,6 +152,7 @@ def test_effect_of_an_edit(old: str, new: str, safety: Safety) -> None:
 FRAGMENTS = ("/* no, send: change } */", '/* "state idle" */', "// goto idle { }\n", "/* { */", "/* marked initial */")
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(name=st.sampled_from(sorted(BROKEN)), data=st.data())
 def test_comments_anywhere(name: str, data: st.DataObject) -> None:
@@ -161,6 +165,7 @@ def test_comments_anywhere(name: str, data: st.DataObject) -> None:
     assert_no_worse(content, PATHS[name])
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(name=st.sampled_from(sorted(BROKEN)), data=st.data())
 def test_words_that_are_missing_anywhere(name: str, data: st.DataObject) -> None:

@@ -117,6 +117,7 @@ MEANING = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", TEXTS)
 def test_one_finding_and_its_edit(kind: str) -> None:
     assert not checked(TEXTS[kind].replace("KK", "kk")).findings

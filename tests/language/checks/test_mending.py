@@ -218,6 +218,7 @@ def ways(finding: Diagnostic) -> list[tuple[Edit, ...]]:
     return [*([finding.edits] if finding.edits else ()), *(way.edits for way in finding.alternatives)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", MODELS, ids=lambda path: f"{path.parent.name}/{path.stem}")
 def test_an_edit_mends_its_finding(path: Path) -> None:
     reading, found = before(path)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+import pytest
 from hypothesis import given, settings
 
 from robosc.m2m.remembering import remembered
@@ -26,6 +27,7 @@ def expressions(made: sct.SupervisoryControlModel) -> Iterator[ex.Expression]:
             yield from (element.left, element.right) if assigned else (element,)
 
 
+@pytest.mark.slow
 @settings(max_examples=examples(40), deadline=None)
 @given(given=sct_models(requirements=True))
 def test_only_what_cif_has_is_left(given: sct.SupervisoryControlModel) -> None:

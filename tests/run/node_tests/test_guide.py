@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import pytest
+
 import robosc
 from robosc.engine import ControlLoop
 from robosc.model import sct
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
+@pytest.mark.slow
 def test_every_condition_of_the_sprayer_can_be_seen() -> None:
     """Each condition is false alone in a state without a due cancel, since `drive` runs until its goal ends.
 

@@ -136,11 +136,13 @@ ROBOTS = [
 every_model = pytest.mark.parametrize("case", ROBOTS, indirect=True)
 
 
+@pytest.mark.slow
 @every_model
 def test_a_controller_follows_its_own_tours(case: Case) -> None:
     case.play()
 
 
+@pytest.mark.slow
 @every_model
 def test_a_tour_is_an_event_log(case: Case) -> None:
     validator = Draft202012Validator(json.loads(locate("schemas/event-log.schema.json").read_text()))
@@ -181,6 +183,7 @@ def test_a_tour_with_other_settings_is_another_one() -> None:
 # Logs of robots
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "case",
     slow_but(
@@ -347,6 +350,7 @@ def test_wrong_data_is_noticed(case: Case) -> None:
         case.play()
 
 
+@pytest.mark.slow
 def test_data_that_changes_on_its_way_is_noticed(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
     put = case.connections["publishers"][0]
     whole = InProcessNode.connect
@@ -388,6 +392,7 @@ def test_samples_mean_what_they_say(case: Case) -> None:
                     assert data.convert(read.conversion, argument).name == literal
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", ["maze_solver"], indirect=True)
 def test_all_literals_that_can_meet_are_found(case: Case) -> None:
     (scan,) = [topic for topic in case.connections["subscriptions"] if topic["topic"] == "/scan"]

@@ -267,6 +267,7 @@ def test_gcov_counts_as_often_that_a_guard_is_true(name: str, tmp_path: Path, to
     assert told(name)["coverage"]["events"] == played
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", EACH)
 def test_the_page_opens_and_shows_the_numbers(name: str, chromium: Any, tmp_path: Path, told: Told) -> None:  # noqa: F811
     found, page = told(name), tmp_path / "report.html"
@@ -331,6 +332,7 @@ def test_the_texts_of_needs_are_no_markup(told: Told) -> None:
     assert core.publish_doctree(content, settings_overrides=settings).astext() == text.replace("`", "")
 
 
+@pytest.mark.slow
 def test_a_refuted_property_is_an_error(tmp_path: Path) -> None:
     text = MODELS[QUICK].read_text()
     file = tmp_path / "wrong.rscd"

@@ -77,6 +77,7 @@ def test_every_reason(engine: str) -> None:
     assert f"{len(GOALS) + len(CALLS)} scenarios, 0 failed\n" in answer.stderr
 
 
+@pytest.mark.slow
 def test_logs_play_as_scripts() -> None:
     """An event log of a node replays to the same inputs, so that the robot ends in the same state."""
     assert played(every_reason(), "--traces", "traces").exit_code == 0

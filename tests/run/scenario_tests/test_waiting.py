@@ -68,6 +68,7 @@ class _LatestFirst(EventLoop):
         return super().run_pending()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("period", "length", "wait"), [*MEETING, *some(18)])
 def test_every_wait_passes(
     period: int, length: int, wait: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

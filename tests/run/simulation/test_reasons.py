@@ -336,6 +336,7 @@ def test_random_events_have_reasons_and_can_be_played(crane: Any) -> None:
     assert reasons == {"action_go.u_error": set(ACTION), "service_lift.u_error": set(SERVICE)}
 
 
+@pytest.mark.slow
 def test_random_events_are_a_script(tmp_path: Path) -> None:
     """Each of them can happen, also an error whose input is one of several fields that the model reads."""
     model = tmp_path / "crane.rscd"
