@@ -45,7 +45,7 @@ import robosc
 from robosc.m2t.models import Models
 from robosc.run.simulation import Simulation
 from robosc.tools import view
-from robosc.tools.view import serving
+from robosc.tools.view import http_server
 from robosc.tools.view.server import application
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ def flooding(model: Path, port: int, seconds: float) -> None:
         asyncio.get_running_loop().flood = asyncio.ensure_future(flood())  # type: ignore[attr-defined]  # keeps it
 
     live.heard(1)
-    serving.serve(served, serving.listen("127.0.0.1", port), ready)
+    http_server.serve(served, http_server.listen("127.0.0.1", port), ready)
 
 
 def flooded(browser: Any, model: Path, seconds: float) -> None:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from robosc.base.diagnostics import Related, Repair
 from robosc.base.interruption import checkpoint
-from robosc.language.explaining import BASIC_TYPES, CONSTRUCTS, did_you_mean
 from robosc.language.failures import expects_failure
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
 from robosc.language.scopes import Declared, File, Names, Scope, by_name
+from robosc.language.syntax_messages import BASIC_TYPES, CONSTRUCTS, did_you_mean
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import RUNNING_WORD
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from robosc.base.diagnostics import Diagnostic
     from robosc.base.ros_types import RosTypes
-    from robosc.language.building import Name
+    from robosc.language.builder import Name
     from robosc.language.tokens import Token
     from robosc.model.semantics.instances import Resolved
 

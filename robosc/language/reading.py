@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 from robosc.base.diagnostics import Repair, in_order
 from robosc.base.files.resources import locate
 from robosc.base.ros_types import RosTypes
-from robosc.language.explaining import did_you_mean
 from robosc.language.failures import names_failures
 from robosc.language.libraries import LibraryPath
 from robosc.language.linking import RULE, link
 from robosc.language.recovery import parse_file
+from robosc.language.syntax_messages import did_you_mean
 from robosc.language.text import Documents, decode
 from robosc.model import robosc as rsc
 from robosc.model.semantics.failures import PREDEFINED
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from robosc.base.diagnostics import Diagnostic
-    from robosc.language.building import Name
+    from robosc.language.builder import Name
     from robosc.language.scopes import File
     from robosc.model.semantics.instances import Resolved
 

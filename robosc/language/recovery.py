@@ -11,11 +11,11 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from robosc.base.diagnostics import Related, Repair
-from robosc.language.building import Builder
-from robosc.language.explaining import expected, found, hint, misread
+from robosc.language.builder import Builder
 from robosc.language.grammar import Failure, first_words, is_reserved, parse
 from robosc.language.outline import DECLARED, DEFINITIONS, PROPERTIES, RULES, Block, Brace, Outline
 from robosc.language.scopes import Declared, File, SkippedRegions
+from robosc.language.syntax_messages import expected, found, hint, misread
 from robosc.language.tokens import Kind, Token, too_complex
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from robosc.base.diagnostics import Diagnostic, Span
-    from robosc.language.building import Name
+    from robosc.language.builder import Name
     from robosc.language.text import Text
     from robosc.model.semantics.instances import Resolved
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.language.describing import type_text
+from robosc.language.hover import type_text
 from robosc.language.tokens import Kind, Tokens
 from robosc.model import robosc as rsc
 from robosc.model.semantics.operators import FUNCTIONS

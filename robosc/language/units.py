@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from robosc.base.ros_types import DefinitionError, Section
 from robosc.base.ros_types.units import UNITS
 from robosc.base.ros_types.wire import PRIMITIVES, Basic, Nested, Sequence
-from robosc.language.outlining import own_elements, span
+from robosc.language.document_symbols import own_elements, span
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import carried, event, sent
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from robosc.base.ros_types import RosTypes
 from robosc.m2m.declarations import Declarations, default_value
 from robosc.m2m.expressions import Carried, NodeExpressions
-from robosc.m2m.kept_types import KeptTypes
+from robosc.m2m.stored_types import KeptTypes
 from robosc.model import expression as ex
 from robosc.model import robosc, rosgraph, sct
 from robosc.model.semantics.communication import (

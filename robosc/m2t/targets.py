@@ -218,6 +218,6 @@ def targets() -> dict[str, Target]:
 
 def together() -> AbstractContextManager[None]:
     """Cache the results that several targets share. Models must not change in this context."""
-    from robosc.m2m.remembering import remembered
+    from robosc.m2m.memo import remembered
 
     return remembered()

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from robosc.analysis.explain.as_text import Renderer
-from robosc.analysis.explain.explaining import emptiness, explored
+from robosc.analysis.explain.explanations import emptiness, explored
 from robosc.analysis.supervise import EmptySupervisorError, supervise
 from robosc.analysis.verify import validate_cif, verify_system
 from robosc.analysis.verify.verdict import Outcome

@@ -11,7 +11,7 @@ from robosc.model.semantics.component_parts import components
 from robosc.model.semantics.edges import edges_from, edges_of
 from robosc.model.semantics.roles import event_name
 from robosc.run.runtime.core.json_text import json_text
-from robosc.run.simulation.tracking import Tracker
+from robosc.run.simulation.tracker import Tracker
 from tests.ros.test_layer import trial
 from tests.ros.workspaces import EXAMPLES, USHER
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.language.checks.definitions import communication_of, of_kind, statements
-from robosc.language.checks.mending import Choice, Insertion, Removal, part_of
+from robosc.language.checks.edits import Choice, Insertion, Removal, part_of
 from robosc.language.checks.rule import Finding, on_line
 from robosc.model import robosc as rsc
 from robosc.model.reflection import tree

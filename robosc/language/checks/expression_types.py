@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Any
 
+from robosc.language.checks.edits import Choice, Replacement
 from robosc.language.checks.libraries import instances
-from robosc.language.checks.mending import Choice, Replacement
 from robosc.language.checks.rule import Finding
 from robosc.language.checks.type_repairs import equality_repair, repair
 from robosc.model import expression as ex
@@ -36,7 +36,7 @@ from robosc.model.semantics.walks import fold, operands
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from robosc.language.checks.mending import Hint
+    from robosc.language.checks.edits import Hint
 
 
 class Restriction(Enum):

@@ -15,7 +15,7 @@ from robosc.model.semantics.instances import Instances, imported, libraries
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
-    from robosc.language.checks.mending import Hint
+    from robosc.language.checks.edits import Hint
     from robosc.model import expression as ex
     from robosc.model import robosc as rsc
     from robosc.model.semantics.evaluation import Value

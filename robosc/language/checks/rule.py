@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from robosc.base.diagnostics import Alternative, Edit, Related, Repair, Severity, Span
-from robosc.language.checks.mending import Choice, Replacement, changed_file
+from robosc.language.checks.edits import Choice, Replacement, changed_file
 from robosc.model import expression as ex
 from robosc.model.places import place
 from robosc.model.reflection import tree
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from robosc.base.diagnostics import Diagnostic
     from robosc.base.ros_types import RosTypes
-    from robosc.language.checks.mending import Hint, Way
+    from robosc.language.checks.edits import Hint, Way
     from robosc.model import robosc as rsc
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.base.diagnostics import Repair
 from robosc.language.checks.definitions import component_of
-from robosc.language.checks.mending import Choice, Insertion, Replacement, wrapped
+from robosc.language.checks.edits import Choice, Insertion, Replacement, wrapped
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import data_type, event_of
@@ -29,7 +29,7 @@ from robosc.model.semantics.typing import (
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from robosc.language.checks.mending import Hint, Together
+    from robosc.language.checks.edits import Hint, Together
 
 #: Placeholder in a hint for text that the user writes.
 _GAP = "…"

@@ -14,7 +14,7 @@ import textx
 
 from robosc.base.diagnostics import Repair
 from robosc.base.files.resources import locate
-from robosc.language.explaining import closest, keyword_hint
+from robosc.language.syntax_messages import closest, keyword_hint
 from robosc.model.semantics.naming import enumeration
 
 if TYPE_CHECKING:

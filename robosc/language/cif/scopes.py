@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from robosc.base.diagnostics import Repair
 from robosc.language.cif.faults import CHANNELS, CifFaultError, construct, located
 from robosc.language.cif.parsing import identifier
-from robosc.language.explaining import closest
+from robosc.language.syntax_messages import closest
 from robosc.model import sct
 
 if TYPE_CHECKING:

@@ -27,7 +27,7 @@ from robosc.language.cif.faults import (
 from robosc.language.cif.parsing import identifier
 from robosc.language.cif.scopes import Declared, Scope, Specification, plain
 from robosc.language.cif.values import Values, computed_from_itself, constant_value, literal
-from robosc.language.explaining import closest
+from robosc.language.syntax_messages import closest
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.semantics.cif_types import Type, contains, overlap, shown

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.language.building import Builder
+from robosc.language.builder import Builder
 from robosc.language.formatting.documents import render
 from robosc.language.formatting.layout import layout
 from robosc.language.grammar import Failure, parse

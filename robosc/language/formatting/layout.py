@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from robosc.language.building import element_class
+from robosc.language.builder import element_class
 from robosc.language.formatting.comments import Space, spaces
 from robosc.language.formatting.documents import Document, Gap, Group, Indent
 from robosc.language.grammar import attribute

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.base.diagnostics import Diagnostic, ModelError, Severity
-from robosc.m2m.remembering import once
+from robosc.m2m.memo import once
 from robosc.m2m.sct_to_cif.linear import LARGEST, Unsupported, bounds, shift
 from robosc.m2m.sct_to_cif.lower_arithmetic import Lowering
 from robosc.model import expression as ex

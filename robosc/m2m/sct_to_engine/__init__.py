@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.m2m.remembering import once
+from robosc.m2m.memo import once
 from robosc.m2m.sct_to_engine.build_expressions import as_denial, build_expression, build_value
 from robosc.m2m.sct_to_engine.collect_events import collect_edges, collect_events, collect_groups, collect_sources
 from robosc.m2m.sct_to_engine.combine_guards import combine_guards

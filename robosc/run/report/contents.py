@@ -17,7 +17,7 @@ from robosc.model.semantics.roles import event_name, plant_of
 from robosc.model.semantics.walks import copied
 from robosc.run.node_tests.trace_test import trace_test_of
 from robosc.run.report import digests, printing
-from robosc.run.report.playing import play
+from robosc.run.report.trace_coverage import play
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from robosc.language.configuration import Configuration
     from robosc.m2t.models import Models
     from robosc.model import rosgraph
-    from robosc.run.report.playing import Shown
+    from robosc.run.report.trace_coverage import Shown
 
 #: First paragraph of the report.
 NOTICE = (

@@ -14,15 +14,15 @@ from robosc.base.files.reading import noting
 from robosc.base.files.writing import write_file
 from robosc.base.ros_types import RosTypes
 from robosc.language.checks import check as rules_of
-from robosc.language.checks.fixing import safe_edits
+from robosc.language.checks.automatic_edits import safe_edits
 from robosc.language.libraries import search_folders
 from robosc.language.reading import read as read_text
 from robosc.language.text import Documents
 from robosc.tools.cli import CallError, interruption, say
+from robosc.tools.cli.file_watch import whenever_files_change
 from robosc.tools.cli.options import FILE, Paths, findings_format, paths
 from robosc.tools.cli.reading import read
 from robosc.tools.cli.report import Report
-from robosc.tools.cli.watching import whenever_files_change
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from robosc.run.simulation.played import PlayError
+from robosc.run.simulation.sources import PlayError
 from robosc.tools.cli import CallError, say
 from robosc.tools.cli.options import Paths, synthesizer
 from robosc.tools.cli.parameters import set_parameters

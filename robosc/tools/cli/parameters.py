@@ -9,7 +9,7 @@ import click
 
 from robosc.base.files.json_reading import JsonError, json_value
 from robosc.language.configuration.parameters import model_parameters
-from robosc.language.explaining import did_you_mean
+from robosc.language.syntax_messages import did_you_mean
 from robosc.model.semantics.durations import set_milliseconds
 from robosc.model.semantics.evaluation import literal
 from robosc.run.runtime.core.settings import check

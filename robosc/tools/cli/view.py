@@ -12,7 +12,7 @@ import click
 from robosc.base.files.writing import write
 from robosc.base.recordings import RecordingError, is_recording
 from robosc.run.simulation import Simulation
-from robosc.run.simulation.played import PlayError, counterexample_steps, recorded_moments, script_steps
+from robosc.run.simulation.sources import PlayError, counterexample_steps, recorded_moments, script_steps
 from robosc.tools.cli import CallError, put, say
 from robosc.tools.cli.options import FILE, Paths, over_ros, paths, synthesizer
 from robosc.tools.cli.parameters import parameters, set_parameters
@@ -128,7 +128,7 @@ def _listening(heard: Sequence[tuple[Sequence[str], Live]]) -> Callable[[], Call
 
     def begin() -> Callable[[], None]:
         from robosc.run.runtime.core.node import StartError
-        from robosc.run.runtime.listening import listen
+        from robosc.run.runtime.subscriptions import listen
         from robosc.tools.view.relay import Relay
 
         try:
@@ -178,19 +178,19 @@ def _serve(
     opens: bool,
     begin: Callable[[], Callable[[], None]] | None,
 ) -> None:
-    from robosc.tools.view import serving
+    from robosc.tools.view import http_server
     from robosc.tools.view.server import application
 
     try:
-        listening = serving.listen(address, port)
+        listening = http_server.listen(address, port)
     except OSError as error:
         raise CallError(f"{address}:{port}: {error.strerror}") from None
     number = listening.getsockname()[1]
     host = f"[{address}]" if ":" in address else address
-    is_loopback = host in serving.LOOPBACK
+    is_loopback = host in http_server.LOOPBACK
     token = None if is_loopback else secrets.token_urlsafe(16)
-    hosts = {f"{name}:{number}" for name in (*serving.LOOPBACK, host)}
-    seen = serving.reachable(address)
+    hosts = {f"{name}:{number}" for name in (*http_server.LOOPBACK, host)}
+    seen = http_server.reachable(address)
     path = f"http://{f'[{seen}]' if ':' in seen else seen}:{number}/{'' if token is None else f'?token={token}'}"
     ends: list[Callable[[], None]] = []
 
@@ -202,7 +202,7 @@ def _serve(
             webbrowser.open(path)
 
     try:
-        serving.serve(application(shown, hosts, token), listening, ready)
+        http_server.serve(application(shown, hosts, token), listening, ready)
     finally:
         for end in ends:
             end()

@@ -14,10 +14,10 @@ from robosc.model.semantics.failures import possible_reasons
 from robosc.model.semantics.roles import event_name
 from robosc.model.semantics.steps import FIRST_WORDS, StepError
 from robosc.run.simulation import DataError, Simulation, read_script
-from robosc.run.simulation.played import PlayError
 from robosc.run.simulation.replay import Replay
 from robosc.run.simulation.script import WAIT, spoken
-from robosc.tools.debugger.launching import Launch, RequestError
+from robosc.run.simulation.sources import PlayError
+from robosc.tools.debugger.launch import Launch, RequestError
 from robosc.tools.debugger.stops import FILTERS, Stop, Stops
 from robosc.tools.debugger.views import Views, at, shown
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from robosc.model import sct
     from robosc.run.simulation.replay import Moment
-    from robosc.tools.debugger.launching import Loader
+    from robosc.tools.debugger.launch import Loader
     from robosc.tools.debugger.protocol import Connection
     from robosc.tools.debugger.views import Variable
 

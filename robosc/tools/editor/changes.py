@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types
 
-from robosc.language.annotating import notes
-from robosc.language.describing import event_text
-from robosc.language.outlining import span
+from robosc.language.document_symbols import span
+from robosc.language.hover import event_text
+from robosc.language.inlay_hints import notes
 from robosc.model import robosc as rsc
 from robosc.tools.editor.places import to_offset, to_range
 

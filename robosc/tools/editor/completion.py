@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from robosc.language.classifying import what_of
-from robosc.language.completing import proposals, topic_at
-from robosc.language.describing import summary
+from robosc.language.completion import proposals, topic_at
+from robosc.language.hover import summary
 from robosc.language.libraries import LibraryPath
 from robosc.language.reading import read
+from robosc.language.semantic_tokens import what_of
 from robosc.language.signatures import signature
 from robosc.model import robosc as rsc
 from robosc.tools.editor.places import to_offset, to_range
 from robosc.tools.editor.snippets import SNIPPETS
 
 if TYPE_CHECKING:
-    from robosc.language.completing import Proposal
+    from robosc.language.completion import Proposal
     from robosc.language.reading import Reading
     from robosc.tools.editor.project import Analysis, Snapshot
 

@@ -14,7 +14,7 @@ from pygls.exceptions import JsonRpcException
 from robosc.base.diagnostics import Severity, in_order
 from robosc.base.diagnostics.rules import address
 from robosc.base.interruption import checkpoint
-from robosc.language.checks.fixing import Safety, safe_edits, safety_of
+from robosc.language.checks.automatic_edits import Safety, safe_edits, safety_of
 from robosc.language.libraries import declared_name
 from robosc.model import robosc as rsc
 from robosc.tools.editor.places import span_range, to_edits, to_range

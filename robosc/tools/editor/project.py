@@ -20,7 +20,7 @@ from urllib.parse import quote
 from pygls.uris import from_fs_path, to_fs_path
 
 from robosc.base.diagnostics import in_order
-from robosc.base.files.finding import files_below
+from robosc.base.files.search import files_below
 from robosc.base.interruption import checkpoint
 from robosc.base.ros_types import RosTypes
 from robosc.language.checks import check

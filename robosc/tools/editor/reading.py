@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from robosc.language.describing import describe
+from robosc.language.document_symbols import around, folds, outline
 from robosc.language.formatting import format_edits
-from robosc.language.outlining import around, folds, outline
+from robosc.language.hover import describe
 from robosc.model import robosc as rsc
 from robosc.tools.editor.places import location, to_offset, to_range
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from robosc.language.outlining import Item
+    from robosc.language.document_symbols import Item
     from robosc.language.scopes import File, Reference
     from robosc.language.text import Text
     from robosc.tools.editor.project import Analysis, Snapshot

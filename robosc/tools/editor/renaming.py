@@ -10,7 +10,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from robosc.base.diagnostics import Edit
-from robosc.language.checks.fixing import objection
+from robosc.language.checks.automatic_edits import objection
 from robosc.language.tokens import is_name
 from robosc.model.semantics.naming import written
 from robosc.tools.editor.places import to_edits, to_offset, to_range

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from lsprotocol import types
 
 from robosc.base.diagnostics import has_errors
-from robosc.language.outlining import outline
+from robosc.language.document_symbols import outline
 from robosc.model import robosc as rsc
 from robosc.tools.editor.answers import Request, Verdict
 from robosc.tools.editor.places import to_range
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
-    from robosc.language.outlining import Item
+    from robosc.language.document_symbols import Item
     from robosc.tools.editor.project import Analysis, Snapshot
 
 COMMAND = (sys.executable, "-m", "robosc.tools.editor.verdict")

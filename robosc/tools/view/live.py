@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robosc.base.files.json_reading import JsonError, json_value
 from robosc.model.semantics.definition import definition
-from robosc.run.simulation.tracking import ReportError, Tracker
+from robosc.run.simulation.tracker import ReportError, Tracker
 from robosc.tools.view.moments import Moments
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from robosc.analysis.blocking_in_words import counterexample_in_words
 from robosc.analysis.explain import NEEDLESS, explain, explored, state_given
 from robosc.analysis.wording import in_words, words
 from robosc.model.semantics.roles import Roles, event_name
-from robosc.run.simulation.kept import Kept
 from robosc.run.simulation.simulation import whole_state
+from robosc.run.simulation.stored_variables import Kept
 from robosc.tools.view.description import automata_of, commands_of, transitions_of
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from robosc.engine.state import State
     from robosc.model import rosgraph, sct
     from robosc.run.simulation import Simulation
-    from robosc.run.simulation.kept import Values
-    from robosc.run.simulation.tracking import Told
+    from robosc.run.simulation.stored_variables import Values
+    from robosc.run.simulation.tracker import Told
 
 
 #: Maximum number of cached answers of `explain`.

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from robosc.model import rosgraph
     from robosc.run.simulation import Simulation, Step
     from robosc.run.simulation.replay import Moment
-    from robosc.run.simulation.tracking import Told
+    from robosc.run.simulation.tracker import Told
 
 #: Names of the actions on a run.
 ACTIONS = ("perform", "wait", "undo", "redo", "random", "restart", "continue")

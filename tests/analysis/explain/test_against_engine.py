@@ -10,7 +10,7 @@ from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
 from robosc.analysis.explain.answers import Explanation, Possibility, Reach
-from robosc.analysis.explain.explaining import emptiness, explain, explored, possibility
+from robosc.analysis.explain.explanations import emptiness, explain, explored, possibility
 from robosc.analysis.explain.names import state_given
 from robosc.analysis.paths import TraceStep
 from robosc.analysis.supervise import diagnose

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import robosc
-from robosc.analysis.explain.explaining import explored
+from robosc.analysis.explain.explanations import explored
 from robosc.analysis.system import SynthesizedSystem
 from robosc.m2m import robosc_to_sct
 from robosc.model import expression as ex

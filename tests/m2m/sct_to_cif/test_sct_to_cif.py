@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from hypothesis import given, settings
 
-from robosc.m2m.remembering import remembered
+from robosc.m2m.memo import remembered
 from robosc.m2m.sct_to_cif import transform
 from robosc.model import expression as ex
 from robosc.model import sct, xmi

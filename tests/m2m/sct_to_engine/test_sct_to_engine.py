@@ -13,7 +13,7 @@ import robosc
 from robosc.analysis.supervise import supervise
 from robosc.base.diagnostics import ModelError
 from robosc.engine import Engine
-from robosc.m2m.remembering import remembered
+from robosc.m2m.memo import remembered
 from robosc.m2m.sct_to_engine import transform
 from robosc.model import engine, sct, xmi
 from robosc.model import expression as ex

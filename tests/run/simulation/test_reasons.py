@@ -12,10 +12,10 @@ from click.testing import CliRunner
 
 import robosc
 from robosc.run.simulation import LoopSimulation, Simulation, read_script
-from robosc.run.simulation.kept import Kept
 from robosc.run.simulation.replay import Replay
 from robosc.run.simulation.script import REFUSE
 from robosc.run.simulation.session import Session, trace_line
+from robosc.run.simulation.stored_variables import Kept
 from robosc.tools.cli import main
 
 MODEL = Path(__file__).parent / "crane.rscd"

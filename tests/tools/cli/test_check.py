@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from robosc.base.diagnostics import Edit
-from robosc.language.checks.fixing import Checked
+from robosc.language.checks.automatic_edits import Checked
 
 from .conftest import DOOR, Run
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from robosc.base.diagnostics import Severity
 from robosc.language.checks.definitions import of_kind
+from robosc.language.checks.edits import Choice, Insertion, Removal, Renaming, Replacement, Together, part_of
 from robosc.language.checks.facts import fact
 from robosc.language.checks.libraries import instances, reachable
-from robosc.language.checks.mending import Choice, Insertion, Removal, Renaming, Replacement, Together, part_of
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
 from robosc.model.semantics.naming import written
@@ -16,7 +16,7 @@ from robosc.model.semantics.naming import written
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.language.checks.mending import Hint
+    from robosc.language.checks.edits import Hint
     from robosc.model import expression as ex
     from robosc.model.semantics.instances import PortInstance
 

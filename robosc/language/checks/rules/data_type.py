@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.language.checks.definitions import circles, communications, of_kind
-from robosc.language.checks.mending import Choice, Removal, Replacement
+from robosc.language.checks.edits import Choice, Removal, Replacement
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import carried, sent_type
@@ -16,7 +16,7 @@ from robosc.model.semantics.typing import NONE, ArrayType, EnumType, declared_ty
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.language.checks.mending import Hint
+    from robosc.language.checks.edits import Hint
 
 _BASIC = ("boolean", "integer", "double", "string")
 

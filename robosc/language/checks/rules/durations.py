@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.language.checks.definitions import behaviours, common_transitions, of_kind, transitions
+from robosc.language.checks.edits import Replacement
 from robosc.language.checks.libraries import instances, meanings
-from robosc.language.checks.mending import Replacement
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
 from robosc.model.semantics.durations import (

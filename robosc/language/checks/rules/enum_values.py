@@ -5,16 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.language.checks.definitions import of_kind, unit_of
+from robosc.language.checks.edits import Insertion, Removal, Renaming, part_of
 from robosc.language.checks.facts import fact
 from robosc.language.checks.libraries import imports, instances, reachable
-from robosc.language.checks.mending import Insertion, Removal, Renaming, part_of
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.language.checks.mending import Hint
+    from robosc.language.checks.edits import Hint
     from robosc.model.semantics.instances import Instance
 
 

@@ -16,8 +16,8 @@ from robosc.language.checks.definitions import (
     transitions,
     variables,
 )
+from robosc.language.checks.edits import Choice, Replacement
 from robosc.language.checks.expression_types import CONSTANT, ENUM_RULE, ExpressionCheck, Place, Restriction
-from robosc.language.checks.mending import Choice, Replacement
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc

@@ -15,10 +15,10 @@ from robosc.language.checks.definitions import (
     transitions,
     variables,
 )
+from robosc.language.checks.edits import Choice, Removal, Replacement, Together, part_of
 from robosc.language.checks.libraries import Meaning, meanings
-from robosc.language.checks.mending import Choice, Removal, Replacement, Together, part_of
 from robosc.language.checks.rule import Finding, rule
-from robosc.language.checks.supervised import Fault, function_faults, readings, supervised_faults, table_faults
+from robosc.language.checks.supervisor_limits import Fault, function_faults, readings, supervised_faults, table_faults
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import sent_type
 from robosc.model.semantics.cone_of_influence import ConeOfInfluence, accesses
@@ -42,7 +42,7 @@ from robosc.model.semantics.typing import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.language.checks.mending import Hint
+    from robosc.language.checks.edits import Hint
     from robosc.model import expression as ex
     from robosc.model.semantics.cone_of_influence import Reading
     from robosc.model.semantics.instances import Instances

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from robosc.base.diagnostics import Severity
 from robosc.base.ros_types import OWN_OBJECT
 from robosc.language.checks.definitions import communications, of_kind, unit_of
+from robosc.language.checks.edits import Choice, Insertion, Removal, Renaming, Replacement
 from robosc.language.checks.libraries import imports, instances, reachable
-from robosc.language.checks.mending import Choice, Insertion, Removal, Renaming, Replacement
 from robosc.language.checks.rule import Finding, interface_rule, rule
 from robosc.language.checks.wire_data import Carried, UsedData, Uses, carried_data, carries
 from robosc.language.checks.wire_faults import Fault, Unknown, faults, misfits, wire_type
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.base.ros_types import RosTypes
-    from robosc.language.checks.mending import Hint
+    from robosc.language.checks.edits import Hint
 
 
 @rule("interface-link")

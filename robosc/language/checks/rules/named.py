@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.base.diagnostics import Severity
 from robosc.language.checks.definitions import circles, communication_of, of_kind, statements
+from robosc.language.checks.edits import Choice, Insertion, Removal, Replacement, part_of
 from robosc.language.checks.expression_types import CONSTANT, ExpressionCheck, Place
 from robosc.language.checks.libraries import Meaning, instances, meanings
-from robosc.language.checks.mending import Choice, Insertion, Removal, Replacement, part_of
 from robosc.language.checks.rule import Finding, on_line, rule
 from robosc.language.checks.type_repairs import repair
 from robosc.model import expression as ex

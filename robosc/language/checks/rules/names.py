@@ -10,7 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from robosc.language.checks.definitions import behaviours, components, of_kind, statements, states, variables
-from robosc.language.checks.mending import Choice, Removal, Renaming
+from robosc.language.checks.edits import Choice, Removal, Renaming
 from robosc.language.checks.rule import Finding, on_line, rule
 from robosc.model import robosc as rsc
 from robosc.model.semantics.failures import FAILURE, is_failure

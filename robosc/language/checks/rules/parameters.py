@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.language.checks.rule import Finding, rule
-from robosc.language.checks.supervised import Fault, supervised_accesses, supervised_faults
+from robosc.language.checks.supervisor_limits import Fault, supervised_accesses, supervised_faults
 from robosc.model import robosc as rsc
 from robosc.model.semantics.cone_of_influence import Reason
 

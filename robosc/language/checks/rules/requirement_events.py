@@ -12,8 +12,8 @@ from robosc.language.checks.definitions import (
     statements,
     transitions,
 )
+from robosc.language.checks.edits import Choice, Removal, part_of
 from robosc.language.checks.libraries import instances
-from robosc.language.checks.mending import Choice, Removal, part_of
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
 from robosc.model.semantics.cone_of_influence import accesses
@@ -22,7 +22,7 @@ from robosc.model.semantics.naming import written
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.language.checks.mending import Way
+    from robosc.language.checks.edits import Way
     from robosc.model import expression as ex
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.language.checks.definitions import communication_of, restricted_events, statements
-from robosc.language.checks.mending import Choice, Removal, Replacement, part_of
+from robosc.language.checks.edits import Choice, Removal, Replacement, part_of
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import sent

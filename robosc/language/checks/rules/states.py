@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.language.checks.automata import initial_states, one_initial, start_of
 from robosc.language.checks.definitions import behaviours, common_transitions, states
-from robosc.language.checks.mending import Choice, Insertion, part_of
+from robosc.language.checks.edits import Choice, Insertion, part_of
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
 

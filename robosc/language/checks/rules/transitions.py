@@ -19,7 +19,7 @@ from robosc.language.checks.definitions import (
     states,
     transitions,
 )
-from robosc.language.checks.mending import Choice, Part, Removal, Replacement, part_of
+from robosc.language.checks.edits import Choice, Part, Removal, Replacement, part_of
 from robosc.language.checks.rule import Finding, on_line, rule
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import event_names
@@ -28,7 +28,7 @@ from robosc.model.semantics.naming import enumeration, written
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.language.checks.mending import Hint, Way
+    from robosc.language.checks.edits import Hint, Way
 
 _Event: TypeAlias = "tuple[rsc.Component | None, rsc.CommunicationType, str]"
 

@@ -10,13 +10,13 @@ import rclpy
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
-from robosc.run.runtime.core.listening import LOOK, WAITING
+from robosc.run.runtime.core.subscriber import LOOK, WAITING
 from robosc.run.runtime.ros2.node import executor, start
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from robosc.run.runtime.core.listening import Listener
+    from robosc.run.runtime.core.subscriber import Listener
 
 
 class Ros2Subscriber:

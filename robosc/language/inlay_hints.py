@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robosc.language.outlining import own_elements, span
+from robosc.language.document_symbols import own_elements, span
 from robosc.language.units import units
 from robosc.model import robosc as rsc
 from robosc.model.semantics.typing import UNKNOWN, ArrayType, ObjectType, Type, value_type

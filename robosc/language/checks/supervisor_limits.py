@@ -39,7 +39,7 @@ from robosc.model.semantics.walks import fold, operands
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from robosc.language.checks.mending import Hint
+    from robosc.language.checks.edits import Hint
     from robosc.model.semantics.cone_of_influence import Assigned, Reading
     from robosc.model.semantics.inputs import Told
     from robosc.model.semantics.instances import Instance, Instances, InstanceVariable

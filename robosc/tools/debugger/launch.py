@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from robosc.run.simulation.played import counterexample_steps, script_steps
+from robosc.run.simulation.sources import counterexample_steps, script_steps
 
 if TYPE_CHECKING:
     from robosc.base.diagnostics import Diagnostic

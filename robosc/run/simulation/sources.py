@@ -13,7 +13,7 @@ from robosc.base.recordings import recorded_texts
 from robosc.language.text import decode
 from robosc.run.simulation.script import WAIT, Step, read_script, unfit_data
 from robosc.run.simulation.simulation import LoopSimulation
-from robosc.run.simulation.tracking import ReportError, Tracker
+from robosc.run.simulation.tracker import ReportError, Tracker
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from robosc.analysis.paths import TraceStep
     from robosc.base.diagnostics import Diagnostic
     from robosc.run.simulation.simulation import Simulation
-    from robosc.run.simulation.tracking import Told
+    from robosc.run.simulation.tracker import Told
 
 
 class PlayError(Exception):

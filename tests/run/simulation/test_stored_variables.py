@@ -17,7 +17,7 @@ from robosc.run.runtime.core.event_log import shown
 from robosc.run.runtime.core.node_data import NodeData
 from robosc.run.simulation import Simulation
 from robosc.run.simulation.data import data_beside
-from robosc.run.simulation.kept import Kept
+from robosc.run.simulation.stored_variables import Kept
 from tests.searching import examples
 
 TANK = """\

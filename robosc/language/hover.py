@@ -7,8 +7,8 @@ from textwrap import dedent
 from typing import TYPE_CHECKING, Any
 
 from robosc.base.ros_types import DefinitionError, Section
+from robosc.language.document_symbols import span
 from robosc.language.interface_types import is_made
-from robosc.language.outlining import span
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import carried, events, section_of
