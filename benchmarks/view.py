@@ -137,7 +137,7 @@ def flooding(model: Path, port: int, seconds: float) -> None:
                 events.append(f"message_{states[door]}{door}.u_response")
             components = {f"Door{door}": {"state": state, "variables": {}} for door, state in enumerate(states)}
             report = {"robot": "Doors", "time": number / _REPORTS, "components": components, "transitions": events}
-            live.told(json.dumps(report))
+            live.receive_report(json.dumps(report))
             await live.tell()
 
     def ready() -> None:

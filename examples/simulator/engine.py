@@ -18,14 +18,14 @@ from robosc.run.runtime.core.controller import Controller
 from robosc.run.runtime.core.event_loop import EventLoop
 from robosc.run.runtime.core.layer import Layer
 from robosc.run.runtime.core.node_data import BLANK
-from robosc.run.runtime.core.port import CancelAnswer, Outcome
+from robosc.run.runtime.core.port import CancelAnswer, GoalOutcome
 from robosc.run.runtime.core.settings import SafeMessages, Settings
 
 from .playing import tell
 from .simulation import Answer, GoalNews
 
 EXAMPLES = Path(__file__).resolve().parents[1]
-OUTCOMES = {"succeeded": Outcome.SUCCEEDED, "canceled": Outcome.CANCELED, "aborted": Outcome.ABORTED}
+OUTCOMES = {"succeeded": GoalOutcome.SUCCEEDED, "canceled": GoalOutcome.CANCELED, "aborted": GoalOutcome.ABORTED}
 ZERO = {"x": 0.0, "y": 0.0, "z": 0.0}
 #: Fields that are there also if nobody sets them.
 POSE = {"header": {"frame_id": ""}, "pose": {"position": ZERO, "orientation": {**ZERO, "w": 1.0}}}

@@ -9,7 +9,7 @@ from robosc.analysis.observations import Forbidden
 from robosc.model import sct
 from robosc.model.semantics.edges import edges_of
 from robosc.model.semantics.roles import event_name
-from robosc.synthesis.encoding import referenced
+from robosc.synthesis.encoding import referenced_elements
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -42,7 +42,7 @@ def _of_event(observed: NeverEnabled, never: set[sct.Event], unreached: set[sct.
         yield from (other for other in never if event_name(other) == held_back)
     elif observed.forbidden is Forbidden.BY_REQUIREMENTS:
         for requirement in observed.requirements:
-            for plant in referenced(requirement.condition):
+            for plant in referenced_elements(requirement.condition):
                 # An automaton or order waits for an event that never happens.
                 if isinstance(plant, sct.Plant) and plant.kind == sct.PlantKind.requirement:
                     yield from {edge.event for edge in edges_of(plant)} & never

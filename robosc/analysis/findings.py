@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 from robosc.analysis.blocking_in_words import counterexample_in_words, way_out
 from robosc.analysis.causes import causes, with_causes
 from robosc.analysis.observations import Forbidden
-from robosc.analysis.wording import called, condition, forbid, in_words, listed, name, words
+from robosc.analysis.wording import condition, forbid, in_words, join_with_and, name, quote_requirements, words
 from robosc.base.diagnostics import Diagnostic, Severity, in_order
 from robosc.model import sct
 from robosc.model.places import place
 from robosc.model.reflection import tree
 from robosc.model.semantics.edges import edges_from, edges_of
 from robosc.model.semantics.roles import plant_of
-from robosc.synthesis.encoding import referenced
+from robosc.synthesis.encoding import referenced_elements
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -181,8 +181,8 @@ class _Findings:
         hint = way_out(trace)
         if ends := [requirement for requirement in told if requirement.automaton is not None]:
             hint = (
-                f"a start can be refused, a cancel can't: take the end of `{action}` out of {called(ends)}, "
-                f"or restrict the start of `{action}`"
+                f"a start can be refused, a cancel can't: take the end of `{action}` out "
+                f"of {quote_requirements(ends)}, or restrict the start of `{action}`"
             )
         return _finding(
             observed.event,
@@ -196,7 +196,7 @@ class _Findings:
     @staticmethod
     def self_cancelling(observed: SelfCancelling) -> Diagnostic:
         states = [f"`{name(plant)}.{state.name}`" for plant, state in _entered(observed.event)]
-        led = f"allow {listed(states)}, where its request leads" if states else "ask for less"
+        led = f"allow {join_with_and(states)}, where its request leads" if states else "ask for less"
         return _finding(
             _blamed(observed.requirements, observed.event),
             "self-cancelling",
@@ -207,7 +207,7 @@ class _Findings:
         )
 
     def forbidden_cancel(self, observed: ForbiddenCancel) -> Diagnostic:
-        action, requirement = name(plant_of(observed.event)), called([observed.requirement])
+        action, requirement = name(plant_of(observed.event)), quote_requirements([observed.requirement])
         return _finding(
             observed.requirement,
             "cancel-held-back",
@@ -232,7 +232,7 @@ class _Findings:
         plant = plant_of(observed.event)
         done = _DONE.get(plant.kind, "sent")
         edges = edges_of(observed.data)
-        read = [element for edge in edges for element in referenced(edge.guard)]
+        read = [element for edge in edges for element in referenced_elements(edge.guard)]
         return _finding(
             observed.data,
             "provide-gap",
@@ -292,7 +292,9 @@ class _Findings:
             return f"in `{here.name}` the guard of the {words(event)} never holds"
         others = [f"`{name(plant)}`" for plant in observed.plants]
         who = (
-            f"{listed(others)} never {'takes' if len(others) == 1 else 'take'} part" if others else "not all take part"
+            f"{join_with_and(others)} never {'takes' if len(others) == 1 else 'take'} part"
+            if others
+            else "not all take part"
         )
         return f"in `{here.name}` the {words(event)} never happens: {who} in it then"
 
@@ -319,7 +321,7 @@ class _Findings:
         """Yield the elements that decide about an event: plants that take part, and data of its requirements."""
         yield from self._participants.get(event, ())
         for requirement in self._requirements(event):
-            yield from referenced(requirement.condition)
+            yield from referenced_elements(requirement.condition)
 
 
 def _likewise(second: str, others: Sequence[sct.Plant]) -> str:
@@ -328,7 +330,7 @@ def _likewise(second: str, others: Sequence[sct.Plant]) -> str:
         return ""
     shown = [f"`{name(plant)}`" for plant in others[:_NAMED]]
     more = len(others) - len(shown)
-    return f"; the same holds for `{second}` and {listed([*shown, f'{more} more'] if more else shown)}"
+    return f"; the same holds for `{second}` and {join_with_and([*shown, f'{more} more'] if more else shown)}"
 
 
 def _finding(element: Any, rule: str, message: str, hint: str, severity: Severity = Severity.WARNING) -> Diagnostic:
@@ -357,7 +359,7 @@ def _not_requested(observed: NeverEnabled) -> str:
     waiting = [f"`{name(plant)}`" for plant in observed.plants]
     if not waiting:
         return "the components that wait for its request never do so at the same time"
-    return f"{listed(waiting)} can't reach a state that waits for its request"
+    return f"{join_with_and(waiting)} can't reach a state that waits for its request"
 
 
 def _entered(event: sct.Event) -> Iterable[tuple[sct.Plant, sct.Location]]:

@@ -8,7 +8,7 @@ from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING, TypeVar
 
-from robosc.analysis.blocking import BlockingCounterexample, blocking_counterexample, forbidding, never_ready
+from robosc.analysis.blocking import BlockingCounterexample, blocking_counterexample, never_ready, requirements_at_fault
 from robosc.analysis.paths import Layers, Path
 from robosc.model import sct
 from robosc.model.semantics.communication import RUNNING
@@ -48,8 +48,8 @@ class NeverEnabled:
     """Trigger or tau event that is allowed in no controlled state.
 
     `plants` each disable it in every controlled state. `requirements` disable it in all states in which the plants
-    enable it, even if these are outside of the controlled states: see `forbidding`. `trace` is then a shortest path of
-    the plants to one of these states, if an order, a count or an automaton is among the requirements.
+    enable it, even if these are outside of the controlled states: see `requirements_at_fault`. `trace` is then a
+    shortest path of the plants to one of these states, if an order, a count or an automaton is among the requirements.
 
     If `kept_away`, the plants disable the event only because the supervisor keeps the robot away from the states that
     enable it. A shortest path of the plants to such a state contains an event that the supervisor holds back. The
@@ -101,7 +101,7 @@ class SharedServer:
 class SelfCancelling:
     """Action, given by its trigger, whose requirement holds in no state directly after its start.
 
-    `requirements` are the requirements on it that hold in none of these states: see `forbidding`.
+    `requirements` are the requirements on it that hold in none of these states: see `requirements_at_fault`.
     """
 
     event: sct.Event
@@ -147,7 +147,7 @@ class Hindrance:
 
     `forbidden` is None if the source state is never reached. `plants` are those that are never ready for the transition
     in the source state, possibly its own plant; none if each is ready but never all at once. `requirements` forbid it
-    there: see `forbidding`. `counterexample` is given if synthesis forbids it.
+    there: see `requirements_at_fault`. `counterexample` is given if synthesis forbids it.
     """
 
     edge: sct.Edge
@@ -227,8 +227,8 @@ class Observer:
 
         Yields nothing if the count exceeds its effort limit.
         """
-        stated = self._system.stated()
-        if len(stated) * self._system.found.rounds[0].node_count() > _WEIGHING:
+        stated = self._system.group_requirements()
+        if len(stated) * self._system.solution.rounds[0].node_count() > _WEIGHING:
             return
         for requirements in stated:
             states = self._system.diagrams.any_of(map(self._matters, requirements))
@@ -239,10 +239,10 @@ class Observer:
 
     def _matters(self, requirement: sct.StatedRequirement) -> Diagram:
         if requirement in self._system.violations:
-            return self._system.found.rounds[0] & self._system.violations[requirement]
+            return self._system.solution.rounds[0] & self._system.violations[requirement]
         assert isinstance(requirement, sct.Requirement)
         relation = self._system.relations[requirement.event]
-        return self._system.controlled & relation.enabled & ~relation.asked[requirement]
+        return self._system.controlled & relation.enabled & ~relation.permissions[requirement]
 
     def _never_enabled(self) -> Iterator[NeverEnabled]:
         controlled, uncontrolled = self._system.controlled, self._system.uncontrolled
@@ -261,7 +261,7 @@ class Observer:
                     else NeverEnabled(event, Forbidden.BY_PLANTS, plants=plants)
                 )
             elif forbidden:
-                requirements = forbidding(permission.relation, enabled)
+                requirements = requirements_at_fault(permission.relation, enabled)
                 stated = any(requirement.automaton is not None for requirement in requirements)
                 way = self._way_of_plants(enabled) if stated else None
                 trace = self._system.trace(way) if way is not None else None
@@ -291,7 +291,7 @@ class Observer:
             here = self._held_back(permission) & system.encoding.state(way.states[number])
             if here.satisfiable():
                 return replace(found, counterexample=self._counterexample(permission, here))
-            asked = relation.asked.items()
+            asked = relation.permissions.items()
             return replace(
                 found,
                 requirements=tuple(
@@ -315,7 +315,7 @@ class Observer:
                 continue
             after = permission.where if step is None else step.image(permission.where)
             if not (after & self._system.started_where(event)).satisfiable():
-                at_fault = forbidding(permission.relation, after)
+                at_fault = requirements_at_fault(permission.relation, after)
                 yield SelfCancelling(
                     event, tuple(requirement for requirement in at_fault if requirement.automaton is None)
                 )
@@ -326,12 +326,12 @@ class Observer:
                 continue
             relation = permission.relation
             due = self._system.controlled & relation.enabled
-            stated = [requirement for requirement in relation.asked if requirement.automaton is not None]
-            for requirement, allowing in relation.asked.items():
+            stated = [requirement for requirement in relation.permissions if requirement.automaton is not None]
+            for requirement, allowing in relation.permissions.items():
                 if requirement.automaton is None:
                     due &= allowing
             for requirement in stated:
-                held = due & ~relation.asked[requirement]
+                held = due & ~relation.permissions[requirement]
                 if held.satisfiable():
                     yield ForbiddenCancel(event, requirement, self._system.trace(self._system.path_to(held)))
 
@@ -420,14 +420,14 @@ class Observer:
         if not here.satisfiable():
             return Hindrance(edge, None)
         relation = self._system.relations[edge.event]
-        own = relation.taken([edge])
+        own = relation.states_taking([edge])
         enabled = here & relation.enabled & own
         if not (here & own).satisfiable():
             return Hindrance(edge, Forbidden.BY_PLANTS, plants=(edge.target.eContainer(),))
         if not enabled.satisfiable():
             return Hindrance(edge, Forbidden.BY_PLANTS, plants=never_ready(relation, here))
         if not (enabled & relation.requirement).satisfiable():
-            return Hindrance(edge, Forbidden.BY_REQUIREMENTS, requirements=forbidding(relation, enabled))
+            return Hindrance(edge, Forbidden.BY_REQUIREMENTS, requirements=requirements_at_fault(relation, enabled))
         return Hindrance(
             edge, Forbidden.BY_SYNTHESIS, counterexample=self._counterexample(self._permissions[edge.event], here & own)
         )

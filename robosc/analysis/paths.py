@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element, Encoding
-    from robosc.synthesis.relation import EventRelation, Step
+    from robosc.synthesis.relation import EventRelation, SymbolicStep
 
-    Move = tuple[EventRelation, Step]
+    Move = tuple[EventRelation, SymbolicStep]
 
 
 @dataclass(frozen=True)

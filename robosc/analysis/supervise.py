@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.analysis.blocking import Reason, reason_of_emptiness
-from robosc.analysis.blocking_in_words import blocking, counterexample_in_words
+from robosc.analysis.blocking import BlockReason, reason_of_emptiness
+from robosc.analysis.blocking_in_words import counterexample_in_words, describe_blocking
 from robosc.analysis.findings import findings_of
 from robosc.analysis.observations import Observations, Observer, Weight
 from robosc.analysis.system import SynthesizedSystem
@@ -31,7 +31,7 @@ class Diagnosis(Synthesis):
     """
 
     observations: Observations | None = None
-    reason: Reason | None = None
+    reason: BlockReason | None = None
     weights: tuple[Weight, ...] = ()
 
 
@@ -52,7 +52,7 @@ class EmptySupervisorError(ModelError):
         reason = synthesis.reason
         trace = f"; a shortest trace: {in_words(reason.trace, model)}" if reason.trace else ""
         file, span = _place(model, reason)
-        message = f"the supervisor is empty: {blocking(reason)}{trace}"
+        message = f"the supervisor is empty: {describe_blocking(reason)}{trace}"
         if reason.requirements and not (reason.event and reason.event.controllable):
             message += f"; from there on {forbid(reason.requirements, 'something')}"
         way = _condition(model, reason) or "loosen a requirement, or give every component a way back to a marked state"
@@ -60,7 +60,7 @@ class EmptySupervisorError(ModelError):
         super().__init__([Diagnostic(file, span, Severity.ERROR, "empty-supervisor", message, hint)])
 
 
-def _place(model: sct.SupervisoryControlModel, reason: Reason) -> tuple[str, Span]:
+def _place(model: sct.SupervisoryControlModel, reason: BlockReason) -> tuple[str, Span]:
     """Return the place of the event at fault, or of the first requirement at fault if the event is a library's."""
     own, _ = place(model)
     elements = [element for element in (reason.event, *reason.violated, *reason.requirements) if element is not None]
@@ -68,7 +68,7 @@ def _place(model: sct.SupervisoryControlModel, reason: Reason) -> tuple[str, Spa
     return next((found for found in places if found[0] == own), places[0])
 
 
-def _condition(model: sct.SupervisoryControlModel, reason: Reason) -> str | None:
+def _condition(model: sct.SupervisoryControlModel, reason: BlockReason) -> str | None:
     """Return the condition that an automaton lacks if it follows a message that its component ignores."""
     events = [requirement.event for requirement in reason.violated if isinstance(requirement, sct.Requirement)]
     for event in events:

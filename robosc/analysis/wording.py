@@ -60,7 +60,7 @@ def words(event: sct.Event) -> str:
     return f"{said} in {where}" if where else said
 
 
-def with_words(event: sct.Event) -> str:
+def describe_event(event: sct.Event) -> str:
     """Return the event's name, with its description if the name does not identify its text."""
     unclear = event.kind in (*_OWN, sct.EventKind.data) and event.source
     return f"{event_name(event)} ({words(event)})" if unclear else event_name(event)
@@ -91,13 +91,13 @@ def change(event: sct.Event) -> str:
     return f"{name(plant)} changes by itself: {', '.join(own)}" + (f" ({where})" if where else "")
 
 
-def called(requirements: Sequence[sct.StatedRequirement]) -> str:
+def quote_requirements(requirements: Sequence[sct.StatedRequirement]) -> str:
     """Return requirements with their text and line: "`requirement move needs Lidar.free` (line 12)"."""
     told = list(dict.fromkeys(map(_called, requirements)))
     named = told[:NAMED]
     if len(told) > NAMED:
         named.append(f"{len(told) - NAMED} more")
-    return listed(named)
+    return join_with_and(named)
 
 
 def _called(requirement: sct.StatedRequirement) -> str:
@@ -110,7 +110,7 @@ def _called(requirement: sct.StatedRequirement) -> str:
 
 def forbid(requirements: Sequence[sct.Requirement], what: str) -> str:
     """Return a clause which states that requirements forbid something."""
-    return f"{called(requirements)} {_forbid(requirements)} {what}"
+    return f"{quote_requirements(requirements)} {_forbid(requirements)} {what}"
 
 
 def violates(named: str, requirements: Sequence[sct.StatedRequirement]) -> str:
@@ -119,7 +119,7 @@ def violates(named: str, requirements: Sequence[sct.StatedRequirement]) -> str:
         requirement.event for requirement in requirements if isinstance(requirement, sct.Requirement)
     )
     if events:
-        return f"{listed([words(event) for event in events])} can come, which {named} {_forbid(requirements)}"
+        return f"{join_with_and([words(event) for event in events])} can come, which {named} {_forbid(requirements)}"
     return f"{named} {'is' if len(requirements) == 1 else 'are'} violated"
 
 
@@ -148,7 +148,7 @@ def _data(input_name: str, chosen: Value, event: sct.Event) -> str:
     return computed if chosen is True else f"!({computed})" if chosen is False else f"{computed} = {text(chosen)}"
 
 
-def listed(names: Sequence[str]) -> str:
+def join_with_and(names: Sequence[str]) -> str:
     """Return `a`, `a and b`, or `a, b and c`."""
     return ", ".join(names[:-1]) + f" and {names[-1]}" if len(names) > 1 else "".join(names)
 

@@ -49,7 +49,7 @@ class Extension:
 
         Raises ModelError if it is unusable.
         """
-        with self.working():
+        with self.report_exceptions():
             loaded = self.entry.load()
         for function in functions:
             if not callable(getattr(loaded, function, None)):
@@ -57,7 +57,7 @@ class Extension:
         return loaded
 
     @contextmanager
-    def working(self) -> Iterator[None]:
+    def report_exceptions(self) -> Iterator[None]:
         """Run code of the package in the `with` block; its exceptions become faults of the extension (ModelError).
 
         Its prints go to the standard error, because the standard output is the tool's own.

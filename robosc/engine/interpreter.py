@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from robosc.engine.expressions import Compiler, Function, all_inside
-from robosc.engine.state import Domain, Layout, State, Value
+from robosc.engine.state import Domain, State, StateLayout, Value
 from robosc.m2m.sct_to_engine import transform
 from robosc.model import engine, sct
 from robosc.model import expression as ex
@@ -43,7 +43,7 @@ class Engine:
         self.executed = transform(model)
         self.roles = Roles(model)
         self.events: tuple[str, ...] = tuple(event_name(event) for event in self.roles.events)
-        self._layout = Layout(self.executed)
+        self._layout = StateLayout(self.executed)
         self._input_domains = [Domain(declared.type) for declared in self.executed.inputs]
         self._inputs = [declared.initial for declared in self.executed.inputs]
         self._compile = Compiler(self.executed)
@@ -122,7 +122,7 @@ class Engine:
             self._reasons[event] = [(reason, self._compile(part)) for reason, part in conditions if part is not None]
         return next(reason for reason, holds in self._reasons[event] if not holds(self._cells, ()))
 
-    def failing(self, event: str) -> list[sct.Requirement]:
+    def failing_requirements(self, event: str) -> list[sct.Requirement]:
         """Return the requirements on the event that forbid it in this state, independent of other causes."""
         if event not in self._failing:
             self._failing[event] = [
@@ -166,7 +166,7 @@ class Engine:
     def value(self, variable: sct.DiscreteVariable) -> Value:
         """Return the value of a variable in its external form."""
         cell = self._layout.cells[variable]
-        return self._layout.domains[cell].shown(self._cells[cell])
+        return self._layout.domains[cell].external(self._cells[cell])
 
     def cell(self, variable: engine.StateVariable) -> int:
         """Return the value of a state variable. The value of a location is its position."""

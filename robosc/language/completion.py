@@ -21,7 +21,7 @@ from robosc.model import robosc as rsc
 from robosc.model.reflection import literals
 from robosc.model.semantics.communication import RUNNING_WORD, event_names, sent_type
 from robosc.model.semantics.failures import FAILURE, FAILURES, reasons
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.operators import FUNCTIONS
 from robosc.model.semantics.typing import ObjectType, access_types, declared_type, provided_data_type, value_type
 
@@ -84,7 +84,7 @@ def proposals(
     end = offset + len(re.match(r"\w*", content[offset:])[0])  # type: ignore[index]
     if any(found.start() < start < _end(found) for found in _STRING_OR_COMMENT.finditer(content)):
         return start, end, []
-    block, wanted = _wanted(content[:start])
+    block, wanted = _expected_words(content[:start])
     found = dict.fromkeys(_words(block, wanted))
     if {"Name", "UnreservedName"} & wanted:
         for text in dict.fromkeys(_with_name(content, start, end)):
@@ -114,7 +114,7 @@ def _end(found: re.Match[str]) -> int:
 # Words
 
 
-def _wanted(before: str) -> tuple[Block | None, set[str]]:
+def _expected_words(before: str) -> tuple[Block | None, set[str]]:
     """Return the item in which a text ends, and the words and rules that the grammar accepts there."""
     tokens = Tokens(before)
     if too_complex(tokens) is not None:
@@ -225,7 +225,7 @@ def _named(
                 if isinstance(element, rsc.ImportedComponent) and feature == "library":
                     yield from map(Proposal, libraries())
                 for key, found in _candidates(linker, file, element, feature, names):
-                    yield Proposal(".".join(map(written, key.split("."))), found)
+                    yield Proposal(".".join(map(escape_keyword, key.split("."))), found)
 
 
 def _candidates(

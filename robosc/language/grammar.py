@@ -54,7 +54,7 @@ def parse(text: str, rule: str) -> Node | Failure:
         failed = fault.__cause__
         assert isinstance(failed, arpeggio.NoMatch)
         return Failure(
-            failed.position, tuple(dict.fromkeys(word for word in map(_wanted, failed.rules) if word != "Comment"))
+            failed.position, tuple(dict.fromkeys(word for word in map(_expectation, failed.rules) if word != "Comment"))
         )
 
 
@@ -112,7 +112,7 @@ def following() -> Mapping[str, frozenset[str]]:
 @cache
 def words_of(rule: str) -> frozenset[str]:
     """Return all words, symbols and word rules that can occur in a text of a rule."""
-    return frozenset(_wanted(node) for node in _nodes(rule).values() if isinstance(node, arpeggio.Match))
+    return frozenset(_expectation(node) for node in _nodes(rule).values() if isinstance(node, arpeggio.Match))
 
 
 @dataclass
@@ -158,7 +158,7 @@ def _facts() -> Mapping[int, _Facts]:
 
 def _fact(node: Any, facts: Mapping[int, _Facts]) -> _Facts:
     if isinstance(node, arpeggio.Match):
-        return _Facts(False, {_wanted(node)}, {_wanted(node)})
+        return _Facts(False, {_expectation(node)}, {_expectation(node)})
     if isinstance(node, arpeggio.SyntaxPredicate):
         return _Facts(True)
     parts = [facts[id(part)] for part in node.nodes]
@@ -196,7 +196,7 @@ def attribute(node: Node) -> str | None:
     return node.rule._attr_name if node.rule_name.startswith("__asgn") else None  # noqa: SLF001
 
 
-def _wanted(rule: Any) -> str:
+def _expectation(rule: Any) -> str:
     if isinstance(rule, arpeggio.EndOfFile):
         return "end"
     word = str(getattr(rule, "to_match", rule.rule_name))

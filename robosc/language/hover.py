@@ -11,7 +11,7 @@ from robosc.language.document_symbols import span
 from robosc.language.interface_types import is_made
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import carried, events, section_of
+from robosc.model.semantics.communication import carrying_events, events, section_of
 from robosc.model.semantics.expansion import constant_value
 from robosc.model.semantics.naming import enumeration
 
@@ -190,7 +190,7 @@ def _meaning(reading: Reading, file: File, element: Any) -> Iterator[str]:  # no
         case rsc.Component() if element.parameters:
             yield "Template: a component is made of it by `is` or `import`."
         case rsc.Requirement() | rsc.Property():
-            yield _stated(file, element)
+            yield _statements(file, element)
 
 
 def _state(reading: Reading, file: File, state: rsc.State) -> Iterator[str]:
@@ -231,7 +231,7 @@ def _communication(file: File, communication: rsc.CommunicationType) -> Iterator
         kind = "Service" if isinstance(communication, rsc.Service) else "Action"
         names = enumeration(f"`{row.name}`" for row in events(communication) if row.name)
         yield f"{kind} that the controller calls: requirements can forbid the request. Its events are {names}."
-    for row, declared in carried(communication):
+    for row, declared in carrying_events(communication):
         if not isinstance(declared, rsc.NoneDataType):
             yield f"- data of its {row.name}: `{type_text(declared)}`"
     if communication.identifier:
@@ -256,7 +256,7 @@ def _restricted(reading: Reading, communication: rsc.CommunicationType) -> Itera
         yield "Restricted by:\n" + "\n".join(found.values())
 
 
-def _stated(file: File, element: Any) -> str:
+def _statements(file: File, element: Any) -> str:
     """Return the demand of a requirement or property as a sentence."""
     target = _source(file, getattr(element, "target", None)).strip("{} ")
     condition = _source(file, getattr(element, "condition", None))

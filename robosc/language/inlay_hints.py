@@ -38,7 +38,7 @@ def _notes(file: File, element: Any) -> Iterator[Note]:
         case rsc.Access() if element.value:
             found = value_type(element)
             if found is not None and found != UNKNOWN:
-                yield Note(span(file, element)[0] + len("value"), f": {_written(found)}", is_type=True)
+                yield Note(span(file, element)[0] + len("value"), f": {_type_text(found)}", is_type=True)
         case rsc.InstantiatedComponent() | rsc.ImportedComponent() if element.definition is not None:
             yield from _of_arguments(file, element.arguments, element.definition.parameters)
         case rsc.ComplexDataTypeReference() if isinstance(element.type, rsc.EnumDataType):
@@ -55,7 +55,7 @@ def _of_arguments(file: File, arguments: Sequence[rsc.Argument], parameters: Seq
         yield Note(span(file, argument)[0], f"{parameter.name}:", is_type=False)
 
 
-def _written(found: Type) -> str:
+def _type_text(found: Type) -> str:
     if isinstance(found, ArrayType):
-        return f"array({_written(found.element)})"
-    return found.written if isinstance(found, ObjectType) else str(found).removeprefix("enum ")
+        return f"array({_type_text(found.element)})"
+    return found.qualified_name if isinstance(found, ObjectType) else str(found).removeprefix("enum ")

@@ -41,20 +41,20 @@ class LibraryPath:
         are skipped.
         """
         for folder in (beside.parent, *self._folders):
-            found = self.declared(folder).get(name)
+            found = self.declared_libraries(folder).get(name)
             if found:
                 return found
         return []
 
-    def known(self, beside: Path) -> list[str]:
+    def library_names(self, beside: Path) -> list[str]:
         """Return the names of all libraries that a file could import from."""
-        return [name for folder in (beside.parent, *self._folders) for name in self.declared(folder)]
+        return [name for folder in (beside.parent, *self._folders) for name in self.declared_libraries(folder)]
 
     def components(self, beside: Path) -> Mapping[str, str]:
         """Return the components of all libraries that a file could import from, each with its first library."""
         found: dict[str, str] = {}
         for folder in (beside.parent, *self._folders):
-            for library, paths in self.declared(folder).items():
+            for library, paths in self.declared_libraries(folder).items():
                 for name in self._component_names(paths[0]):
                     found.setdefault(name, library)
         return found
@@ -66,7 +66,7 @@ class LibraryPath:
             return []
         return [tokens[at + 1].text for at, token in enumerate(tokens) if token.is_keyword("component")]
 
-    def declared(self, folder: Path) -> Mapping[str, list[Path]]:
+    def declared_libraries(self, folder: Path) -> Mapping[str, list[Path]]:
         """Return the paths of a folder's libraries by name; each path starts with the folder's path."""
         if folder not in self._declared:
             libraries: dict[str, list[Path]] = {}

@@ -11,14 +11,14 @@ from robosc.base.diagnostics import Related, Repair
 from robosc.base.interruption import checkpoint
 from robosc.language.failures import expects_failure
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
-from robosc.language.scopes import Declared, File, Names, Scope, by_name
+from robosc.language.scopes import File, NameKind, Names, Scope, by_name
 from robosc.language.syntax_messages import BASIC_TYPES, CONSTRUCTS, did_you_mean
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import RUNNING_WORD
 from robosc.model.semantics.expansion import constant_value
 from robosc.model.semantics.failures import FAILURE, FAILURES
-from robosc.model.semantics.naming import enumeration, written
+from robosc.model.semantics.naming import enumeration, escape_keyword
 from robosc.model.semantics.operators import FUNCTIONS
 from robosc.model.semantics.typing import (
     UNKNOWN,
@@ -123,7 +123,7 @@ class Linker:
         """Link the imported and instantiated components, which all other names may need."""
         for element, names in self._file.references.items():
             if isinstance(element, rsc.ComponentType) and element.eContainer().parameters:
-                template = written(element.eContainer().name)
+                template = escape_keyword(element.eContainer().name)
                 message = f"template `{template}` is made of `{names['definition'].text}`, expected its own text"
                 self._report(names["definition"], message, _OWN_TEXT, rule="argument")
             elif isinstance(element, rsc.ImportedComponent):
@@ -190,7 +190,7 @@ class Linker:
         match element:
             case rsc.CommunicationType():
                 name = names["interface"]
-                element.interface = self._definition(rsc.Interface, "interface", Declared.INTERFACE, name)
+                element.interface = self._definition(rsc.Interface, "interface", NameKind.INTERFACE, name)
             case rsc.InterfaceTypeReference():
                 unknown = declare(element, self.interfaces)
                 if unknown is not None:
@@ -200,7 +200,7 @@ class Linker:
                 element.enumeration = self._file.predefined.declared[rsc.ComplexDataType][FAILURE]
             case rsc.ComplexDataTypeReference():
                 name = names["type"]
-                found = self._definition(rsc.ComplexDataType, "object or enum", Declared.DATA_TYPE, name)
+                found = self._definition(rsc.ComplexDataType, "object or enum", NameKind.DATA_TYPE, name)
                 if found is not None:
                     element.type = found
 
@@ -235,7 +235,7 @@ class Linker:
         components, name = library.declared[rsc.Component], names["definition"]
         if name.text in components:
             element.definition = components[name.text]
-        elif not library.may_declare(name.text, Declared.COMPONENT, imported=False):
+        elif not library.may_declare(name.text, NameKind.COMPONENT, imported=False):
             self._missing(name, f"library `{library.base.name}` has no component", components)
 
     def _instantiation(self, element: rsc.InstantiatedComponent, name: Name) -> None:
@@ -246,7 +246,7 @@ class Linker:
         elif found is not None:
             message = f"component `{name.text}` is no template: it has no parameters"
             self._report(name, message, _OWN_TEXT, rule="argument")
-        elif not self._file.may_declare(name.text, Declared.COMPONENT, imported=False):
+        elif not self._file.may_declare(name.text, NameKind.COMPONENT, imported=False):
             templates = [component.name for component in components.values() if component.parameters]
             self._missing(name, "there is no template", templates)
 
@@ -260,7 +260,7 @@ class Linker:
             argument.parameter = parameters[name.text]
         else:
             repair = did_you_mean(name.text, parameters, cutoff=0.6)
-            texts = tuple(written(other) for other in parameters)
+            texts = tuple(escape_keyword(other) for other in parameters)
             named = Repair(f"its parameters are {enumeration(f'`{text}`' for text in texts)}", choices=texts)
             self._report(name, f"`{made_of.name}` has no parameter `{name.text}`", repair or named, rule="argument")
 
@@ -275,7 +275,7 @@ class Linker:
             self._ambiguous("function", name, [file for file, _ in found])
         elif found:
             call.function = found[0][1]
-        elif not self._file.may_declare(name.text, Declared.NAMED):
+        elif not self._file.may_declare(name.text, NameKind.NAMED):
             known = [*functions, *self.scope.usable(rsc.Function), *FUNCTIONS]
             self._missing(name, "there is no function", known, did_you_mean(name.text, known, cutoff=0.6) or _FUNCTION)
 
@@ -288,14 +288,14 @@ class Linker:
         if len(templates) == 1:
             quantifier.template = templates[0]
         elif found and not templates:
-            hint = f"write the condition with `{written(name.text)}` itself"
+            hint = f"write the condition with `{escape_keyword(name.text)}` itself"
             self._report(
                 name, f"component `{name.text}` is one component, expected a template or one of a library", hint
             )
-        elif not found and not self._file.may_declare(name.text, Declared.COMPONENT):
+        elif not found and not self._file.may_declare(name.text, NameKind.COMPONENT):
             self._missing(name, "there is no template", [found.name for found in own.values() if found.parameters])
 
-    def _definition(self, kind: type[_Element], what: str, declared: Declared, name: Name) -> _Element | None:
+    def _definition(self, kind: type[_Element], what: str, declared: NameKind, name: Name) -> _Element | None:
         found = self.scope.find(kind, name.text)
         if len(found) > 1:
             self._ambiguous(what, name, [file for file, _ in found])
@@ -317,7 +317,7 @@ class Linker:
 
     def _communication_of(self, component: rsc.Component, name: Name) -> Any:
         communications = self.scope.communications(component)
-        return None if communications is None else self._member(communications, name, component, Declared.COMMUNICATION)
+        return None if communications is None else self._member(communications, name, component, NameKind.COMMUNICATION)
 
     # Communication
 
@@ -342,17 +342,19 @@ class Linker:
             if name.text in communications:
                 return own, communications[name.text]
             if self._is_library:
-                if not self._file.may_declare(name.text, Declared.COMMUNICATION, imported=False):
+                if not self._file.may_declare(name.text, NameKind.COMMUNICATION, imported=False):
                     self._missing(name, f"component `{own.name}` has no communication", communications, OWN_MEMBERS)
                 return None
         found = self.scope.communicating(name.text)
         if not found:
-            if not self.scope.incomplete and not self._file.may_declare(name.text, Declared.COMMUNICATION):
+            if not self.scope.incomplete and not self._file.may_declare(name.text, NameKind.COMMUNICATION):
                 self._missing(name, "there is no communication", self.scope.all_communications())
             return None
         # Duplicate component names are a finding of their own, and a qualified name would stay ambiguous.
         if len({communication for _, communication in found}) < len({component.name for component, _ in found}):
-            candidates, texts = _first_few(f"{written(component.name)}.{written(name.text)}" for component, _ in found)
+            candidates, texts = _first_few(
+                f"{escape_keyword(component.name)}.{escape_keyword(name.text)}" for component, _ in found
+            )
             hint = Repair(f"write {candidates}", choices=texts)
             self._report(name, f"`{name.text}` is ambiguous: it may be {candidates}", hint)
             return None
@@ -361,7 +363,7 @@ class Linker:
     def _component(self, reference: rsc.CommunicationReference, name: Name) -> rsc.Component | None:
         components = self.components(reference)
         component: rsc.Component | None = components.get(name.text)
-        if component is None and not self._file.may_declare(name.text, Declared.COMPONENT, imported=False):
+        if component is None and not self._file.may_declare(name.text, NameKind.COMPONENT, imported=False):
             hint = OWN_MEMBERS if name.text in self.scope.components else None
             repair = self._made_of(name) or hint or self._import_of(name, components)
             self._missing(name, "there is no component", components, repair)
@@ -387,9 +389,9 @@ class Linker:
         template = None if self._is_library else self.scope.components.get(name.text)
         if template is None:
             return None
-        made = [written(part.name) for part in self._parts.values() if self.scope.origin(part) is template]
-        said, texts = _first_few(made or [f"component other is {written(template.name)}(…)"])
-        return Repair(f"`{written(template.name)}` is a template: write {said}", choices=texts if made else ())
+        made = [escape_keyword(part.name) for part in self._parts.values() if self.scope.origin(part) is template]
+        said, texts = _first_few(made or [f"component other is {escape_keyword(template.name)}(…)"])
+        return Repair(f"`{escape_keyword(template.name)}` is a template: write {said}", choices=texts if made else ())
 
     def _import_of(self, name: Name, known: Iterable[str]) -> str | None:
         """Return the import that may be missing; None if a known name is close or no library has the component."""
@@ -400,21 +402,23 @@ class Linker:
         component = min(like, key=lambda other: (abs(len(other) - len(word)), other), default=None)
         if component is None:
             return None
-        library = written(importable[component])
-        return f"{_IMPORT}`component {written(name.text)} from {library} import {written(component)}`"
+        library = escape_keyword(importable[component])
+        return f"{_IMPORT}`component {escape_keyword(name.text)} from {library} import {escape_keyword(component)}`"
 
-    def _member(self, members: Names, name: Name, component: rsc.Component, declared: Declared) -> Any:
+    def _member(self, members: Names, name: Name, component: rsc.Component, declared: NameKind) -> Any:
         found = members.get(name.text)
         if found is None and not self._file.may_declare_within(self.scope.origin(component), name.text, declared):
-            what = "communication" if declared is Declared.COMMUNICATION else "variable or state"
-            values = [] if declared is Declared.COMMUNICATION else self.scope.values(name.text)
+            what = "communication" if declared is NameKind.COMMUNICATION else "variable or state"
+            values = [] if declared is NameKind.COMMUNICATION else self.scope.values(name.text)
             hint = self._value_of_enum(name, values[0]) if values else None
             self._missing(name, f"component `{component.name}` has no {what}", members, hint)
         return found
 
     def _value_of_enum(self, name: Name, value: rsc.EnumValue) -> Repair:
         enum = value.eContainer().eContainer()
-        said = f"`{written(name.text)}` is a value of `{written(enum.name)}`: write it without a component"
+        said = (
+            f"`{escape_keyword(name.text)}` is a value of `{escape_keyword(enum.name)}`: write it without a component"
+        )
         tokens = self._file.text.tokens
         at = tokens.index_at(name.start)
         return Repair(said, elsewhere=((tokens[at - 2].start, tokens[at - 1].end, ""),))
@@ -430,7 +434,7 @@ class Linker:
         states = self.scope.states(own) if own is not None else {}
         if name.text in states:
             transition.target = states[name.text]
-        elif own is not None and not self._file.may_declare_within(own, name.text, Declared.MEMBER):
+        elif own is not None and not self._file.may_declare_within(own, name.text, NameKind.MEMBER):
             self._missing(name, f"component `{own.name}` has no state", states)
 
     # Expressions
@@ -481,7 +485,7 @@ class Linker:
     def _in_enum(self, access: rsc.Access, name: Name) -> None:
         if self._named_value(access, name) or self._enum_value(access, name):
             return
-        if not self._file.may_declare(name.text, Declared.ENUM_VALUE, Declared.NAMED):
+        if not self._file.may_declare(name.text, NameKind.ENUM_VALUE, NameKind.NAMED):
             hint = "an enum's rules see only `value`, literals, constants, functions, its parameters and enum values"
             known = [*self.scope.usable(rsc.EnumValue), *self.scope.usable(rsc.NamedExpression)]
             self._missing(name, "there is no enum value", known, hint)
@@ -499,7 +503,7 @@ class Linker:
         values = by_name(rule.value for rule in definition.rules if rule.value)
         if value.text in values:
             access.item = values[value.text]
-        elif not self._file.may_declare_within(definition, value.text, Declared.ENUM_VALUE):
+        elif not self._file.may_declare_within(definition, value.text, NameKind.ENUM_VALUE):
             self._missing(value, f"enum `{definition.name}` has no value", values)
         return True
 
@@ -564,7 +568,7 @@ class Linker:
             ):
                 return
         if members is not None:
-            access.item = self._member(members, name, component, Declared.MEMBER)
+            access.item = self._member(members, name, component, NameKind.MEMBER)
 
     def _call_misread(self, component: rsc.Component, name: Name, behind: Sequence[Name | None]) -> bool:
         """Report a communication that is read without `running`, and return whether the name is one.
@@ -573,7 +577,7 @@ class Linker:
         """
         communication = (self.scope.communications(component) or {}).get(name.text)
         if communication is None or self._file.may_declare_within(
-            self.scope.origin(component), name.text, Declared.MEMBER
+            self.scope.origin(component), name.text, NameKind.MEMBER
         ):
             return False
         word = behind[0] if behind else None
@@ -584,12 +588,12 @@ class Linker:
                 "let a variable remember that it was sent",
             )
         elif word is None:
-            call = f"{written(name.text)}.{RUNNING_WORD}"
+            call = f"{escape_keyword(name.text)}.{RUNNING_WORD}"
             self._report(name, f"`{name.text}` can be read as `{call}` only", Repair(f"write `{call}`", call))
         elif word.text == RUNNING_WORD:
             other = behind[1] if len(behind) > 1 and behind[1] is not None else word
             rest = (self._point_before(other).start, other.end, "")
-            message = f"nothing stands behind `{written(name.text)}.{RUNNING_WORD}`"
+            message = f"nothing stands behind `{escape_keyword(name.text)}.{RUNNING_WORD}`"
             self._report(other, message, Repair(f"leave `.{other.text}` out", elsewhere=(rest,)))
         else:
             repair = did_you_mean(word.text, [RUNNING_WORD], cutoff=0.6)
@@ -602,7 +606,7 @@ class Linker:
         calls = self._calls(component)
         repair = did_you_mean(name.text, calls, cutoff=0.6)
         if repair is None or self._file.may_declare_within(
-            self.scope.origin(component), name.text, Declared.COMMUNICATION
+            self.scope.origin(component), name.text, NameKind.COMMUNICATION
         ):
             return False
         self._report(name, f"component `{component.name}` has no service or action `{name.text}`", repair)
@@ -659,7 +663,7 @@ class Linker:
         if name.text in members:
             access.component, access.item = own, members[name.text]
             return
-        own_text = Declared.COMPONENT, Declared.MEMBER, Declared.NAMED
+        own_text = NameKind.COMPONENT, NameKind.MEMBER, NameKind.NAMED
         if self._named_value(access, name) or self._enum_value(access, name):
             return
         if self._file.may_declare(name.text, *own_text, imported=False):
@@ -676,7 +680,7 @@ class Linker:
             called = self._elsewhere(name, self._calls) if is_call else None
             repair = self._made_of(name) or hint or called or self._import_of(name, known)
             self._missing(name, "there is no component or variable", known, repair)
-        elif not self._file.may_declare(name.text, Declared.ENUM_VALUE, Declared.NAMED):
+        elif not self._file.may_declare(name.text, NameKind.ENUM_VALUE, NameKind.NAMED):
             named = self.scope.usable(rsc.NamedExpression)
             known = [*components, *members, *named, *self.scope.usable(rsc.EnumValue)]
             elsewhere = self._made_of(name) or self._elsewhere(name)
@@ -701,7 +705,7 @@ class Linker:
         """Return the qualified name for a bare name that other components have as a member, or by `having_it`."""
         members = having_it or self.scope.members
         having = [
-            f"{written(component.name)}.{written(name.text)}"
+            f"{escape_keyword(component.name)}.{escape_keyword(name.text)}"
             for component in (self.scope.components if self._is_library else self._parts).values()
             if name.text in (members(component) or {})
         ]
@@ -719,7 +723,7 @@ class Linker:
             access.item = values[0]
         elif values:
             enums = [value.eContainer().eContainer().name for value in values]
-            said, texts = _first_few(f"{written(enum)}.{written(name.text)}" for enum in enums)
+            said, texts = _first_few(f"{escape_keyword(enum)}.{escape_keyword(name.text)}" for enum in enums)
             message = f"`{name.text}` is a value of several enums"
             hint = Repair(f"write {said}", choices=texts) if len(texts) > 1 else "declare an enum in this file"
             self._report(name, message, hint, rule="unique-enum-value")
@@ -783,7 +787,7 @@ class Linker:
         if name.text in properties:
             found: rsc.ObjectProperty = properties[name.text]
             return found
-        if not self._file.may_declare_within(of.definition, name.text, Declared.PROPERTY):
+        if not self._file.may_declare_within(of.definition, name.text, NameKind.PROPERTY):
             self._missing(name, f"object `{of.definition.name}` has no property", properties)
         return None
 
@@ -847,7 +851,7 @@ class Linker:
         names = list(dict.fromkeys(known))
         repair = hint or did_you_mean(name.text, names, cutoff=0.6)
         if repair is None and listed and 0 < len(names) <= _FEW:
-            texts = tuple(written(other) for other in names)
+            texts = tuple(escape_keyword(other) for other in names)
             repair = Repair(f"there is {enumeration(f'`{text}`' for text in texts)}", choices=texts)
         self._report(name, f"{message} `{name.text}`", repair)
 

@@ -182,7 +182,7 @@ class _Reader:
     def _none(self, name: Name, path: Path) -> tuple[str, Repair | str]:
         where = "libraries are looked for beside this file, in the folders of -I and of ROBOSC_PATH"
         return f"there is no library `{name.text}`", did_you_mean(
-            name.text, self._path.known(path), cutoff=0.75
+            name.text, self._path.library_names(path), cutoff=0.75
         ) or where
 
     def _report(self, file: File, name: Name, message: str, repair: Repair | str, rule: str = RULE) -> None:

@@ -31,7 +31,7 @@ def by_name(elements: Iterable[Any]) -> dict[str, Any]:
     return names
 
 
-class Declared(Enum):
+class NameKind(Enum):
     """Kind of a declared name."""
 
     COMPONENT = auto()
@@ -58,12 +58,12 @@ class SkippedRegions:
     """
 
     names: set[str] = field(default_factory=set)
-    nameless: list[tuple[Declared, Span]] = field(default_factory=list)
+    nameless: list[tuple[NameKind, Span]] = field(default_factory=list)
     mended: bool = False
     skipped: list[tuple[int, int]] = field(default_factory=list)
     uncertain: list[tuple[int, int]] = field(default_factory=list)
 
-    def may_declare(self, name: str, kinds: tuple[Declared, ...], within: Span | None = None) -> bool:
+    def may_declare(self, name: str, kinds: tuple[NameKind, ...], within: Span | None = None) -> bool:
         """Return whether skipped text may declare an unknown name of one of these kinds.
 
         Only a declaration within a definition can declare a member of it. If braces were mended, the intended nesting
@@ -175,7 +175,7 @@ class File:
                     found.setdefault(name, []).append(value)
         return found
 
-    def may_declare(self, name: str, *kinds: Declared, imported: bool = True) -> bool:
+    def may_declare(self, name: str, *kinds: NameKind, imported: bool = True) -> bool:
         """Return whether unreadable text may declare an unknown name.
 
         The text can be in this file or, if `imported`, in a library that it imports from.
@@ -185,7 +185,7 @@ class File:
         files = self._files if imported else ()
         return any(None in file.libraries.values() or file.regions.may_declare(name, kinds) for file in files)
 
-    def may_declare_within(self, definition: rsc.Definition, name: str, kind: Declared) -> bool:
+    def may_declare_within(self, definition: rsc.Definition, name: str, kind: NameKind) -> bool:
         """Return whether unreadable text of a definition, in this file or a library, may declare a name."""
         regions = self._file_of[definition.eContainer()].regions
         return regions.may_declare(name, (kind,), definition.source.span if definition.source else None)

@@ -10,7 +10,7 @@ from robosc.base.diagnostics import Repair
 from robosc.language.grammar import first, following, is_reserved, words_of
 from robosc.language.outline import COMPONENT, DEFINITIONS, RULES
 from robosc.language.tokens import Kind, Token
-from robosc.model.semantics.naming import ROBOSC_QUANTIFIERS, enumeration, written
+from robosc.model.semantics.naming import ROBOSC_QUANTIFIERS, enumeration, escape_keyword
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence
@@ -124,7 +124,7 @@ _GROUPS = (
 )
 
 
-def found(token: Token) -> str:
+def quote_token(token: Token) -> str:
     """Return a token as a message quotes it."""
     if token.kind is Kind.END:
         return "the end of the file"
@@ -132,7 +132,7 @@ def found(token: Token) -> str:
     return f"`{text}`" if text.isprintable() and not text.isspace() else f"the character U+{ord(token.text[0]):04X}"
 
 
-def expected(wanted: Iterable[str], level: Level | None) -> str:
+def enumerate_expected(wanted: Iterable[str], level: Level | None) -> str:
     """Return the expected words as an enumeration; `end` stands for the next item of the level."""
     words = [word for word in wanted if word]  # A negative lookahead has no word.
     for name, rule, core in _GROUPS:
@@ -155,7 +155,7 @@ def closest(word: str, known: Iterable[str], *, cutoff: float) -> str | None:
 def did_you_mean(word: str, known: Iterable[str], *, cutoff: float) -> Repair | None:
     """Return the repair that replaces a word of a RoboSC text by the closest name, or None if no name is close."""
     close = closest(word, known, cutoff=cutoff)
-    return Repair(f"did you mean `{written(close)}`?", written(close)) if close else None
+    return Repair(f"did you mean `{escape_keyword(close)}`?", escape_keyword(close)) if close else None
 
 
 def _alike(rule: str) -> set[str]:

@@ -89,7 +89,7 @@ class Text:
         # Decoding drops an unpaired first half, and thereby the character that it belongs to.
         return start + len(units.decode("utf-16-le", "ignore"))
 
-    def replaced(self, start: int, end: int, text: str) -> tuple[Edit, ...]:
+    def replace_tokens(self, start: int, end: int, text: str) -> tuple[Edit, ...]:
         """Return the edits that replace the tokens between two offsets by a text. Comments between them stay."""
         if start == end:
             return (Edit(self.span(start, end), text),)
@@ -125,9 +125,11 @@ class Text:
         made = Diagnostic(self.file, span, Severity.ERROR, rule, message)
         if not isinstance(repair, Repair):
             return replace(made, hint=repair)
-        edits = [edit for place in repair.elsewhere for edit in self.replaced(*place)]
-        edits += [] if repair.text is None else self.replaced(start, end, repair.text)
-        alternatives = [Alternative(f"write `{text}`", self.replaced(start, end, text)) for text in repair.choices]
+        edits = [edit for place in repair.elsewhere for edit in self.replace_tokens(*place)]
+        edits += [] if repair.text is None else self.replace_tokens(start, end, repair.text)
+        alternatives = [
+            Alternative(f"write `{text}`", self.replace_tokens(start, end, text)) for text in repair.choices
+        ]
         return replace(made, hint=repair.hint, edits=tuple(edits), alternatives=tuple(alternatives))
 
 

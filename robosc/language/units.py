@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.base.ros_types import DefinitionError, Section
 from robosc.base.ros_types.units import UNITS
-from robosc.base.ros_types.wire import PRIMITIVES, Basic, Nested, Sequence
+from robosc.base.ros_types.wire import PRIMITIVES, Basic, NestedType, Sequence
 from robosc.language.document_symbols import own_elements, span
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import carried, event, sent
+from robosc.model.semantics.communication import carrying_events, event, sending_event
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -36,23 +36,23 @@ def units(file: File, ros_types: RosTypes) -> Iterator[tuple[int, str]]:
             for segment in element.segments:
                 if isinstance(segment, rsc.PropertySegment):
                     found = _field(found, segment.property, ros_types)
-            yield from _told(file, element, found)
+            yield from _unit_notes(file, element, found)
         elif isinstance(element, rsc.ProvideStatement):
             reference = element.communicationType
             communication = reference.communicationType if reference is not None else None
-            data = _data(communication, sent(communication))
+            data = _data(communication, sending_event(communication))
             yield from _provided(file, element.data, data, ros_types)
 
 
 def _provided(file: File, value: Any, found: _Measured | None, ros_types: RosTypes) -> Iterator[tuple[int, str]]:
     if not isinstance(value, rsc.ObjectValue):
-        yield from _told(file, value, found)
+        yield from _unit_notes(file, value, found)
         return
     for given in value.properties:
         yield from _provided(file, given.value, _field(found, given.property, ros_types), ros_types)
 
 
-def _told(file: File, element: Any, found: _Measured | None) -> Iterator[tuple[int, str]]:
+def _unit_notes(file: File, element: Any, found: _Measured | None) -> Iterator[tuple[int, str]]:
     """Yield the unit of a number."""
     is_number = found is not None and isinstance(found.wire, Basic) and found.wire.name in PRIMITIVES
     if found is not None and is_number and found.unit is not None and element is not None:
@@ -64,7 +64,7 @@ def _objects(file: File) -> Mapping[Any, _Measured]:
     found: dict[Any, _Measured] = {}
     for communication in own_elements(file):
         if isinstance(communication, rsc.CommunicationType):
-            for row, declared in carried(communication):
+            for row, declared in carrying_events(communication):
                 data = _data(communication, row)
                 named = declared.type if isinstance(declared, rsc.ComplexDataTypeReference) else None
                 if isinstance(named, rsc.EnumDataType) and isinstance(named.type, rsc.ComplexDataTypeReference):
@@ -78,7 +78,7 @@ def _data(communication: rsc.CommunicationType | None, row: PortEvent | None) ->
     """Return the data of an event of a communication, if its ROS type is known."""
     if communication is None or communication.interface is None or row is None or row.section is None:
         return None
-    return _Measured(Nested(communication.interface.package, communication.interface.type), row.section)
+    return _Measured(NestedType(communication.interface.package, communication.interface.type), row.section)
 
 
 def _read(access: rsc.Access, objects: Mapping[Any, _Measured]) -> _Measured | None:
@@ -91,14 +91,14 @@ def _read(access: rsc.Access, objects: Mapping[Any, _Measured]) -> _Measured | N
             return _data(communication, event(communication, around.resultType))
         if isinstance(around, rsc.EnumDataType):
             if isinstance(around.type, rsc.InterfaceTypeReference):
-                return _Measured(Nested(around.type.package, around.type.rosType), Section.MESSAGE)
+                return _Measured(NestedType(around.type.package, around.type.rosType), Section.MESSAGE)
             return objects.get(around.type.type) if isinstance(around.type, rsc.ComplexDataTypeReference) else None
         around = around.eContainer()
     return None
 
 
 def _field(found: _Measured | None, field: rsc.ObjectProperty | None, ros_types: RosTypes) -> _Measured | None:
-    if found is None or field is None or not isinstance(found.wire, Nested):
+    if found is None or field is None or not isinstance(found.wire, NestedType):
         return None
     package, name = found.wire.package, found.wire.name
     for distribution in ros_types.distributions:

@@ -14,7 +14,7 @@ from robosc.model.semantics.typing import EnumType
 
 if TYPE_CHECKING:
     from robosc.model import rosgraph, sct
-    from robosc.model.semantics.inputs import Computed, FailureReason
+    from robosc.model.semantics.inputs import ComputedValue, FailureReason
     from robosc.model.semantics.instances import InstanceVariable
 
 #: Target type of each basic type without bounds, and the value of a variable without an initial value.
@@ -53,7 +53,7 @@ class Declarations:
             return _BASIC[type(declared)][0]()
         return ex.EnumerationType(enumeration=self.enumeration(_enum(declared)))
 
-    def computed(self, told: Computed) -> ex.Type:
+    def computed(self, told: ComputedValue) -> ex.Type:
         """Return the type of a value computed from data. An integer has bounds (rule `integer-range`)."""
         if isinstance(told.type, EnumType):
             return ex.EnumerationType(enumeration=self.enumeration(told.type.definition))

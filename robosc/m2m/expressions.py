@@ -14,7 +14,7 @@ from robosc.model.semantics.cone_of_influence import accesses, read_data
 from robosc.model.semantics.evaluation import Value, evaluate, literal
 from robosc.model.semantics.instances import PortInstance
 from robosc.model.semantics.naming import Names
-from robosc.model.semantics.operators import COMPARISONS, FUNCTIONS, Rule, operator_of
+from robosc.model.semantics.operators import COMPARISONS, FUNCTIONS, TypeRule, operator_of
 from robosc.model.semantics.printing import conjunction, disjunction
 from robosc.model.semantics.typing import DOUBLE, STRING, ArrayType, ObjectType, Types, declared_type
 from robosc.model.semantics.walks import fold, operands, with_operands
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from robosc.m2m.declarations import Declarations
     from robosc.m2m.trace import Trace
-    from robosc.model.semantics.cone_of_influence import Reading
+    from robosc.model.semantics.cone_of_influence import InputRead
     from robosc.model.semantics.instances import Instance, InstanceParameter, InstanceVariable
 
     #: Translates an access with segments, whose indices are translated already. Returns the expression and the type of
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     ]
 
 
-class Carried(NamedTuple):
+class ReceivedValue(NamedTuple):
     """Meaning of `value` at the place of an expression: data of a type, below some fields of the received message.
 
     `within` is the instance that declares the type.
@@ -115,7 +115,7 @@ class SctExpressions(_Expressions):
         """
         written = self._trace.instances.expanded(expression, within)
         readings = list(read_data(self._trace.instances, written, within, transition, assigned))
-        told = [reading for reading in readings if reading.told is not None and not reading.is_readable]
+        told = [reading for reading in readings if reading.source is not None and not reading.is_readable]
         made = self._translated(written, within, {reading.part: self._input(reading) for reading in told})
         demanded = [reading for reading in readings if reading.is_readable]
         present = conjunction(sct.InputReference(input=self._input(reading)) for reading in demanded)
@@ -148,9 +148,9 @@ class SctExpressions(_Expressions):
 
         return fold(translated, written, lambda part: () if part in inputs else operands(part))
 
-    def _input(self, reading: Reading) -> sct.Input:
-        assert reading.told is not None
-        return self._trace.inputs[reading.told]
+    def _input(self, reading: InputRead) -> sct.Input:
+        assert reading.source is not None
+        return self._trace.inputs[reading.source]
 
 
 class NodeExpressions(_Expressions):
@@ -172,7 +172,7 @@ class NodeExpressions(_Expressions):
         self._wire = wire
 
     def __call__(
-        self, expression: ex.Expression, within: Instance | None, data: Carried | None = None
+        self, expression: ex.Expression, within: Instance | None, data: ReceivedValue | None = None
     ) -> ex.Expression:
         """Translate an expression for the node. `within` is its instance, `data` the meaning of `value`."""
         names = Names()
@@ -227,8 +227,8 @@ class NodeExpressions(_Expressions):
         row = operator_of(original)
         if row is None:
             return type(original)(value=original.value)  # type: ignore[attr-defined,call-arg]
-        mixed = {Rule.ORDERING, Rule.EQUALITY, Rule.ARITHMETIC}
-        if row.rule is Rule.DOUBLE or (row.rule in mixed and self._some(operands, DOUBLE)):
+        mixed = {TypeRule.ORDERING, TypeRule.EQUALITY, TypeRule.ARITHMETIC}
+        if row.rule is TypeRule.DOUBLE or (row.rule in mixed and self._some(operands, DOUBLE)):
             operands = [self.as_double(operand) for operand in operands]
         if row is FUNCTIONS["double"]:
             return operands[0]

@@ -11,12 +11,12 @@ if TYPE_CHECKING:
 
 _Made = TypeVar("_Made")
 
-#: Results by key while `remembered` is active, else None.
+#: Results by key while `cache_transformations` is active, else None.
 _made: ContextVar[dict[object, Any] | None] = ContextVar("made", default=None)
 
 
 @contextmanager
-def remembered() -> Iterator[None]:
+def cache_transformations() -> Iterator[None]:
     """Cache the results of `once`, so that each model is transformed once.
 
     Models must not change in this context. A nested context shares the cache of the outer one.
@@ -30,7 +30,7 @@ def remembered() -> Iterator[None]:
 
 
 def once(key: object, make: Callable[[], _Made]) -> _Made:
-    """Return the result of `make()`. Within `remembered`, return the cached result of an equal `key`."""
+    """Return the result of `make()`. Within `cache_transformations`, return the cached result of an equal `key`."""
     known = _made.get()
     if known is None:
         return make()

@@ -13,11 +13,11 @@ from robosc.base.diagnostics import Diagnostic, ModelError, Severity
 from robosc.model import expression as ex
 from robosc.model import robosc, sct
 from robosc.model.places import place
-from robosc.model.semantics.communication import meant
+from robosc.model.semantics.communication import port_event_of
 from robosc.model.semantics.expansion import constant_value
 from robosc.model.semantics.instances import MOST
 from robosc.model.semantics.printing import conjunction, disjunction
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,7 +72,7 @@ class RequirementAutomaton:
 
     def _event(self, reference: robosc.EventReference) -> sct.Event:
         port = self.trace.instances.port(reference.communicationType, self._within)
-        named = meant(reference)
+        named = port_event_of(reference)
         assert port is not None
         assert named is not None
         return self.trace.event(port, named.kind)
@@ -151,9 +151,9 @@ class RequirementAutomaton:
         before: list[ex.Expression] = []
         for number, (transition, target) in enumerate(tried, start=1):
             own = [] if number == len(tried) else [self._guard(transition, expressions)]
-            guard = conjunction([*(ex.Negation(operand=copied(other)) for other in before), *own])
+            guard = conjunction([*(ex.Negation(operand=copy_tree(other)) for other in before), *own])
             location.edges.append(sct.Edge(event=event, guard=guard, target=target, source=transition.source))
-            before += map(copied, own)
+            before += map(copy_tree, own)
         if not tried:
             location.edges.append(sct.Edge(event=event, target=location))
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from robosc.base.ros_types import RosTypes
 from robosc.m2m.declarations import Declarations, default_value
-from robosc.m2m.expressions import Carried, NodeExpressions
-from robosc.m2m.stored_types import KeptTypes
+from robosc.m2m.expressions import NodeExpressions, ReceivedValue
+from robosc.m2m.stored_types import StoredTypes
 from robosc.model import expression as ex
 from robosc.model import robosc, rosgraph, sct
 from robosc.model.semantics.communication import (
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from robosc.base.ros_types import Section
     from robosc.m2m.trace import Trace
     from robosc.model.semantics.communication import PortEvent
-    from robosc.model.semantics.inputs import Told
+    from robosc.model.semantics.inputs import InputSource
     from robosc.model.semantics.instances import Instance, InstanceParameter, InstanceVariable, PortInstance
 
 #: Field of a basic value in a type of std_msgs.
@@ -56,10 +56,10 @@ def transform(trace: Trace, interfaces: RosTypes | None = None) -> rosgraph.RosG
     `interfaces` holds the known ROS types. None: the types that are known without extra folders. Topics, services and
     actions are in the order of the text. Messages of one topic and ROS type share one subscription.
     """
-    return _Transformation(trace, interfaces or RosTypes()).run()
+    return _RoboscToRosgraph(trace, interfaces or RosTypes()).run()
 
 
-class _Transformation:
+class _RoboscToRosgraph:
     def __init__(self, trace: Trace, interfaces: RosTypes) -> None:
         self.trace = trace
         self.known = interfaces
@@ -72,14 +72,14 @@ class _Transformation:
         self.conversions: dict[tuple[robosc.EnumDataType, tuple[str, ...]], rosgraph.Conversion] = {}
         self.declarations = Declarations(self.graph, trace.declarations)
         self.conversion_names = Names()
-        self.kept = KeptTypes(self.declarations, self.known)
+        self.stored_types = StoredTypes(self.declarations, self.known)
         self.carriers: dict[rosgraph.Reception, tuple[rosgraph.Interface, Section]] = {}
         self.subscriptions: dict[tuple[str, rosgraph.Interface], rosgraph.Subscription] = {}
         self.publishers: dict[tuple[str, rosgraph.Interface], rosgraph.Publisher] = {}
         self.durations: dict[InstanceParameter, list[sct.Duration]] = {}
         for (place, _), duration in trace.durations.items():
             self.durations.setdefault(place, []).append(duration)
-        self.inputs: dict[tuple[PortInstance, PortEvent], list[tuple[Told, sct.Input]]] = {}
+        self.inputs: dict[tuple[PortInstance, PortEvent], list[tuple[InputSource, sct.Input]]] = {}
         for carried, declared in trace.inputs.items():
             self.inputs.setdefault((carried.port, carried.event), []).append((carried, declared))
         self.expressions = NodeExpressions(trace, self.declarations, self.variables, self.parameters, self.wire)
@@ -192,7 +192,7 @@ class _Transformation:
         )
         sent = data_type(port.communication, event)
         assert sent is not None
-        for statement in self.instances.provided(port):
+        for statement in self.instances.provide_statements(port):
             given = statement.element
             alternative = rosgraph.ProvidedData(location=self.trace.provided[statement], source=given.source)
             is_object = isinstance(declared_type(port.instance.data_type(sent)), ObjectType)
@@ -262,12 +262,12 @@ class _Transformation:
         assert event.section is not None
         return _FIELD if linked is None else self.known.field_of_basic(linked.package, linked.type, event.section)
 
-    def value_of(self, port: PortInstance, event: PortEvent) -> Carried:
+    def value_of(self, port: PortInstance, event: PortEvent) -> ReceivedValue:
         """Return the meaning of `value` in a ROS message with the data of an event."""
         carried = data_type(port.communication, event)
         assert carried is not None
         is_object = isinstance(basis(carried), robosc.ComplexDataTypeReference)
-        return Carried(carried, port.instance, () if is_object else (self.field(port, event),))
+        return ReceivedValue(carried, port.instance, () if is_object else (self.field(port, event),))
 
     def wire(
         self,
@@ -324,10 +324,10 @@ class _Transformation:
                 source=enum.source,
             )
             self.conversions[key] = conversion
-            value = Carried(enum.type)
+            value = ReceivedValue(enum.type)
             for rule in enum.rules:
                 if isinstance(rule, robosc.EnumTransformationRule):
-                    condition = self.instances.expanded.argued(rule.condition, arguments)
+                    condition = self.instances.expanded.expand_with(rule.condition, arguments)
                     conversion.rules.append(
                         rosgraph.ConversionRule(
                             condition=self.expressions(condition, None, value),
@@ -395,9 +395,9 @@ class _Transformation:
                 variable.reception, path = next(iter(places))
                 variable.path.extend(["0" if step == EACH or step.isdigit() else step for step in path])
                 interface, section = self.carriers[variable.reception]
-                variable.type = self.kept.type_of(declared[variable], interface, section, variable.path)
+                variable.type = self.stored_types.type_of(declared[variable], interface, section, variable.path)
 
-    def data(self, transition: robosc.Transition, instance: Instance) -> Carried | None:
+    def data(self, transition: robosc.Transition, instance: Instance) -> ReceivedValue | None:
         """Return the meaning of `value` in a transition. None if its event carries no data."""
         if not isinstance(transition, robosc.ResultTransition):
             return None

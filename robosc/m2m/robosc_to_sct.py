@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from robosc.model.places import Place
-    from robosc.model.semantics.inputs import Told
+    from robosc.model.semantics.inputs import InputSource
 
 _Stated = TypeVar("_Stated", bound=robosc.StatedDefinition)
 
@@ -82,10 +82,10 @@ def transform(robot: robosc.Robot) -> tuple[sct.SupervisoryControlModel, Trace]:
     Plants are in the order of the text, component by component: communication, then behaviour; data plants are last.
     Raises ModelError if a comparison of doubles ranges over too many integers.
     """
-    return _Transformation(robot).run()
+    return _RoboscToSct(robot).run()
 
 
-class _Transformation:
+class _RoboscToSct:
     def __init__(self, robot: robosc.Robot) -> None:
         self.robot = robot
         self.instances = Instances(robot)
@@ -95,9 +95,9 @@ class _Transformation:
         self.expressions = SctExpressions(self.trace)
         self.print = RoboscPrinter()
         self.plant_names = Names()
-        self.told: dict[PortInstance, list[Told]] = {}
+        self.input_sources: dict[PortInstance, list[InputSource]] = {}
         for carried in self.trace.cone.data:
-            self.told.setdefault(carried.port, []).append(carried)
+            self.input_sources.setdefault(carried.port, []).append(carried)
 
     def run(self) -> tuple[sct.SupervisoryControlModel, Trace]:
         # Create referenced elements first: a guard may name any component's state.
@@ -158,7 +158,7 @@ class _Transformation:
         """Add the inputs of a plant (Algorithm 1) for data in the cone of influence."""
         names = Names()
         computed = 0
-        for carried in self.told.get(port, ()):
+        for carried in self.input_sources.get(port, ()):
             made = sct.Input()
             if isinstance(carried, Data):
                 parts = [part.name for part in carried.path]
@@ -313,7 +313,7 @@ class _Transformation:
 
     def data_plant(self, port: PortInstance) -> None:
         """Add the plant that selects provided data (listing 5.4). Its names are stable from run to run."""
-        statements = self.instances.provided(port)
+        statements = self.instances.provide_statements(port)
         if not statements:
             return
         name, origin = f"data_{self.communication_name(port)}", self.trace.plants[port].origin
@@ -414,13 +414,13 @@ class _Transformation:
                 condition=condition,
                 automaton=automaton.plant,
                 name=_stated_name(statement),
-                text=f"{self.heading(statement)} {self.said(statement)}",
+                text=f"{self.heading(statement)} {self.describe_statement(statement)}",
                 source=statement.element.source,
             )
             self.model.requirements.append(target)
             self.trace.origins[target] = statement.element
 
-    def said(self, statement: Statement[robosc.Requirement]) -> str:
+    def describe_statement(self, statement: Statement[robosc.Requirement]) -> str:
         """Return the text of an order, a count or an automaton."""
         match statement.element:
             case robosc.OrderRequirement() as order:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.base.ros_types import DefinitionError, Section
-from robosc.base.ros_types.wire import PRIMITIVES, Basic, Nested, Sequence
+from robosc.base.ros_types.wire import PRIMITIVES, Basic, NestedType, Sequence
 from robosc.model import expression as ex
 from robosc.model import robosc, rosgraph
 
@@ -32,8 +32,8 @@ _TYPES: Mapping[str, type[ex.Type]] = {
 #: Kind of ROS type of each non-basic type.
 _KINDS: Mapping[type[robosc.DataType], type[WireType]] = {
     robosc.Array: Sequence,
-    robosc.ComplexDataTypeReference: Nested,
-    robosc.InterfaceTypeReference: Nested,
+    robosc.ComplexDataTypeReference: NestedType,
+    robosc.InterfaceTypeReference: NestedType,
 }
 
 
@@ -46,7 +46,7 @@ class _Defined(NamedTuple):
 
     def fields(self) -> Fields | None:
         """Return the fields of an object. None if they are unknown."""
-        if not isinstance(self.wire, Nested):
+        if not isinstance(self.wire, NestedType):
             return None
         try:
             return self.distribution.fields(self.wire.package, self.wire.name, self.section)
@@ -54,7 +54,7 @@ class _Defined(NamedTuple):
             return None
 
 
-class KeptTypes:
+class StoredTypes:
     """Creates the types of variables that hold objects.
 
     A graph serves both ROS versions. An object of a ROS type has the fields that all known definitions share, and those
@@ -73,7 +73,7 @@ class KeptTypes:
         found = [
             _Defined(distribution, *reached)
             for distribution in self._distributions
-            if (reached := distribution.reached(interface.package, interface.type, section, path)) is not None
+            if (reached := distribution.type_at(interface.package, interface.type, section, path)) is not None
         ]
         self._left = MOST_VALUES
         made = self._type(declared, found)
@@ -86,7 +86,7 @@ class KeptTypes:
         while isinstance(declared, robosc.ComplexDataTypeReference) and isinstance(declared.type, robosc.EnumDataType):
             declared = declared.type.type
         kinds = {type(known.wire) for known in defined} if declared is None else {_KINDS.get(type(declared), Basic)}
-        if kinds == {Nested}:
+        if kinds == {NestedType}:
             return self._object(declared, defined)
         if kinds == {Sequence}:
             inner = [known._replace(wire=known.wire.element) for known in defined if isinstance(known.wire, Sequence)]

@@ -196,11 +196,11 @@ class _Guarded:
     module: Any
 
     def preconditions(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
-        with self.extension.working():
+        with self.extension.report_exceptions():
             return list(self.module.preconditions(models, configuration))
 
     def generate(self, models: Models, configuration: Configuration) -> dict[str, str]:
-        with self.extension.working():
+        with self.extension.report_exceptions():
             files = dict(self.module.generate(models, configuration))
         for path, text in files.items():
             relative = isinstance(path, str) and not PurePosixPath(path).is_absolute() and ".." not in path.split("/")
@@ -218,6 +218,6 @@ def targets() -> dict[str, Target]:
 
 def together() -> AbstractContextManager[None]:
     """Cache the results that several targets share. Models must not change in this context."""
-    from robosc.m2m.memo import remembered
+    from robosc.m2m.memo import cache_transformations
 
-    return remembered()
+    return cache_transformations()

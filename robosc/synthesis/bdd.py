@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias, cast
 from oxidd.bcdd import BCDDFunction, BCDDManager
 from oxidd.util import BooleanOperator, DDMemoryError
 
-from robosc.synthesis.memory import TooFewAddressesError, address_space, bounded
+from robosc.synthesis.memory import TooFewAddressesError, address_space, limit_memory
 from robosc.synthesis.statistics import Statistics
 
 if TYPE_CHECKING:
@@ -147,7 +147,7 @@ def with_enough_memory(run: Callable[[int], T], memory: int, levels: int | None 
     capacity = min(capacity, most)
     while True:
         try:
-            with bounded(memory, "synthesis"):
+            with limit_memory(memory, "synthesis"):
                 return run(capacity)
         except DDMemoryError:
             if capacity == most:

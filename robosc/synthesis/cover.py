@@ -59,7 +59,7 @@ class _Cover:
 
     def __init__(self, encoding: Encoding, wanted: Diagram, spared: Diagram, domains: Sequence[Domain]) -> None:
         self._encoding = encoding
-        self._wanted = wanted
+        self._required = wanted
         self._spared = spared
         self._cube = encoding.diagrams.cube(level for domain in domains for level in domain.levels)
         self._domains = sorted(domains, key=_telling)
@@ -68,7 +68,7 @@ class _Cover:
 
     def products(self) -> Iterator[Product]:
         """Yield products that cover the wanted states; each covers a state that those before it do not."""
-        left = self._wanted
+        left = self._required
         while left.satisfiable():
             product = self._widened(self._grown(pick(left, self._domains)))
             yield product
@@ -81,7 +81,7 @@ class _Cover:
             behind.append(behind[-1] | self._states(product))
         kept, covered = [], self._encoding.diagrams.false
         for product, others in zip(products, reversed(behind[:-1]), strict=True):
-            left = self._wanted & ~covered & ~others
+            left = self._required & ~covered & ~others
             if left.satisfiable():
                 kept.append(self._narrowed(product, left))
                 covered |= self._states(kept[-1])

@@ -7,7 +7,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from robosc.model.semantics.roles import SILENT
-from robosc.synthesis.encoding import referenced
+from robosc.synthesis.encoding import referenced_elements
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from robosc.model import sct
     from robosc.synthesis.bdd import Diagram, Diagrams
     from robosc.synthesis.encoding import Element
-    from robosc.synthesis.relation import EventRelation, Step
+    from robosc.synthesis.relation import EventRelation, SymbolicStep
 
 #: Constant cost of examining a step, in nodes, in addition to the nodes of the states.
 _OVERHEAD = 100
@@ -31,7 +31,7 @@ class InternalEvent:
 
     relation: EventRelation
     allowed: Diagram
-    step: Step | None
+    step: SymbolicStep | None
     touched: frozenset[Element]
 
     def before(self, states: Diagram) -> Diagram:
@@ -40,7 +40,7 @@ class InternalEvent:
 
 
 def internal_events(
-    events: Iterable[tuple[EventRelation, Diagram, Step | None]], guards: Iterable[sct.EventGuard]
+    events: Iterable[tuple[EventRelation, Diagram, SymbolicStep | None]], guards: Iterable[sct.EventGuard]
 ) -> list[InternalEvent]:
     """Return the internal events; each of `events` comes with its allowed states and its step."""
     guard_of = {guard.event: guard for guard in guards}
@@ -49,7 +49,7 @@ def internal_events(
         if relation.event.kind in SILENT:
             guard = guard_of.get(relation.event)
             parts = (guard.requirement, guard.synthesis) if guard else ()
-            read = {element for part in parts for element in referenced(part)}
+            read = {element for part in parts for element in referenced_elements(part)}
             found.append(InternalEvent(relation, allowed, step, relation.touched | read))
     return found
 

@@ -6,8 +6,8 @@ from itertools import product
 import pytest
 from hypothesis import assume, given
 
-from robosc.analysis.blocking import Reason
-from robosc.analysis.blocking_in_words import blocking
+from robosc.analysis.blocking import BlockReason
+from robosc.analysis.blocking_in_words import describe_blocking
 from robosc.analysis.paths import Layers, TraceStep
 from robosc.analysis.supervise import diagnose
 from robosc.model import expression as ex
@@ -109,7 +109,7 @@ def test_the_trace_leads_to_the_fault(random_model):
         check_uncontrollable_at_fault(replay, reason)
 
 
-def check_requirement_at_fault(replay: Replay, reason: Reason) -> None:
+def check_requirement_at_fault(replay: Replay, reason: BlockReason) -> None:
     """All is blocked from the start; the trace ends with what a requirement forbids on the way to a marked state."""
     oracle = replay.oracle
     assert is_blocked(oracle, oracle.initial)
@@ -122,7 +122,7 @@ def check_requirement_at_fault(replay: Replay, reason: Reason) -> None:
     assert reason.state == replay.names(before)
 
 
-def check_uncontrollable_at_fault(replay: Replay, reason: Reason) -> None:
+def check_uncontrollable_at_fault(replay: Replay, reason: BlockReason) -> None:
     """The trace is a shortest one to its last event, which leads where no marked state can be reached any more."""
     oracle = replay.oracle
     before, after = (replay.after(len(reason.trace) - last, requirements=True) for last in (1, 0))
@@ -157,7 +157,7 @@ def tank(**arguments):
 
 def test_an_uncontrollable_event_is_named_with_the_inputs_that_matter():
     reason = diagnose(model([tank()])).reason
-    assert blocking(reason) == (
+    assert describe_blocking(reason) == (
         "response from `Tank` can't be prevented, and after it no marked state can be reached;"
         " never in a marked state: `Tank` in `burst`"
     )
@@ -185,7 +185,7 @@ def test_a_requirement_that_keeps_everything_from_being_marked_is_named():
         marked=["done"],
     )
     reason = diagnose(model([action], [disables("c_cancel", "A.busy")])).reason
-    assert blocking(reason) == (
+    assert describe_blocking(reason) == (
         "no marked state can be reached: the shortest way to one needs cancel of `A` where a requirement on the"
         " cancel of `A` forbids it; never in a marked state: `A` in `busy`"
     )
@@ -203,7 +203,7 @@ def test_plants_that_reach_no_marked_state_are_named(marked, who, monkeypatch):
     b = plant("B", {"x": [edge("u", to="y")], "y": [edge("v", to="x")]}, marked=["y"])
     synthesis = diagnose(model([a, b]))
     assert (synthesis.uncontrolled_states, synthesis.controlled_states) == (2, 0)
-    assert blocking(synthesis.reason) == f"no marked state can be reached at all; {who}"
+    assert describe_blocking(synthesis.reason) == f"no marked state can be reached at all; {who}"
     assert synthesis.reason.trace == ()
 
 

@@ -56,7 +56,7 @@ class Witness:
         """What is said of a command, as far as the engine knows it."""
         if self.engine.enabled(event_name(event)):
             return "allowed"
-        failing = [str(requirement.text) for requirement in self.engine.failing(event_name(event))]
+        failing = [str(requirement.text) for requirement in self.engine.failing_requirements(event_name(event))]
         if failing:
             return f"forbidden: {'; '.join(failing)}"
         places = [plant.locations[self.engine.location(plant)] for plant in self.model.plants if edges_of(plant, event)]

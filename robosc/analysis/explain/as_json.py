@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from robosc.analysis.blocking_in_words import blocking
+from robosc.analysis.blocking_in_words import describe_blocking
 from robosc.analysis.explain.answers import Emptiness, Explanation, Possibility
 from robosc.analysis.paths import trace_data
 from robosc.analysis.wording import name
@@ -73,7 +73,7 @@ def _emptiness(told: Emptiness, at: At) -> dict[str, Any]:
     """Return the data about an empty supervisor."""
     return {
         "empty": True,
-        "message": blocking(told.reason),
+        "message": describe_blocking(told.reason),
         "event": told.reason.event and event_name(told.reason.event),
         "trace": trace_data(told.reason.trace),
         "stuck": _notes(told.stuck, at),

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
-from robosc.analysis.blocking_in_words import blocking, counterexample_in_words, way_out
+from robosc.analysis.blocking_in_words import counterexample_in_words, describe_blocking, way_out
 from robosc.analysis.explain.answers import Emptiness, Explanation, Possibility, Reach
-from robosc.analysis.system import counted
-from robosc.analysis.wording import in_words, listed, name, what_is, words
+from robosc.analysis.system import format_count
+from robosc.analysis.wording import in_words, join_with_and, name, what_is, words
 from robosc.engine import Blocked
 from robosc.model import sct
 from robosc.model.semantics.roles import Roles, event_name
@@ -99,15 +99,15 @@ class Renderer:
             elements += plant.variables
             values = [what_is(element, value(element, situation.codes[element])) for element in elements]
             if plant.kind not in _COMMUNICATIONS:
-                yield from [f"  {listed(values)}"] if values else []
+                yield from [f"  {join_with_and(values)}"] if values else []
             elif elements == [plant] and plant.locations[situation.codes[plant]].initial:
                 idle.append((str(plant.locations[situation.codes[plant]].name), f"`{name(plant)}`"))
             elif values:
-                others.append(f"  {listed(values)}")
+                others.append(f"  {join_with_and(values)}")
         yield from others
         for location in dict.fromkeys(location for location, _ in idle):
             names = [plant for where, plant in idle if where == location]
-            yield f"  {listed(names)} {'is' if len(names) == 1 else 'are'} in `{location}`"
+            yield f"  {join_with_and(names)} {'is' if len(names) == 1 else 'are'} in `{location}`"
 
     def _refused(self, refusal: Explanation | None) -> Iterator[str]:
         if refusal is None:
@@ -192,7 +192,7 @@ class Renderer:
     # No supervisor
 
     def _empty(self, told: Emptiness) -> Iterator[str]:
-        yield f"The supervisor is empty: {blocking(told.reason)}."
+        yield f"The supervisor is empty: {describe_blocking(told.reason)}."
         if told.reason.trace:
             steps = [
                 f"{self._at(self._events[step.event])}: {in_words([step], self._model)}" for step in told.reason.trace
@@ -215,8 +215,8 @@ class Renderer:
             lines = []
             for loosening in loosenings:
                 first = loosening.requirements[0]
-                text = listed(list(dict.fromkeys(own.text or "a requirement" for own in loosening.requirements)))
-                lines.append(f"{self._at(first)}: {text} ({counted(loosening.states, 'state')} without it)")
+                text = join_with_and(list(dict.fromkeys(own.text or "a requirement" for own in loosening.requirements)))
+                lines.append(f"{self._at(first)}: {text} ({format_count(loosening.states, 'state')} without it)")
             yield from self._section("It would help to loosen, or to leave out, one of these:", lines)
 
     def _notes(self, notes: Iterable[Note]) -> Iterator[str]:

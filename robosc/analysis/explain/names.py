@@ -35,7 +35,7 @@ class NamingError(ValueError):
         self.hint = hint
 
 
-def event_named(model: sct.SupervisoryControlModel, name: str) -> sct.Event:
+def find_event(model: sct.SupervisoryControlModel, name: str) -> sct.Event:
     """Return the event of a name.
 
     Examples of names are `message_move.c_trigger`, `move`, `Platform.move`, `drive.cancel` and `cancel from drive`.
@@ -79,7 +79,7 @@ def _plant_names(plant: sct.Plant) -> list[str]:
     return [plant.origin, plant.origin.rpartition(".")[2]] if plant.origin else []
 
 
-def state_given(model: sct.SupervisoryControlModel, given: str) -> dict[Element, int]:
+def parse_state(model: sct.SupervisoryControlModel, given: str) -> dict[Element, int]:
     """Return the codes of the elements that a state names.
 
     The state is text such as `Door=open,Gauge.level=3`, JSON as `robosc simulate` prints it, or a message that a node

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 from robosc.analysis.explain.answers import Note
 from robosc.analysis.paths import Path, trace
-from robosc.analysis.wording import in_words, listed, name, what_is, words
+from robosc.analysis.wording import in_words, join_with_and, name, what_is, words
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.semantics.communication import CANCELING, ERROR, EXECUTING, IDLE, READY, WAITING
 from robosc.model.semantics.edges import edges_from
 from robosc.model.semantics.printing import RobotPrinter, disjunction
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 from robosc.synthesis.decoding import text, value
-from robosc.synthesis.encoding import pick, referenced
+from robosc.synthesis.encoding import pick, referenced_elements
 
 if TYPE_CHECKING:
     from robosc.analysis.paths import Move
@@ -69,9 +69,9 @@ class Obstacles:
             Note(
                 requirement,
                 requirement.text or "a requirement forbids it",
-                tuple(dict.fromkeys(map(self._said, self._parts(requirement)))),
+                tuple(dict.fromkeys(map(self._describe, self._parts(requirement)))),
             )
-            for requirement, where in relation.asked.items()
+            for requirement, where in relation.permissions.items()
             if not self._system.is_in(self._codes, where)
         ]
 
@@ -101,13 +101,13 @@ class Obstacles:
     def _guard(self, plant: sct.Plant) -> ex.Expression | None:
         """Return the guards of the plant's edges for the event here; None if one edge has no guard."""
         guards = [edge.guard for edge in self._edges(plant)]
-        return None if None in guards else disjunction(copied(guard) for guard in guards if guard is not None)
+        return None if None in guards else disjunction(copy_tree(guard) for guard in guards if guard is not None)
 
     def _plant(self, plant: sct.Plant) -> Note:
         here = self._here(plant)
         guard = self._guard(plant)
         if guard is not None:
-            parts = tuple(dict.fromkeys(map(self._said, self._failing(guard, wanted=True))))
+            parts = tuple(dict.fromkeys(map(self._describe, self._failing(guard, wanted=True))))
             asked = f"{self._transition(plant)} asks for `{self._print(guard)}`"
             if plant.kind == sct.PlantKind.data:
                 return Note(self._event, asked, parts)
@@ -120,7 +120,9 @@ class Obstacles:
             if any(own.event is self._event for own in edges_from(location))
         ]
         elsewhere = (
-            f"it has one in {listed(others)}" if len(others) <= _NAMED else f"{len(others)} other states have one"
+            f"it has one in {join_with_and(others)}"
+            if len(others) <= _NAMED
+            else f"{len(others)} other states have one"
         )
         return Note(here, f"`{name(plant)}` is in `{here.name}`, without {self._transition(plant)}: {elsewhere}")
 
@@ -156,14 +158,15 @@ class Obstacles:
                     failing.append((part, value_wanted))
         return failing
 
-    def _said(self, part: tuple[ex.Expression, bool]) -> str:
+    def _describe(self, part: tuple[ex.Expression, bool]) -> str:
         condition, wanted = part
         held = f"`{self._print(condition)}` {'does not hold' if wanted else 'holds'}"
         told = not (isinstance(condition, sct.LocationReference) and not wanted)
         values = [
-            what_is(element, value(element, self._codes[element])) for element in dict.fromkeys(referenced(condition))
+            what_is(element, value(element, self._codes[element]))
+            for element in dict.fromkeys(referenced_elements(condition))
         ]
-        return f"{held}: {listed(values)}" if values and told else held
+        return f"{held}: {join_with_and(values)}" if values and told else held
 
     # Changes
 
@@ -188,10 +191,10 @@ class Obstacles:
         relation = self._system.relations[self._event]
         for plant, where in relation.enabled_by.items():
             if not self._system.is_in(self._codes, where):
-                found.update(referenced(self._guard(plant)) if self._edges(plant) else [plant])
-        for requirement, where in relation.asked.items():
+                found.update(referenced_elements(self._guard(plant)) if self._edges(plant) else [plant])
+        for requirement, where in relation.permissions.items():
             if not self._system.is_in(self._codes, where):
-                found.update(element for part, _ in self._parts(requirement) for element in referenced(part))
+                found.update(element for part, _ in self._parts(requirement) for element in referenced_elements(part))
         return found
 
 

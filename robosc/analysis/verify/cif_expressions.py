@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.model import expression as ex
-from robosc.model.semantics.cif_types import BOOLEAN, OPERATORS, Type, combined, joined, shown
+from robosc.model.semantics.cif_types import BOOLEAN, OPERATORS, Type, combine_types, format_type, join_types
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 
-class Typed(NamedTuple):
+class TypedExpression(NamedTuple):
     """Expression with its type and its start position in the text."""
 
     position: int
@@ -37,8 +37,8 @@ class _Open:
 
     word: str
     position: int
-    conditions: list[Typed] = field(default_factory=list)
-    values: list[Typed] = field(default_factory=list)
+    conditions: list[TypedExpression] = field(default_factory=list)
+    values: list[TypedExpression] = field(default_factory=list)
 
 
 class ExpressionReader:
@@ -48,9 +48,9 @@ class ExpressionReader:
     outermost operator.
     """
 
-    def __init__(self, read: Any, value_of: Callable[[Any], Typed], *, difference: bool) -> None:
+    def __init__(self, read: Any, value_of: Callable[[Any], TypedExpression], *, difference: bool) -> None:
         """Read an `Expression` of the grammar; `value_of` returns the meaning of an operand."""
-        self._done: list[Typed] = []
+        self._done: list[TypedExpression] = []
         self._open: list[_Open] = []
         self._differences: list[tuple[int, ex.Expression]] = []
         end = read._tx_position_end  # noqa: SLF001 - textX stores it there
@@ -105,30 +105,30 @@ class ExpressionReader:
                 self._open.pop()
                 operand = self._done.pop()
                 self._boolean(operand._replace(position=top.position), "`not` does not apply to {}")
-                self._done.append(Typed(top.position, ex.Negation(operand=operand.expression), BOOLEAN))
+                self._done.append(TypedExpression(top.position, ex.Negation(operand=operand.expression), BOOLEAN))
             elif top.word in OPERATORS and OPERATORS[top.word][0] >= max(level, 1 + (level == 1)):
                 self._open.pop()
                 right, left = self._done.pop(), self._done.pop()
-                kind = _checked(right.position, combined, top.word, left.type, right.type)
+                kind = _checked(right.position, combine_types, top.word, left.type, right.type)
                 made = OPERATORS[top.word][1](left=left.expression, right=right.expression)
                 if top.word == "-":
                     self._differences.append((right.position, made))
-                self._done.append(Typed(left.position, made, kind))
+                self._done.append(TypedExpression(left.position, made, kind))
             else:
                 return
 
     @staticmethod
-    def _boolean(operand: Typed, problem: str) -> None:
+    def _boolean(operand: TypedExpression, problem: str) -> None:
         if operand.type != BOOLEAN:
-            raise ExpressionError(operand.position, problem.format(shown(operand.type)))
+            raise ExpressionError(operand.position, problem.format(format_type(operand.type)))
 
     @staticmethod
-    def _choice(top: _Open, otherwise: Typed) -> Typed:
+    def _choice(top: _Open, otherwise: TypedExpression) -> TypedExpression:
         made, kind = otherwise.expression, otherwise.type
         for condition, value in reversed(list(zip(top.conditions, top.values, strict=True))):
-            kind = _checked(top.position, joined, value.type, kind)
+            kind = _checked(top.position, join_types, value.type, kind)
             made = ex.Conditional(condition=condition.expression, then=value.expression, otherwise=made)
-        return Typed(top.position, made, kind)
+        return TypedExpression(top.position, made, kind)
 
 
 def _tokens(read: Any) -> Iterator[tuple[str | None, Any]]:

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import textx
 
-from robosc.analysis.verify.cif_expressions import ExpressionError, ExpressionReader, Typed
+from robosc.analysis.verify.cif_expressions import ExpressionError, ExpressionReader, TypedExpression
 from robosc.base.files.resources import locate
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.semantics import cif_types as types
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -54,16 +54,16 @@ def read(text: str) -> Specification:
     if strange is not None:
         raise CifError(f"{_place(text, strange)}: {text[strange]!a} is no ASCII")
     try:
-        return _Reading(_grammar().model_from_str(text), text).specification()
+        return _GrammarConversion(_grammar().model_from_str(text), text).specification()
     except textx.TextXSyntaxError as fault:
         raise CifError(f"line {fault.line}, column {fault.col}: {fault.message}") from None
 
 
-class _Reading:
+class _GrammarConversion:
     """Conversion of grammar objects to metamodel objects."""
 
     def __init__(self, read: Any, text: str) -> None:
-        self._read = read
+        self._node = read
         self._text = text
         #: Declarations outside of automata, and in each automaton.
         self._outer: dict[str, Any] = {}
@@ -73,7 +73,7 @@ class _Reading:
     def specification(self) -> Specification:
         """Return the whole specification. Raises CifError."""
         model = sct.SupervisoryControlModel(name="")
-        self._annotated(self._read)
+        self._annotated(self._node)
         automata: list[tuple[Any, sct.Plant]] = []
         for enumeration in self._of("Enumeration"):
             model.enumerations.append(self._enumeration(enumeration))
@@ -88,7 +88,7 @@ class _Reading:
         supervisor = automata[-1][0] if automata and automata[-1][0].kind == "supervisor" else None
         model.plants.extend(automaton for declaration, automaton in automata if declaration is not supervisor)
         if not model.plants:
-            self._fail(self._read, "there is no plant")
+            self._fail(self._node, "there is no plant")
         invariants: dict[str, list[sct.Requirement]] = {"plant": [], "requirement": [], "supervisor": []}
         for invariant in self._of("Invariant"):
             if type(self._annotated(invariant).restriction).__name__ == "Condition":
@@ -118,7 +118,7 @@ class _Reading:
                 self._fail(declaration, "the automaton that synthesis adds is the last one and has an alphabet")
 
     def _of(self, rule: str) -> list[Any]:
-        return [declaration for declaration in self._read.declarations if type(declaration).__name__ == rule]
+        return [declaration for declaration in self._node.declarations if type(declaration).__name__ == rule]
 
     def _fail(self, read: Any, reason: str) -> NoReturn:
         raise CifError(f"{_place(self._text, read._tx_position)}: {reason}")  # noqa: SLF001 - textX stores it there
@@ -223,7 +223,7 @@ class _Reading:
             if not types.contains(self._types[variable], kind):
                 self._fail(
                     declaration,
-                    f"'{variable.name}' is {self._shown(variable)} and its initial value {types.shown(kind)}",
+                    f"'{variable.name}' is {self._shown(variable)} and its initial value {types.format_type(kind)}",
                 )
             variable.initial = value
         for location, declaration in zip(automaton.locations, read.locations, strict=True):
@@ -279,13 +279,14 @@ class _Reading:
             value, kind = self._expression(update.value, automaton, assigned=True)
             if not types.overlap(self._types[variable], kind):
                 self._fail(
-                    update, f"'{variable.name}' is {self._shown(variable)} and what it is to be {types.shown(kind)}"
+                    update,
+                    f"'{variable.name}' is {self._shown(variable)} and what it is to be {types.format_type(kind)}",
                 )
             edge.updates.append(sct.Update(variable=variable, value=value))
         return edge
 
     def _shown(self, variable: sct.DiscreteVariable) -> str:
-        return types.shown(self._types[variable])
+        return types.format_type(self._types[variable])
 
     def _state_invariant(self, read: Any) -> sct.StateInvariant:
         if read.kind != "requirement":
@@ -327,7 +328,7 @@ class _Reading:
     def _condition(self, read: Any, automaton: sct.Plant | None) -> ex.Expression:
         made, kind = self._expression(read, automaton)
         if kind != types.BOOLEAN:
-            self._fail(read, f"a condition is bool and this is {types.shown(kind)}")
+            self._fail(read, f"a condition is bool and this is {types.format_type(kind)}")
         return made
 
     def _expression(
@@ -338,15 +339,15 @@ class _Reading:
         `automaton` is the scope of names, None outside of automata.
         """
 
-        def value_of(operand: Any) -> Typed:
+        def value_of(operand: Any) -> TypedExpression:
             position = operand._tx_position  # noqa: SLF001
             match type(operand).__name__:
                 case "Truth":
-                    return Typed(position, ex.BooleanLiteral(value=operand.value == "true"), types.BOOLEAN)
+                    return TypedExpression(position, ex.BooleanLiteral(value=operand.value == "true"), types.BOOLEAN)
                 case "Literal":
                     number = self._number(operand.value, operand)
-                    return Typed(position, ex.IntegerLiteral(value=number), range(number, number + 1))
-            return Typed(position, *self._reference(operand, automaton, constant=constant))
+                    return TypedExpression(position, ex.IntegerLiteral(value=number), range(number, number + 1))
+            return TypedExpression(position, *self._reference(operand, automaton, constant=constant))
 
         try:
             _, made, kind = ExpressionReader(read, value_of, difference=assigned).result
@@ -387,7 +388,7 @@ def _monitor(event: sct.Event, location: sct.Location) -> None:
     guards = [edge.guard for edge in location.edges if edge.event is event]
     if any(guard is None for guard in guards):
         return
-    otherwise: list[ex.Expression] = [ex.Negation(operand=copied(guard)) for guard in guards if guard is not None]
+    otherwise: list[ex.Expression] = [ex.Negation(operand=copy_tree(guard)) for guard in guards if guard is not None]
     guard = reduce(lambda left, right: ex.Conjunction(left=left, right=right), otherwise) if otherwise else None
     location.edges.append(sct.Edge(event=event, target=location, guard=guard))
 

@@ -64,7 +64,7 @@ class Verdict:
     requirement: str = ""
 
 
-def timed(examine: Callable[P, Verdict], *arguments: P.args, **named: P.kwargs) -> Verdict:
+def measure(examine: Callable[P, Verdict], *arguments: P.args, **named: P.kwargs) -> Verdict:
     """Return the verdict of an examination with its seconds."""
     began = perf_counter()
     return replace(examine(*arguments, **named), seconds=perf_counter() - began)

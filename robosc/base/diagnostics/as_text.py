@@ -55,17 +55,17 @@ def _render(finding: Diagnostic, lines: list[str], paint: Callable[[Part, str], 
     place = f"{visible(finding.file)}:{finding.span.line}:{finding.span.column}:"
     severity: Part = "error" if finding.severity is Severity.ERROR else "warning"
     head = f"{paint('place', place)} {paint(severity, f'{severity}:')}"
-    shown = [f"{head} {_told(finding.message)} {paint('rule', f'[{finding.rule}]')}"]
+    shown = [f"{head} {_escape(finding.message)} {paint('rule', f'[{finding.rule}]')}"]
     if finding.span.line <= len(lines):
-        line, carets = underlined(finding, lines[finding.span.line - 1])
+        line, carets = underline(finding, lines[finding.span.line - 1])
         indent = len(carets) - len(carets.lstrip())
         shown += [_MARGIN + line, _MARGIN + carets[:indent] + paint("caret", carets[indent:])]
     if finding.hint:
-        shown.append(f"{_MARGIN}{paint('hint', 'hint:')} {_told(finding.hint)}")
+        shown.append(f"{_MARGIN}{paint('hint', 'hint:')} {_escape(finding.hint)}")
     return "\n".join(shown) + "\n"
 
 
-def underlined(finding: Diagnostic, line: str) -> tuple[str, str]:
+def underline(finding: Diagnostic, line: str) -> tuple[str, str]:
     """Return the first line of a finding as a terminal shows it, and the carets under its span.
 
     Tabs are expanded. A wide character takes two columns and a combining one none. If the span has several lines, the
@@ -98,7 +98,7 @@ def _shown(text: str) -> str:
     return "".join(shown)
 
 
-def _told(text: str) -> str:
+def _escape(text: str) -> str:
     return visible(text if len(text) <= _LONGEST_TEXT else f"{text[:_LONGEST_TEXT]} …")
 
 

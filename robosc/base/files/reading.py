@@ -27,7 +27,7 @@ _KINDS = {
 }
 
 _Identity = tuple[int, int]
-#: Inputs that were read within `noting`: from their identity to the path by which each was named.
+#: Inputs that were read within `record_inputs`: from their identity to the path by which each was named.
 _noted: ContextVar[dict[_Identity, str] | None] = ContextVar("noted", default=None)
 
 
@@ -37,12 +37,12 @@ def read(path: str | os.PathLike[str], *, is_input: bool = True) -> bytes:
     Raises OSError if the file cannot be read, is not regular (then it is not opened), or has more than MOST_BYTES.
     """
     name = os.fspath(path)
-    with opened(name, is_input=is_input, buffering=0) as file:
+    with open_file(name, is_input=is_input, buffering=0) as file:
         return _bounded(file, name)
 
 
 @contextmanager
-def opened(path: str | os.PathLike[str], *, is_input: bool = True, buffering: int = -1) -> Iterator[IO[bytes]]:
+def open_file(path: str | os.PathLike[str], *, is_input: bool = True, buffering: int = -1) -> Iterator[IO[bytes]]:
     """Open a regular file of any size for binary reading; `is_input` is as for `read`. Raises OSError."""
     name = os.fspath(path)
     try:
@@ -69,7 +69,7 @@ def read_stdin(name: str) -> bytes:
 
 
 @contextmanager
-def noting() -> Iterator[None]:
+def record_inputs() -> Iterator[None]:
     """Record the inputs that `read` reads within the `with` block, so that nothing overwrites them."""
     token = _noted.set({})
     try:
@@ -78,8 +78,8 @@ def noting() -> Iterator[None]:
         _noted.reset(token)
 
 
-def input_named(found: os.stat_result) -> str | None:
-    """Return the name by which this file was read within `noting`, or None if it was not.
+def input_name(found: os.stat_result) -> str | None:
+    """Return the name by which this file was read within `record_inputs`, or None if it was not.
 
     The file is identified by its device and inode, so that links do not hide it.
     """
@@ -87,7 +87,7 @@ def input_named(found: os.stat_result) -> str | None:
 
 
 def inputs() -> list[str]:
-    """Return the names of all files that were read within `noting`, in the order of their first reading."""
+    """Return the names of all files that were read within `record_inputs`, in the order of their first reading."""
     return list((_noted.get() or {}).values())
 
 

@@ -49,7 +49,7 @@ def write(trees: Mapping[Path, Mapping[str, str]]) -> list[Path]:
     text keeps its time of change, and other files are not touched. Scripts (`#!`) become executable.
 
     Raises OutputError, before any file has changed, if a text cannot be staged; if a path leads out of its folder (by
-    `..`, an absolute path or a link) or has two texts; if a file would replace an input (`files.reading.noting`)
+    `..`, an absolute path or a link) or has two texts; if a file would replace an input (`files.reading.record_inputs`)
     or anything but a regular file; or if another process keeps writing to a folder.
     """
     with _Signals() as signals:
@@ -97,7 +97,7 @@ def open_log(path: str | os.PathLike[str]) -> int:
     """Open a file for appending lines, and return its descriptor.
 
     The file may also be a character device, or a pipe with a reader. Raises OSError, also if the file was read within
-    `robosc.base.files.reading.noting`.
+    `robosc.base.files.reading.record_inputs`.
     """
     wanted = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_NOCTTY", 0)
     descriptor = os.open(path, wanted | getattr(os, "O_NONBLOCK", 0), 0o666)
@@ -105,7 +105,7 @@ def open_log(path: str | os.PathLike[str]) -> int:
     fault = None
     if not any(test(found.st_mode) for test in (stat.S_ISREG, stat.S_ISCHR, stat.S_ISFIFO)):
         fault = f"this is {reading.kind(found.st_mode)}, no file for a log"
-    elif reading.input_named(found) is not None:
+    elif reading.input_name(found) is not None:
         fault = "this call has read it: it can't be the log, too"
     if fault is not None:
         os.close(descriptor)
@@ -167,7 +167,7 @@ def _refuse_existing(path: Path, found: os.stat_result) -> None:
     if not stat.S_ISREG(found.st_mode):
         what = "a link" if stat.S_ISLNK(found.st_mode) else reading.kind(found.st_mode)
         raise OutputError(f"{path} is {what}: nothing but a regular file is replaced")
-    name = reading.input_named(found)
+    name = reading.input_name(found)
     if name is not None:
         also = "" if Path(name) == path else f", as {name}"
         raise OutputError(f"{path} was read by this call{also}: what is read is not written over")

@@ -7,8 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
-from robosc.base.files.reading import MOST_BYTES, opened
-from robosc.base.recordings.bounds import BoundError, bounded, decompressed, require_plain
+from robosc.base.files.reading import MOST_BYTES, open_file
+from robosc.base.recordings.bounds import BoundError, decompress, limit_decompression, require_plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -42,7 +42,7 @@ def recorded_texts(path: str) -> Iterator[RecordedText]:
     if found.is_dir() and not (found / "metadata.yaml").is_file():
         raise RecordingError(f"{path} is a folder without a metadata.yaml: it is no recording")
     # rosbags opens folders by itself.
-    with nullcontext() if found.is_dir() else opened(path) as file, bounded(found):
+    with nullcontext() if found.is_dir() else open_file(path) as file, limit_decompression(found):
         try:
             require_plain(found)
         except BoundError as error:
@@ -98,8 +98,6 @@ def _mcap_records(file: IO[bytes]) -> Iterator[Any]:
 
     for record in StreamReader(file, emit_chunks=True, record_size_limit=MOST_BYTES).records:
         if isinstance(record, Chunk):
-            yield from breakup_chunk(
-                replace(record, compression="", data=decompressed(record.data, record.compression))
-            )
+            yield from breakup_chunk(replace(record, compression="", data=decompress(record.data, record.compression)))
         else:
             yield record

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from robosc.base.files.resources import locate
 from robosc.base.ros_types.folders import MOST_FOLDERS, Share, Workspace
-from robosc.base.ros_types.wire import FOLDERS, DefinitionError, Fields, Nested, Section, Sequence, WireType
+from robosc.base.ros_types.wire import FOLDERS, DefinitionError, Fields, NestedType, Section, Sequence, WireType
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -65,15 +65,15 @@ class RosDistribution:
             self._known[key] = next((fields for fields in found if fields is not None), None)
         return self._known[key]
 
-    def reached(
+    def type_at(
         self, package: str, name: str, section: Section, path: Iterable[str]
     ) -> tuple[WireType, Section] | None:
         """Return the type at the end of a path of fields and positions, with its section, or None if unknown."""
-        found: WireType | None = Nested(package, name)
+        found: WireType | None = NestedType(package, name)
         for step in path:
             if step.isdigit():
                 found = found.at(int(step)) if isinstance(found, Sequence) else None
-            elif isinstance(found, Nested):
+            elif isinstance(found, NestedType):
                 try:
                     fields = self.fields(found.package, found.name, section)
                 except DefinitionError:
@@ -116,9 +116,10 @@ class RosTypes:
             ],
         }
         #: ROS 2, then ROS 1.
-        self._given = {ros: [Workspace(folder, ros) for folder in given] for ros in installed}
+        self._workspaces = {ros: [Workspace(folder, ros) for folder in given] for ros in installed}
         self.distributions = [
-            RosDistribution(ros, [*self._given[ros], *shares, Share(_SHIPPED)]) for ros, shares in installed.items()
+            RosDistribution(ros, [*self._workspaces[ros], *shares, Share(_SHIPPED)])
+            for ros, shares in installed.items()
         ]
 
     def distribution(self, ros: int) -> RosDistribution:
@@ -144,7 +145,7 @@ class RosTypes:
 
         If a folder is too large to be searched, the hint is to name a smaller one.
         """
-        large = next((found.folder for found in self._given["ROS 2"] if found.is_too_large), None)
+        large = next((found.folder for found in self._workspaces["ROS 2"] if found.is_too_large), None)
         if large is None:
             return MAKE_KNOWN
         return (

@@ -22,7 +22,7 @@ _MOST_HIDDEN = 8
 _STRINGS = (Kind.STRING, Kind.OPEN_STRING)
 
 
-class Checked(Protocol):
+class CheckedModel(Protocol):
     """A checked model; `findings` are those of reading and of the rules, including imported files."""
 
     @property
@@ -70,7 +70,7 @@ class _Offsets:
 
 
 def objection(
-    before: Checked, after: Checked, edits: Mapping[str, Sequence[Edit]], mended: Sequence[Diagnostic] = ()
+    before: CheckedModel, after: CheckedModel, edits: Mapping[str, Sequence[Edit]], mended: Sequence[Diagnostic] = ()
 ) -> str | None:
     """Return why the edits make a model worse, in words; None if they do not.
 
@@ -90,7 +90,9 @@ class Safety(Enum):
     HARMFUL = auto()
 
 
-def safety_of(finding: Diagnostic, edits: Sequence[Edit], before: Checked, check: Callable[[str], Checked]) -> Safety:
+def safety_of(
+    finding: Diagnostic, edits: Sequence[Edit], before: CheckedModel, check: Callable[[str], CheckedModel]
+) -> Safety:
     """Return the effect of edits of a file that should mend a finding in it.
 
     The edits are safe if `safe_edits` may use them; `check` is the argument of `safe_edits`. They are harmful if the
@@ -107,7 +109,7 @@ def safety_of(finding: Diagnostic, edits: Sequence[Edit], before: Checked, check
     return Safety.HARMFUL if comparison.is_harmful(finding) else Safety.DOUBTFUL
 
 
-def safe_edits(before: Checked, check: Callable[[str], Checked]) -> list[Edit]:
+def safe_edits(before: CheckedModel, check: Callable[[str], CheckedModel]) -> list[Edit]:
     """Return the edits that leave a file no worse, for findings with exactly one way to mend them.
 
     `check` reads and checks the model with another text of the file. Syntax errors come first: other edits are returned
@@ -121,7 +123,9 @@ def safe_edits(before: Checked, check: Callable[[str], Checked]) -> list[Edit]:
     return _edits(_safe(syntax, before, check) or _safe(others, before, check))
 
 
-def _safe(findings: Sequence[Diagnostic], before: Checked, check: Callable[[str], Checked]) -> Sequence[Diagnostic]:
+def _safe(
+    findings: Sequence[Diagnostic], before: CheckedModel, check: Callable[[str], CheckedModel]
+) -> Sequence[Diagnostic]:
     """Return a large set of these findings that can be mended together."""
     text = before.reading.file.text
     chosen = _apart(findings)
@@ -141,7 +145,7 @@ def _safe(findings: Sequence[Diagnostic], before: Checked, check: Callable[[str]
     return both if objection(before, check(text.after(edits)), {text.file: edits}, both) is None else first
 
 
-def _leads_on(finding: Diagnostic, before: Checked, check: Callable[[str], Checked]) -> bool:
+def _leads_on(finding: Diagnostic, before: CheckedModel, check: Callable[[str], CheckedModel]) -> bool:
     """Return whether mending a syntax error reveals others that can be mended, too, with fewer left in the end."""
     if finding.rule != "syntax":
         return False
@@ -183,7 +187,7 @@ def _edits(findings: Iterable[Diagnostic]) -> list[Edit]:
 class _Comparison:
     """Comparison of a model before and after edits."""
 
-    def __init__(self, before: Checked, after: Checked, edits: Mapping[str, Sequence[Edit]]) -> None:
+    def __init__(self, before: CheckedModel, after: CheckedModel, edits: Mapping[str, Sequence[Edit]]) -> None:
         self._before, self._after = before, after
         self._files = before.reading.files
         self._files_after = after.reading.files
@@ -321,7 +325,7 @@ class _Comparison:
                         yield name
 
 
-def _syntax_errors(checked: Checked) -> list[Diagnostic]:
+def _syntax_errors(checked: CheckedModel) -> list[Diagnostic]:
     return [finding for finding in checked.findings if finding.rule == "syntax"]
 
 

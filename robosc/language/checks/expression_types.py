@@ -12,8 +12,8 @@ from robosc.language.checks.rule import Finding
 from robosc.language.checks.type_repairs import equality_repair, repair
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
-from robosc.model.semantics.naming import written
-from robosc.model.semantics.operators import SYMBOLS, Operator, Rule, operator_of
+from robosc.model.semantics.naming import escape_keyword
+from robosc.model.semantics.operators import SYMBOLS, Operator, TypeRule, operator_of
 from robosc.model.semantics.typing import (
     BOOLEAN,
     DOUBLE,
@@ -66,9 +66,9 @@ class Place:
 
 _STORE_REASON = "store it in a variable by `on error from … do why := error`, and read the variable"
 #: Argument types of functions that take no basic type: a test of a type, and its name.
-_FITTING: Mapping[Rule, tuple[Callable[[Type], bool], str]] = {
-    Rule.SIZE: (lambda found: isinstance(found, ArrayType) or found == STRING, "an array or a string"),
-    Rule.ELEMENTS: (
+_FITTING: Mapping[TypeRule, tuple[Callable[[Type], bool], str]] = {
+    TypeRule.SIZE: (lambda found: isinstance(found, ArrayType) or found == STRING, "an array or a string"),
+    TypeRule.ELEMENTS: (
         lambda found: isinstance(found, ArrayType) and (is_number(found.element) or found.element == UNKNOWN),
         "an array of integers or doubles",
     ),
@@ -180,14 +180,14 @@ class ExpressionCheck:
         self.findings.append(Finding(element, message, hint))
 
     def _operator(self, operator: ex.Expression, row: Operator, types: list[Type]) -> Type:
-        if row.rule is Rule.EQUALITY:
+        if row.rule is TypeRule.EQUALITY:
             self._equality(operator, types)
         elif isinstance(operator, ex.Addition) and {*types} == {STRING}:
             if self.place.restriction is not Restriction.CONSTANT:
                 hint = "declare a `constant` for the whole text"
                 self.report(operator, "strings are joined where this is not constant, expected a constant", hint)
         else:
-            wanted = {Rule.LOGICAL: BOOLEAN, Rule.INTEGER: INTEGER, Rule.ROUNDING: DOUBLE}.get(row.rule)
+            wanted = {TypeRule.LOGICAL: BOOLEAN, TypeRule.INTEGER: INTEGER, TypeRule.ROUNDING: DOUBLE}.get(row.rule)
             fits, names_wanted = _FITTING.get(row.rule, (is_number, "integer or double"))
             what = "argument" if row.parameters else "operand"
             for operand, found in zip(operands(operator), types, strict=True):
@@ -260,7 +260,7 @@ class ExpressionCheck:
                 "store it in a variable by `on response from … do variable := value`, and read the variable",
             )
         if isinstance(item, rsc.Component):
-            members = [f"{written(item.name)}.{written(member)}" for member in _members(item)]
+            members = [f"{escape_keyword(item.name)}.{escape_keyword(member)}" for member in _members(item)]
             message = f"component `{item.name}` has no value of its own, expected one of its states or variables"
             if not members:
                 return message, f"`{item.name}` has neither: leave it out"

@@ -36,7 +36,7 @@ class Finding:
     relies_on_names: tuple[type[ex.Located], ...] = ()
     related: ex.Located | None = None
 
-    def said(self) -> tuple[str, tuple[Edit, ...], tuple[Alternative, ...]]:
+    def fixes(self) -> tuple[str, tuple[Edit, ...], tuple[Alternative, ...]]:
         """Return the hint, and its edits in the file of the element or the alternatives to choose from."""
         match self.hint:
             case Repair(said, None) | str(said):
@@ -102,7 +102,7 @@ InterfaceCheck: TypeAlias = "Callable[[rsc.Base, RosTypes], Iterator[Finding]]"
 
 
 @dataclass(frozen=True)
-class Rule:
+class CheckRule:
     """A rule: its identifier, its severity, and a function that yields its violations in one robot or library."""
 
     id: str
@@ -111,7 +111,7 @@ class Rule:
 
 
 #: All rules by identifier, once their modules are imported.
-RULES: dict[str, Rule] = {}
+RULES: dict[str, CheckRule] = {}
 
 
 def rule(identifier: str, severity: Severity = Severity.ERROR) -> Callable[[Check], Check]:
@@ -133,7 +133,7 @@ def interface_rule(identifier: str, severity: Severity = Severity.ERROR) -> Call
 
     def register(check: InterfaceCheck) -> InterfaceCheck:
         assert identifier not in RULES, f"two checks for the rule {identifier}"
-        RULES[identifier] = Rule(identifier, severity, check)
+        RULES[identifier] = CheckRule(identifier, severity, check)
         return check
 
     return register

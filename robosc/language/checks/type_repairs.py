@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 from robosc.base.diagnostics import Repair
 from robosc.language.checks.definitions import component_of
-from robosc.language.checks.edits import Choice, Insertion, Replacement, wrapped
+from robosc.language.checks.edits import Choice, Insertion, Replacement, wrap
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import data_type, event_of
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.printing import RoboscPrinter
 from robosc.model.semantics.typing import (
     BOOLEAN,
@@ -52,7 +52,7 @@ def repair(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
     """
     source = _source(expression) if isinstance(wanted, EnumType) else None
     if source and isinstance(wanted, EnumType) and declared_type(wanted.definition.type) == found:
-        name = written(wanted.definition.name)
+        name = escape_keyword(wanted.definition.name)
         hint = f"declare {source[0]} with the type `{name}`, whose rules read this data"
         return Replacement(hint, name, source[1], is_choice=True)
     if isinstance(found, (ObjectType, ArrayType)) or found == NONE:
@@ -68,7 +68,7 @@ def repair(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
             return f"write an object value, such as `{{ {first.name}: … }}`" if first else "write `{}`"
         case ArrayType():
             hint = "write an array, such as `[1.0, 0.0]`"
-            return wrapped(hint, "[", "]", expression, is_choice=True) if found == wanted.element else hint
+            return wrap(hint, "[", "]", expression, is_choice=True) if found == wanted.element else hint
         case BasicType.NONE:
             return "leave the provide statement out: there is no data to send along"
     return _conversion(expression, found, wanted)
@@ -93,7 +93,7 @@ def literal_repair(expression: ex.Expression, found: Type, wanted: Type) -> Repa
         case ex.StringLiteral(), BasicType.BOOLEAN if inner.value in {"true", "false"}:
             text = inner.value
         case ex.StringLiteral(), EnumType() if inner.value in _values(wanted):
-            text = written(inner.value)
+            text = escape_keyword(inner.value)
     return Repair(f"write `{text}`", text) if text is not None and found != wanted else None
 
 
@@ -117,7 +117,7 @@ def equality_repair(operator: ex.Equation | ex.Inequation, left: Type, right: Ty
 
 def _in_place(expression: ex.Expression, names: Iterable[str]) -> tuple[Replacement, ...]:
     """Return one replacement of the expression for each name."""
-    return tuple(Replacement(f"write `{written(name)}`", written(name), expression) for name in names)
+    return tuple(Replacement(f"write `{escape_keyword(name)}`", escape_keyword(name), expression) for name in names)
 
 
 def _source(expression: ex.Expression) -> tuple[str, rsc.DataType] | None:
@@ -133,7 +133,7 @@ def _source(expression: ex.Expression) -> tuple[str, rsc.DataType] | None:
     communication = around.communicationType.communicationType if around and around.communicationType else None
     if around is None or communication is None:
         return None
-    name = f"`{written(communication.name)}`"
+    name = f"`{escape_keyword(communication.name)}`"
     if isinstance(communication, rsc.Message):
         return name, communication.type
     declared = data_type(communication, event_of(around.communicationType, around.resultType))
@@ -149,12 +149,12 @@ def _part(whole: ex.Expression, found: Type, wanted: Type) -> Hint:
     properties = list(found.definition.properties)
     fitting = [part for part in properties if declared_type(part.type) == wanted]
     if isinstance(wanted, ObjectType) and not fitting:
-        return f"declare what gives the data and what takes it with one type, such as `{found.written}`"
+        return f"declare what gives the data and what takes it with one type, such as `{found.qualified_name}`"
     fitting = fitting or properties
     if not fitting:
         return "it has none to read"
-    hint = f"read one of its properties, such as `{_text(whole)}.{written(fitting[0].name)}`"
-    names = [written(part.name) for part in fitting]
+    hint = f"read one of its properties, such as `{_text(whole)}.{escape_keyword(fitting[0].name)}`"
+    names = [escape_keyword(part.name) for part in fitting]
     ways = (Insertion(f"write `{_text(whole)}.{name}`", f".{name}", whole, behind=True) for name in names)
     return Choice(hint, tuple(ways))
 
@@ -171,7 +171,7 @@ def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
             return "write a whole number or declare it double: a double is never rounded"
         why = "`/` always gives a double" if isinstance(expression, ex.Division) else "no double is rounded by itself"
         hint = f"write `round({_text(expression).strip('()')})` or declare it double: {why}"
-        return wrapped(hint, "round(", ")", expression, is_choice=True)
+        return wrap(hint, "round(", ")", expression, is_choice=True)
     if isinstance(found, EnumType):
         return "compare an enum's values by `=` only"
     ways = tuple(Replacement(f"write `{text}`", text, expression) for text in _LITERALS[wanted][0])
@@ -181,7 +181,7 @@ def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
 def _compared(expression: ex.Expression, found: Type) -> Hint | None:
     """Return a comparison that has the value as one side."""
     if isinstance(found, EnumType):
-        texts = [f"= {written(value)}" for value in _values(found)]
+        texts = [f"= {escape_keyword(value)}" for value in _values(found)]
         ways = (
             _around(f"write `{_text(expression)} {text}`", expression, "", f" {text}", is_choice=False)
             for text in texts
@@ -199,11 +199,11 @@ def _around(hint: str, expression: ex.Expression, before: str, behind: str, *, i
         before, behind = f"({before}", f"{behind})"
     if not isinstance(expression, rsc.Access):
         before, behind = f"{before}(", f"){behind}"
-    return wrapped(hint, before, behind, expression, is_choice=is_choice)
+    return wrap(hint, before, behind, expression, is_choice=is_choice)
 
 
 def _alternatives(enum: EnumType) -> str:
-    return ", ".join(f"`{written(value)}`" for value in _values(enum))
+    return ", ".join(f"`{escape_keyword(value)}`" for value in _values(enum))
 
 
 def _values(enum: EnumType) -> list[str]:
@@ -215,4 +215,6 @@ def _text(expression: ex.Expression) -> str:
     if not isinstance(expression, rsc.Access):
         return "(…)"
     text, own = RoboscPrinter()(expression), component_of(expression)
-    return text.removeprefix(f"{written(own.name)}.") if own is not None and own is expression.component else text
+    return (
+        text.removeprefix(f"{escape_keyword(own.name)}.") if own is not None and own is expression.component else text
+    )

@@ -18,14 +18,14 @@ class CifFaultError(Exception):
 
     def __init__(self, read: Any, rule: str, message: str, repair: Repair | str | None = None) -> None:
         super().__init__(message)
-        self.read = read
+        self.node = read
         self.rule = rule
         self.message = message
         self.repair = repair
 
     def finding(self) -> Diagnostic:
         """Return the fault as a finding in its text."""
-        return text_of(self.read).error(self.rule, *span(self.read), self.message, self.repair)
+        return text_of(self.node).error(self.rule, *span(self.node), self.message, self.repair)
 
     def warning(self) -> Diagnostic:
         """Return the fault as a finding that leaves the model usable."""
@@ -52,7 +52,7 @@ def span(read: Any) -> tuple[int, int]:
     return read._tx_position, read._tx_position_end  # noqa: SLF001 - textX has no public attribute for them
 
 
-def located(read: Any) -> Place:
+def place_of(read: Any) -> Place:
     """Return the place of an object of the grammar."""
     return text_of(read).source(*span(read))
 

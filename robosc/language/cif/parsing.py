@@ -100,7 +100,7 @@ def parse(text: Text) -> tuple[Any, list[Diagnostic]]:
     while True:
         try:
             if not findings:
-                return _made(text), findings
+                return _parse(text), findings
             _grammar()._parser_blueprint.clone().parse(content)  # noqa: SLF001 - what model_from_str does first
         except textx.TextXSyntaxError as fault:
             failed = fault.__cause__
@@ -112,7 +112,7 @@ def parse(text: Text) -> tuple[Any, list[Diagnostic]]:
         start, end, found = _token(content, failed.position)
         if findings and (failed.position <= reported or found in {"end", ""}):
             return None, findings  # This fault is probably a consequence of the previous one.
-        wanted = list(dict.fromkeys(map(_wanted, failed.rules)))
+        wanted = list(dict.fromkeys(map(_expectation, failed.rules)))
         findings.append(text.error("syntax", start, end, _message(found, wanted), _hint(found, wanted)))
         if len(findings) == _MOST:
             return None, findings
@@ -140,7 +140,7 @@ def _too_deep(text: Text) -> Diagnostic | None:
         top, depth = around[-1] if around else ("", 0)
         if word in _STARTERS or (word in {"func", ";"} and top not in _BRACKETS):
             head = word == "func"  # If a semicolon comes first, `func` was a type.
-        opened = _opened(word, top, head=head)
+        opened = _opening_text(word, top, head=head)
         counts = opened in _MENDS and word != ":"
         if counts and depth == DEEPEST:
             message = f"this is nested more than {DEEPEST} levels deep"
@@ -162,7 +162,7 @@ def _close(around: list[tuple[str, int]], word: str) -> None:
         around.pop()
 
 
-def _opened(word: str, top: str, *, head: bool) -> str:
+def _opening_text(word: str, top: str, *, head: bool) -> str:
     """Return the construct that a word opens (`func` for the statements of a function), or an empty string."""
     if word == ":":
         return "func" if head and top in {"", "group"} else ""
@@ -173,7 +173,7 @@ def _opened(word: str, top: str, *, head: bool) -> str:
     return word if is_automaton or word in _BRACKETS or word == "group" else ""
 
 
-def _made(text: Text) -> Any:
+def _parse(text: Text) -> Any:
     """Return the objects of a text; a text of comments alone gets an empty specification."""
     specification = _grammar().model_from_str(text.content)
     if isinstance(specification, str):
@@ -210,7 +210,7 @@ def _statement(content: str, position: int) -> tuple[int, int]:
     return first, len(content)
 
 
-def _wanted(rule: Any) -> str:
+def _expectation(rule: Any) -> str:
     if isinstance(rule, arpeggio.EndOfFile):
         return "the end of the file"
     named = rule.rule_name and rule.rule_name in _RULES

@@ -14,7 +14,7 @@ from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.reflection import tree
 from robosc.model.semantics.printing import conjunction
-from robosc.model.semantics.walks import copied, fold, operands, parts, with_operands
+from robosc.model.semantics.walks import copy_tree, fold, operands, parts, with_operands
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -70,8 +70,8 @@ def after(condition: ex.Expression, edges: Iterable[sct.Edge]) -> ex.Expression:
         if isinstance(part, sct.LocationReference) and part.location.eContainer() in targets:
             return ex.BooleanLiteral(value=targets[part.location.eContainer()] is part.location)
         if isinstance(part, sct.VariableReference) and part.variable in values:
-            return copied(values[part.variable])
-        return with_operands(part, given) if given else copied(part)
+            return copy_tree(values[part.variable])
+        return with_operands(part, given) if given else copy_tree(part)
 
     return fold(replaced, condition, operands)
 
@@ -80,7 +80,7 @@ def _enabled(edge: sct.Edge) -> Iterator[ex.Expression]:
     if len(edge.target.eContainer().locations) > 1:
         yield sct.LocationReference(location=edge.eContainer())
     if edge.guard is not None:
-        yield copied(edge.guard)
+        yield copy_tree(edge.guard)
 
 
 def _changed(edge: sct.Edge) -> Iterator[Element]:

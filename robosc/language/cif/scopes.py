@@ -1,7 +1,7 @@
 """Names of a specification: groups, automata, instances of definitions, and their declarations.
 
 `Specification` declares all names and creates every instance of a definition. An instance is a scope like a group or an
-automaton, but its names are looked up around the definition. A declaration is a `Declared`. The element behind a
+automaton, but its names are looked up around the definition. A declaration is a `Declaration`. The element behind a
 parameter is looked up around the instance.
 """
 
@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robosc.base.diagnostics import Repair
-from robosc.language.cif.faults import CHANNELS, CifFaultError, construct, located
+from robosc.language.cif.faults import CHANNELS, CifFaultError, construct, place_of
 from robosc.language.cif.parsing import identifier
 from robosc.language.syntax_messages import closest
 from robosc.model import sct
@@ -35,19 +35,19 @@ _LISTS = {
 
 
 @dataclass(eq=False)
-class Declared:
+class Declaration:
     """A named element; `kind` is the grammar rule of its declaration.
 
-    `read` is its own object of the grammar, and `outer` that of the statement with its type. `made` is the element of
-    the sct metamodel that was created for it.
+    `node` is its own object of the grammar, and `outer` that of the statement with its type. `element` is the element
+    of the sct metamodel that was created for it.
     """
 
     kind: str
     name: str
-    read: Any
+    node: Any
     outer: Any
     scope: Scope
-    made: Any = None
+    element: Any = None
     #: Type of a variable.
     type: Any = None
     #: Fault for which a variable was not created.
@@ -58,7 +58,7 @@ class Declared:
 class Argument:
     """An argument of an instance: its expression, and the element that the expression names (`named`)."""
 
-    read: Any
+    node: Any
     scope: Scope
     parameter: Any
     named: Name | CifFaultError | None = None
@@ -74,12 +74,12 @@ class Scope:
 
     path: str
     around: Scope | None
-    read: Any
+    node: Any
     kind: str | None = None
     bodies: list[Any] = field(default_factory=list)
     names: dict[str, Name] = field(default_factory=dict)
     children: list[Scope] = field(default_factory=list)
-    events: list[Declared] = field(default_factory=list)
+    events: list[Declaration] = field(default_factory=list)
     plant: sct.Plant | None = None
     definition: Any = None
     #: The enclosing scope by its absolute name.
@@ -97,7 +97,7 @@ class Scope:
                     yield declaration
 
 
-Name: TypeAlias = "Declared | Argument | Scope | sct.Location | ex.EnumerationLiteral"
+Name: TypeAlias = "Declaration | Argument | Scope | sct.Location | ex.EnumerationLiteral"
 
 
 def plain(identifier: str) -> str:
@@ -105,7 +105,7 @@ def plain(identifier: str) -> str:
     return identifier.replace("$", "")
 
 
-def _meant(name: str, position: int, known: Iterable[str]) -> Repair | None:
+def _similar_name(name: str, position: int, known: Iterable[str]) -> Repair | None:
     """Return the repair that replaces one part of a name by the closest known name, or None if none is close."""
     absolute = name[0] if name[0] in ".^" else ""
     parts = name.lstrip(".^").split(".")
@@ -179,7 +179,7 @@ class Specification:
             seen.update(known.names)
             known = None if name[0] in ".^" else known.around
         if found is None:
-            repair = _meant(name, 0, seen)
+            repair = _similar_name(name, 0, seen)
             if repair is None and name[0] == "." and first in self.root.names:
                 repair = Repair(
                     f"in a definition `.` begins there; from the file's root it is `^{name[1:]}`", f"^{name[1:]}"
@@ -193,7 +193,10 @@ class Specification:
                     read, "unresolved-reference", f"`{whole}` is no group and no automaton: nothing is in it"
                 )
             if part not in inside.names:
-                message, repair = f"there is no `{part}` in `{inside.path}`", _meant(name, position, inside.names)
+                message, repair = (
+                    f"there is no `{part}` in `{inside.path}`",
+                    _similar_name(name, position, inside.names),
+                )
                 raise CifFaultError(read, "unresolved-reference", message, repair)
             found, whole = inside.names[part], f"{whole}.{part}"
         return self.resolved(found)
@@ -216,10 +219,10 @@ class Specification:
                 raise found.named
             if found.named is not None:
                 return found.named
-            value = found.read.first.value
-            is_name = not found.read.others and not found.read.first.openings and not found.read.first.closings
+            value = found.node.first.value
+            is_name = not found.node.others and not found.node.first.openings and not found.node.first.closings
             if not is_name or type(value).__name__ != "Reference" or value.suffix:
-                raise CifFaultError(found.read, "type", "the parameter wants a name")
+                raise CifFaultError(found.node, "type", "the parameter wants a name")
             found = self.find(value.name, found.scope)
         return found
 
@@ -266,8 +269,8 @@ class Specification:
                     self._name(rule, declaration, read, scope)
 
     @staticmethod
-    def _name(rule: str, read: Any, outer: Any, scope: Scope) -> Declared:
-        declared = Declared(rule, plain(read.name), read, outer, scope)
+    def _name(rule: str, read: Any, outer: Any, scope: Scope) -> Declaration:
+        declared = Declaration(rule, plain(read.name), read, outer, scope)
         _once(scope, declared.name, read)
         scope.names[declared.name] = declared
         return declared
@@ -295,11 +298,11 @@ class Specification:
         """Declare an automaton or an instance of one, including its locations, which are names too."""
         scope.kind = read.kind or ""
         made = sct.PlantKind.requirement if read.kind == "requirement" else sct.PlantKind.behaviour
-        scope.plant = sct.Plant(name=scope.path, kind=made, source=located(scope.read))
+        scope.plant = sct.Plant(name=scope.path, kind=made, source=place_of(scope.node))
         self._declare(scope, read)
         for number, location in enumerate(read.locations):
             name = plain(location.name) if location.name else "L"
-            element = sct.Location(name=name, initial=False, marked=False, source=located(location))
+            element = sct.Location(name=name, initial=False, marked=False, source=place_of(location))
             scope.plant.locations.append(element)
             if location.name:
                 with self.reporting():
@@ -313,9 +316,9 @@ class Specification:
 
     def _instantiate(self, read: Any, around: Scope, scope: Scope) -> None:
         found = self.find(read.definition, around)
-        if not isinstance(found, Declared) or found.kind not in ("GroupDefinition", "AutomatonDefinition"):
+        if not isinstance(found, Declaration) or found.kind not in ("GroupDefinition", "AutomatonDefinition"):
             raise CifFaultError(read.definition, "type", f"`{read.definition.text}` is no definition")
-        definition = found.read
+        definition = found.node
         inside: Scope | None = around
         while inside is not None:
             if inside.definition is definition:

@@ -20,29 +20,29 @@ from robosc.language.cif.faults import (
     TAU,
     CifFaultError,
     construct,
-    located,
+    place_of,
     span,
     text_of,
 )
 from robosc.language.cif.parsing import identifier
-from robosc.language.cif.scopes import Declared, Scope, Specification, plain
+from robosc.language.cif.scopes import Declaration, Scope, Specification, plain
 from robosc.language.cif.values import Values, computed_from_itself, constant_value, literal
 from robosc.language.syntax_messages import closest
 from robosc.model import expression as ex
 from robosc.model import sct
-from robosc.model.semantics.cif_types import Type, contains, overlap, shown
+from robosc.model.semantics.cif_types import Type, contains, format_type, overlap
 from robosc.model.semantics.domains import domain
 from robosc.model.semantics.edges import edges_by_event
 from robosc.model.semantics.naming import Names
 from robosc.model.semantics.printing import conjunction, disjunction
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 
 @dataclass
-class _Taken:
+class _EventEdge:
     """An edge of the text for one of its events.
 
     `fits` has the condition under which each variable stays in range.
@@ -54,7 +54,7 @@ class _Taken:
     fits: dict[sct.DiscreteVariable, ex.Expression]
     updates: list[tuple[sct.DiscreteVariable, ex.Expression, Any]]
     target: sct.Location
-    read: Any
+    node: Any
 
 
 def to_sct(names: Specification, name: str, *, supervised: bool = False) -> sct.SupervisoryControlModel:
@@ -62,16 +62,16 @@ def to_sct(names: Specification, name: str, *, supervised: bool = False) -> sct.
 
     If the specification may be `supervised`, supervisor automata become plants.
     """
-    return _Transformation(names, name, supervised=supervised).model
+    return _CifToSct(names, name, supervised=supervised).model
 
 
-class _Transformation:
+class _CifToSct:
     def __init__(self, names: Specification, name: str, *, supervised: bool) -> None:
         self._names = names
         self._supervised = supervised
         self._values = Values(names)
         self.model = sct.SupervisoryControlModel(name=name)
-        self._controllable: dict[sct.Event, Declared] = {}
+        self._controllable: dict[sct.Event, Declaration] = {}
         self._exclusions: dict[sct.Event, list[tuple[Any, ex.Expression]]] = {}
         self._plant_invariants: list[tuple[Any, ex.Expression]] = []
         scopes = list(_inside(names.root))
@@ -101,20 +101,20 @@ class _Transformation:
         """Create the events, variables and inputs of a scope."""
         if scope.kind == "supervisor" and not self._supervised:
             with self._names.reporting():
-                raise construct(scope.read, "supervisor automata", SUPERVISORS)
+                raise construct(scope.node, "supervisor automata", SUPERVISORS)
         if scope.kind == "":
             with self._names.reporting():
-                raise construct(scope.read, "automata of no kind", "write `plant` or `requirement` before it")
+                raise construct(scope.node, "automata of no kind", "write `plant` or `requirement` before it")
         for declared in scope.events:
             control = declared.outer.control
             kind = sct.EventKind.plain
             event = sct.Event(
-                name=declared.name, controllable=control == "controllable", kind=kind, source=located(declared.read)
+                name=declared.name, controllable=control == "controllable", kind=kind, source=place_of(declared.node)
             )
-            declared.made = event
+            declared.element = event
             self._controllable[event] = declared
         for known in scope.names.values():
-            if isinstance(known, Declared) and known.kind in ("Variables", "Inputs"):
+            if isinstance(known, Declaration) and known.kind in ("Variables", "Inputs"):
                 # Until the type is known, only expressions in the type itself can read the variable.
                 known.fault = computed_from_itself(known)
                 try:
@@ -131,15 +131,15 @@ class _Transformation:
             scope.plant.locations.append(sct.Location(name="L", initial=True, marked=True))
         return scope.plant
 
-    def _variable(self, declared: Declared, scope: Scope) -> None:
+    def _variable(self, declared: Declaration, scope: Scope) -> None:
         declared.type = self._values.declared_type(declared.outer.type, scope)
         if declared.type == "int":
             raise construct(declared.outer.type, "an int without range", "write `int[lowest..highest]`")
         plant = self._plant(scope)
-        source = located(declared.read)
+        source = place_of(declared.node)
         made = sct.DiscreteVariable(name=declared.name, type=_type(declared.type), source=source)
         plant.variables.append(made)
-        declared.made = made
+        declared.element = made
         if declared.kind == "Inputs":
             value = sct.Input(name=declared.name, type=_type(declared.type), source=source)
             plant.inputs.append(value)
@@ -154,7 +154,7 @@ class _Transformation:
 
     def _keep(self, scope: Scope, used: set[sct.Event]) -> None:
         """Add the scope's plant to the model, with those of its events that can happen."""
-        events = [declared.made for declared in scope.events if declared.made in used]
+        events = [declared.element for declared in scope.events if declared.element in used]
         if events:
             plant = self._plant(scope)
             inputs = list(plant.events)
@@ -177,8 +177,12 @@ class _Transformation:
     def _enumerations(self) -> None:
         for scope in _inside(self._names.root):
             for declared in scope.names.values():
-                if isinstance(declared, Declared) and declared.kind == "Enumeration" and declared.made is not None:
-                    self.model.enumerations.append(declared.made)
+                if (
+                    isinstance(declared, Declaration)
+                    and declared.kind == "Enumeration"
+                    and declared.element is not None
+                ):
+                    self.model.enumerations.append(declared.element)
 
     # Automata
 
@@ -186,11 +190,13 @@ class _Transformation:
         """Create the initial values and edges of an automaton."""
         for declared in scope.names.values():
             with self._names.reporting():
-                if isinstance(declared, Declared) and declared.kind in ("Constants", "Algebraics"):
+                if isinstance(declared, Declaration) and declared.kind in ("Constants", "Algebraics"):
                     self._values.known(declared)
-                elif isinstance(declared, Declared) and declared.kind == "Variables" and declared.made is not None:
+                elif (
+                    isinstance(declared, Declaration) and declared.kind == "Variables" and declared.element is not None
+                ):
                     self._initialise(declared, scope)
-        taken: list[_Taken] = []
+        taken: list[_EventEdge] = []
         initial = False
         for location, element in _elements(scope):
             initial = initial or type(element).__name__ == "LocationInitial"
@@ -201,9 +207,9 @@ class _Transformation:
             self._edges_of(taken, scope)
             if not initial:
                 message = f"`{scope.path}` has no initial location"
-                raise CifFaultError(scope.read, "initial-state", message, "write `initial;` in one")
+                raise CifFaultError(scope.node, "initial-state", message, "write `initial;` in one")
 
-    def _edges_of(self, taken: list[_Taken], scope: Scope) -> None:
+    def _edges_of(self, taken: list[_EventEdge], scope: Scope) -> None:
         """Create the edges and the requirements of an automaton."""
         used = self._alphabet(taken, scope)
         watched = self._events(scope, "Monitor")
@@ -216,14 +222,14 @@ class _Transformation:
             if requirement and event not in (watched or ()):
                 self._require(edges, event, scope)
 
-    def _alphabet(self, taken: Iterable[_Taken], scope: Scope) -> list[sct.Event]:
+    def _alphabet(self, taken: Iterable[_EventEdge], scope: Scope) -> list[sct.Event]:
         """Return the events in which an automaton takes part."""
         declared = self._events(scope, "Alphabet")
         for edge in taken:
             if declared is not None and edge.event not in declared:
                 message = f"`{edge.event.name}` is not in the alphabet of `{scope.path}`"
                 with self._names.reporting():
-                    raise CifFaultError(edge.read, "cif-declaration", message, "add it there")
+                    raise CifFaultError(edge.node, "cif-declaration", message, "add it there")
         return list(dict.fromkeys(edge.event for edge in taken)) if declared is None else declared
 
     def _events(self, scope: Scope, rule: str) -> list[sct.Event] | None:
@@ -232,15 +238,15 @@ class _Transformation:
 
     def _event(self, name: Any, scope: Scope) -> sct.Event:
         found = self._names.find(name, scope)
-        if not isinstance(found, Declared) or found.kind != "Events":
+        if not isinstance(found, Declaration) or found.kind != "Events":
             raise CifFaultError(name, "type", f"`{name.text}` is no event")
         if not found.outer.control:
             hint = f"declare `{found.name}` as `controllable` or as `uncontrollable`"
             raise construct(name, "events that are neither controllable nor uncontrollable", hint)
-        event: sct.Event = found.made
+        event: sct.Event = found.element
         return event
 
-    def _taken(self, read: Any, location: sct.Location, scope: Scope) -> Iterator[_Taken]:
+    def _taken(self, read: Any, location: sct.Location, scope: Scope) -> Iterator[_EventEdge]:
         if not read.events or any(edge_event.tau for edge_event in read.events):
             raise construct(read, "edges without an event", TAU)
         if read.urgent:
@@ -260,7 +266,7 @@ class _Transformation:
         guard = self._values.condition(read.guards, scope)
         updates, fits = self._updates(read, scope)
         for event in dict.fromkeys(events):
-            yield _Taken(location, event, guard, fits, updates, target, read)
+            yield _EventEdge(location, event, guard, fits, updates, target, read)
 
     def _updates(
         self, read: Any, scope: Scope
@@ -284,28 +290,28 @@ class _Transformation:
         if read.several or read.projection:
             raise construct(read, "updates of tuples and lists", "write a variable for each element")
         found = self._names.find(read.variable, scope)
-        if not isinstance(found, Declared) or found.kind != "Variables":
+        if not isinstance(found, Declaration) or found.kind != "Variables":
             raise CifFaultError(read, "type", f"`{read.variable.text}` is no discrete variable")
-        if found.made is None:
+        if found.element is None:
             raise found.fault
-        if found.made.eContainer() is not scope.plant:
+        if found.element.eContainer() is not scope.plant:
             message = f"`{read.variable.text}` is assigned by `{found.scope.path}` only, which declares it"
             raise CifFaultError(read, "assignment-scope", message)
         value = self._values.whole(read.value, scope)
         if not overlap(found.type, value.type):
-            message = f"`{found.name}` is {shown(found.type)}, what is assigned {shown(value.type)}"
+            message = f"`{found.name}` is {format_type(found.type)}, what is assigned {format_type(value.type)}"
             raise CifFaultError(read, "type", message)
-        return found.made, value.expression, value.type
+        return found.element, value.expression, value.type
 
-    def _place(self, edges: list[_Taken], event: sct.Event, scope: Scope, *, watching: bool) -> None:
+    def _place(self, edges: list[_EventEdge], event: sct.Event, scope: Scope, *, watching: bool) -> None:
         """Create the edges of an event in a plant; if it monitors the event, it stays if no edge can be taken."""
         plant = scope.plant
         assert plant is not None
         for edge in edges:
-            guard = None if edge.guard is None else copied(edge.guard)
-            made = sct.Edge(event=event, guard=guard, target=edge.target, source=located(edge.read))
+            guard = None if edge.guard is None else copy_tree(edge.guard)
+            made = sct.Edge(event=event, guard=guard, target=edge.target, source=place_of(edge.node))
             for variable, value, read in edge.updates:
-                made.updates.append(sct.Update(variable=variable, value=copied(value), source=located(read)))
+                made.updates.append(sct.Update(variable=variable, value=copy_tree(value), source=place_of(read)))
             edge.location.edges.append(made)
             if edge.fits:
                 self._stay_in_range(edge, plant, alone=len(edges) == 1 and not watching)
@@ -313,22 +319,24 @@ class _Transformation:
             for location in plant.locations:
                 guards = [edge.guard for edge in edges if edge.location is location]
                 if all(guard is not None for guard in guards):
-                    others = [ex.Negation(operand=copied(guard)) for guard in guards if guard is not None]
-                    stay = sct.Edge(event=event, guard=conjunction(others), target=location, source=located(scope.read))
+                    others = [ex.Negation(operand=copy_tree(guard)) for guard in guards if guard is not None]
+                    stay = sct.Edge(
+                        event=event, guard=conjunction(others), target=location, source=place_of(scope.node)
+                    )
                     location.edges.append(stay)
         elif not edges:
             never = ex.BooleanLiteral(value=False)
             location = plant.locations[0]
-            location.edges.append(sct.Edge(event=event, guard=never, target=location, source=located(scope.read)))
+            location.edges.append(sct.Edge(event=event, guard=never, target=location, source=place_of(scope.node)))
 
-    def _stay_in_range(self, edge: _Taken, plant: sct.Plant, *, alone: bool) -> None:
+    def _stay_in_range(self, edge: _EventEdge, plant: sct.Plant, *, alone: bool) -> None:
         """Add the requirement that forbids an event if an edge would assign a value out of range.
 
         `alone` means that the plant has no other edge for the event, so that the event always takes this edge.
         """
-        fits = conjunction(map(copied, edge.fits.values()))
+        fits = conjunction(map(copy_tree, edge.fits.values()))
         assert fits is not None
-        premises = [*_at(edge.location, plant), *(copied(part) for part in (edge.guard,) if part is not None)]
+        premises = [*_at(edge.location, plant), *(copy_tree(part) for part in (edge.guard,) if part is not None)]
         premise = None if alone else conjunction(premises)
         self.model.requirements.append(
             sct.Requirement(
@@ -336,18 +344,18 @@ class _Transformation:
                 kind=sct.RequirementKind.needs,
                 condition=fits if premise is None else ex.Implication(left=premise, right=fits),
                 ranges=list(edge.fits),
-                text=f"range of {', '.join(variable.name for variable in edge.fits)}: {_words(edge.read)}",
-                source=located(edge.read),
+                text=f"range of {', '.join(variable.name for variable in edge.fits)}: {_words(edge.node)}",
+                source=place_of(edge.node),
             )
         )
 
-    def _require(self, edges: list[_Taken], event: sct.Event, scope: Scope) -> None:
+    def _require(self, edges: list[_EventEdge], event: sct.Event, scope: Scope) -> None:
         """Add the requirement that an event happens only if a requirement automaton has an edge for it."""
         plant = scope.plant
         assert plant is not None
         allowed = []
         for edge in edges:
-            guard = [copied(part) for part in (edge.guard,) if part is not None]
+            guard = [copy_tree(part) for part in (edge.guard,) if part is not None]
             here = conjunction([*_at(edge.location, plant), *guard])
             if here is None:
                 return
@@ -360,13 +368,13 @@ class _Transformation:
                 automaton=plant,
                 name=scope.path,
                 text=f"requirement {scope.path}",
-                source=located(scope.read),
+                source=place_of(scope.node),
             )
         )
 
-    def _initialise(self, declared: Declared, scope: Scope) -> None:
+    def _initialise(self, declared: Declaration, scope: Scope) -> None:
         """Set the initial value of a variable, or add an initial predicate if it can have several."""
-        variable, read = declared.made, declared.read
+        variable, read = declared.element, declared.node
         if read.any:
             return
         if not read.values:
@@ -378,7 +386,9 @@ class _Transformation:
             if not contains(declared.type, made.type):
                 constant = constant_value(made.expression)
                 if not isinstance(declared.type, range) or constant is None or constant not in declared.type:
-                    message = f"`{declared.name}` is {shown(declared.type)}, its initial value {shown(made.type)}"
+                    message = (
+                        f"`{declared.name}` is {format_type(declared.type)}, its initial value {format_type(made.type)}"
+                    )
                     raise CifFaultError(value, "integer-range" if isinstance(made.type, range) else "type", message)
             several.append(made.expression)
         constants = [constant_value(value) for value in several]
@@ -444,7 +454,7 @@ class _Transformation:
         stated: dict[str, Any] = {
             "name": scope.absolute(plain(read.name)) if read.name else None,
             "text": _words(read.parent if len(read.parent.invariants) == 1 else read),
-            "source": located(read),
+            "source": place_of(read),
         }
         rule = type(told).__name__
         if rule == "Condition":
@@ -461,12 +471,12 @@ class _Transformation:
         for name in told.events:
             event = self._event(name, scope)
             if plant:
-                own = copied(condition)
+                own = copy_tree(condition)
                 self._exclusions.setdefault(event, []).append((read, own if needs else ex.Negation(operand=own)))
                 continue
             kind = sct.RequirementKind.needs if needs else sct.RequirementKind.disables
             self.model.requirements.append(
-                sct.Requirement(event=event, kind=kind, condition=copied(condition), **stated)
+                sct.Requirement(event=event, kind=kind, condition=copy_tree(condition), **stated)
             )
 
     def _keep_invariants(self, plants: list[sct.Plant]) -> None:
@@ -498,7 +508,7 @@ class _Transformation:
         for event, exclusions in self._exclusions.items():
             if event in used:
                 guard = conjunction(condition for _, condition in exclusions)
-                source = located(exclusions[0][0])
+                source = place_of(exclusions[0][0])
                 location.edges.append(sct.Edge(event=event, guard=guard, target=location, source=source))
         if location.edges:
             self.model.plants.append(plant)
@@ -554,7 +564,7 @@ def _fitting(variable: sct.DiscreteVariable, value: ex.Expression, kind: Type) -
     if kind.stop - 1 > own.high:
         bounds.append((ex.LessOrEqual, own.high))
     for comparison, bound in bounds:
-        left, right = copied(value), literal(bound)
+        left, right = copy_tree(value), literal(bound)
         if isinstance(left, ex.Subtraction):
             if isinstance(left.right, ex.IntegerLiteral):
                 right = literal(left.right.value + bound)

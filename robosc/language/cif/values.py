@@ -5,15 +5,15 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from robosc.language.cif.expressions import ExpressionReader, Typed, named
+from robosc.language.cif.expressions import ExpressionReader, TypedNode, referenced_names
 from robosc.language.cif.faults import CHANNELS, CifFaultError, construct
-from robosc.language.cif.scopes import Argument, Declared, Scope, Specification, plain
+from robosc.language.cif.scopes import Argument, Declaration, Scope, Specification, plain
 from robosc.model import expression as ex
 from robosc.model import sct
-from robosc.model.semantics.cif_types import BOOLEAN, LARGEST, Type, contains, shown
+from robosc.model.semantics.cif_types import BOOLEAN, LARGEST, Type, contains, format_type
 from robosc.model.semantics.evaluation import evaluate
 from robosc.model.semantics.printing import conjunction
-from robosc.model.semantics.walks import copied, parts
+from robosc.model.semantics.walks import copy_tree, parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -38,7 +38,7 @@ _MINMAX = {"min": min, "max": max}
 
 
 #: A constant, an algebraic variable, a named type, or the argument of an algebraic parameter.
-Definition: TypeAlias = Declared | Argument
+Definition: TypeAlias = Declaration | Argument
 
 
 class Values:
@@ -54,14 +54,14 @@ class Values:
         self._size = self._size_in_all = 0
         self._exhausted: CifFaultError | None = None
 
-    def typed(self, read: Any, scope: Scope) -> Typed:
+    def typed(self, read: Any, scope: Scope) -> TypedNode:
         """Return the value of an expression in a scope. Raises CifFaultError."""
         made = self._nested(read, scope)
         if isinstance(made.type, sct.Plant):
             raise CifFaultError(read, "type", "an automaton is no value", "name one of its locations")
         return made
 
-    def whole(self, read: Any, scope: Scope) -> Typed:
+    def whole(self, read: Any, scope: Scope) -> TypedNode:
         """Return the value of an expression that has its own size limit. Raises CifFaultError."""
         self._size = 0
         return self.typed(read, scope)
@@ -72,7 +72,7 @@ class Values:
         for read in reads:
             boolean = self.whole(read, scope)
             if boolean.type != BOOLEAN:
-                raise CifFaultError(read, "type", f"a condition is bool, this is {shown(boolean.type)}")
+                raise CifFaultError(read, "type", f"a condition is bool, this is {format_type(boolean.type)}")
             made.append(boolean.expression)
         return conjunction(made)
 
@@ -84,21 +84,21 @@ class Values:
             raise CifFaultError(read, "type", "this is no constant")
         return value, range(value, value + 1) if isinstance(made.type, range) else made.type
 
-    def _nested(self, read: Any, scope: Scope) -> Typed:
+    def _nested(self, read: Any, scope: Scope) -> TypedNode:
         reader = ExpressionReader(read, lambda value, switched: self._operand(value, scope, switched), self._grow)
         return reader.result
 
-    def _operand(self, read: Any, scope: Scope, switched: sct.Plant | None) -> Typed:
+    def _operand(self, read: Any, scope: Scope, switched: sct.Plant | None) -> TypedNode:
         match type(read).__name__:
             case "Truth":
-                return Typed(read, ex.BooleanLiteral(value=read.value == "true"), BOOLEAN)
+                return TypedNode(read, ex.BooleanLiteral(value=read.value == "true"), BOOLEAN)
             case "Number":
                 value = int(read.value) if len(read.value) < 12 else LARGEST + 1
                 if value > LARGEST:
                     raise CifFaultError(read, "integer-range", "an int is at most 2147483647")
-                return Typed(read, ex.IntegerLiteral(value=value), range(value, value + 1))
+                return TypedNode(read, ex.IntegerLiteral(value=value), range(value, value + 1))
             case "Parenthesis":
-                return self._nested(read.inner, scope)._replace(read=read)
+                return self._nested(read.inner, scope)._replace(node=read)
             case "Call":
                 return self._call(read, scope)
             case "Reference":
@@ -106,10 +106,10 @@ class Values:
             case "Own":
                 if scope.plant is None:
                     raise CifFaultError(read, "type", "`self` stands in automata only")
-                return Typed(read, None, scope.plant)
+                return TypedNode(read, None, scope.plant)
         raise construct(read, *_FOREIGN[type(read).__name__])
 
-    def _call(self, read: Any, scope: Scope) -> Typed:
+    def _call(self, read: Any, scope: Scope) -> TypedNode:
         name = read.function.strip()
         if name not in ("min", "max", "abs"):
             raise construct(read, f"the function `{name}`", "synthesis computes with `min`, `max` and `abs` only")
@@ -126,50 +126,50 @@ class Values:
         bounds = [(value.type.start, value.type.stop - 1) for value in given if isinstance(value.type, range)]
         if name == "abs":
             [(low, high)] = bounds
-            return Typed(read, made, range(max(low, -high, 0), max(-low, high) + 1))
+            return TypedNode(read, made, range(max(low, -high, 0), max(-low, high) + 1))
         least, most = (_MINMAX[name](ends) for ends in zip(*bounds, strict=True))
-        return Typed(read, made, range(least, most + 1))
+        return TypedNode(read, made, range(least, most + 1))
 
-    def _reference(self, read: Any, scope: Scope, switched: sct.Plant | None) -> Typed:
+    def _reference(self, read: Any, scope: Scope, switched: sct.Plant | None) -> TypedNode:
         if read.suffix:
             what = _SUFFIXES[read.suffix[0]]
             raise construct(read, what, "write an algebraic variable for what it computes")
         if switched is not None:
             own = next((location for location in switched.locations if location.name == plain(read.name.text)), None)
             if own is not None:
-                return Typed(read, sct.LocationReference(location=own), BOOLEAN)
+                return TypedNode(read, sct.LocationReference(location=own), BOOLEAN)
         made = self._value(read, self.names.find(read.name, scope))
         if switched is not None and not isinstance(made.expression, sct.LocationReference):
             raise CifFaultError(read, "type", f"`{read.name.text}` is no location of `{switched.name}`")
         return made
 
-    def _value(self, read: Any, found: Any) -> Typed:
+    def _value(self, read: Any, found: Any) -> TypedNode:
         match found:
             case sct.Location():
-                return Typed(read, sct.LocationReference(location=found), BOOLEAN)
+                return TypedNode(read, sct.LocationReference(location=found), BOOLEAN)
             case Scope(plant=sct.Plant() as plant):
-                return Typed(read, None, plant)
+                return TypedNode(read, None, plant)
             case Argument():
                 return self._copied(read, found)
-            case Declared(kind="Constants" | "Algebraics"):
+            case Declaration(kind="Constants" | "Algebraics"):
                 return self._copied(read, found)
-            case Declared(kind="Variables" | "Inputs"):
-                if found.made is None:
+            case Declaration(kind="Variables" | "Inputs"):
+                if found.element is None:
                     # A variable that is declared later has no fault yet, but a constant cannot read it.
                     raise found.fault or CifFaultError(read, "type", "this is no constant")
-                return Typed(read, sct.VariableReference(variable=found.made), found.type)
-            case Declared(kind="Literal"):
+                return TypedNode(read, sct.VariableReference(variable=found.element), found.type)
+            case Declaration(kind="Literal"):
                 enumeration = self.enumeration(found.outer)
                 literal = next(literal for literal in enumeration.literals if literal.name == found.name)
-                return Typed(read, ex.EnumerationLiteralReference(literal=literal), enumeration)
+                return TypedNode(read, ex.EnumerationLiteralReference(literal=literal), enumeration)
         raise CifFaultError(read, "type", f"`{read.name.text}` has no value")
 
-    def _copied(self, read: Any, named: Definition) -> Typed:
-        made: Typed = self.known(named)
+    def _copied(self, read: Any, named: Definition) -> TypedNode:
+        made: TypedNode = self.known(named)
         if named not in self._sizes:
             self._sizes[named] = sum(1 for _ in parts(made.expression))
         self._grow(read, self._sizes[named])
-        return Typed(read, copied(made.expression), made.type)
+        return TypedNode(read, copy_tree(made.expression), made.type)
 
     def _grow(self, read: Any, more: int) -> None:
         """Count the nodes that a name adds to an expression. Raises CifFaultError if a size limit is exceeded."""
@@ -207,7 +207,7 @@ class Values:
             if used is None:
                 del path[last]
                 if last not in self._known:
-                    self._known[last] = self._made(last)
+                    self._known[last] = self._create(last)
             elif used in path:
                 circle = list(path)
                 self._known |= {
@@ -219,33 +219,35 @@ class Values:
     def _uses(self, found: Definition) -> Iterator[Definition]:
         """Yield the definitions and arguments that one names, except those that are keys of a `switch`."""
         scope = found.scope
-        types = [found.outer.type if found.kind != "Types" else found.read.type] if isinstance(found, Declared) else []
+        types = (
+            [found.outer.type if found.kind != "Types" else found.node.type] if isinstance(found, Declaration) else []
+        )
         reads = [
             bound for kind in types if type(kind).__name__ == "Integer" for bound in (kind.low, kind.high) if bound
         ]
         names = [kind.type for kind in types if type(kind).__name__ == "NamedType"]
-        if isinstance(found, Argument) or (found.kind != "Types" and found.read.value is not None):
-            reads.append(found.read if isinstance(found, Argument) else found.read.value)
+        if isinstance(found, Argument) or (found.kind != "Types" and found.node.value is not None):
+            reads.append(found.node if isinstance(found, Argument) else found.node.value)
         elif found.kind == "Algebraics":
             with suppress(CifFaultError):
                 reads += [equation for _, equation in self.equations(scope).get(found.name, ())]
-        for name in (*names, *(name for read in reads for name in named(read))):
+        for name in (*names, *(name for read in reads for name in referenced_names(read))):
             with suppress(CifFaultError):
                 used = self.names.find(name, scope)
-                if isinstance(used, Argument) or (isinstance(used, Declared) and used.kind in _DEFINED):
+                if isinstance(used, Argument) or (isinstance(used, Declaration) and used.kind in _DEFINED):
                     yield used
 
-    def _made(self, found: Definition) -> Any:
+    def _create(self, found: Definition) -> Any:
         """Return the value of a definition or an argument, or its fault."""
         if len(self._open) > _DEEPEST:
-            return CifFaultError(found.read, "cif-construct", "definitions lie too deep within each other")
+            return CifFaultError(found.node, "cif-construct", "definitions lie too deep within each other")
         before, self._size = self._size, 0
         self._open.add(found)
         try:
             if isinstance(found, Argument):
-                return self.typed(found.read, found.scope)
+                return self.typed(found.node, found.scope)
             if found.kind == "Types":
-                return self.declared_type(found.read.type, found.scope)
+                return self.declared_type(found.node.type, found.scope)
             return self._computed(found)
         except CifFaultError as fault:
             return fault
@@ -253,28 +255,30 @@ class Values:
             self._open.remove(found)
             self._size = before
 
-    def _computed(self, found: Declared) -> Typed:
+    def _computed(self, found: Declaration) -> TypedNode:
         """Return the value of a constant or an algebraic variable."""
         kind = self.declared_type(found.outer.type, found.scope)
         made = self._equation(found) if found.kind == "Algebraics" else self._fixed(found)
         if not (isinstance(made.type, range) if kind == "int" else contains(kind, made.type)):
-            raise CifFaultError(found.read, "type", f"`{found.name}` is {shown(kind)}, its value {shown(made.type)}")
+            raise CifFaultError(
+                found.node, "type", f"`{found.name}` is {format_type(kind)}, its value {format_type(made.type)}"
+            )
         return made
 
-    def _fixed(self, found: Declared) -> Typed:
-        value, kind = self.constant(found.read.value, found.scope)
-        return Typed(found.read, literal(value), kind)
+    def _fixed(self, found: Declaration) -> TypedNode:
+        value, kind = self.constant(found.node.value, found.scope)
+        return TypedNode(found.node, literal(value), kind)
 
-    def _equation(self, found: Declared) -> Typed:
+    def _equation(self, found: Declaration) -> TypedNode:
         """Return the value of an algebraic variable from its declaration, an equation, or an equation per location."""
-        if found.read.value is not None:
-            return self.typed(found.read.value, found.scope)
+        if found.node.value is not None:
+            return self.typed(found.node.value, found.scope)
         equations = self.equations(found.scope).get(found.name, [])
         if not equations:
             raise CifFaultError(
-                found.read, "cif-declaration", f"nothing says what `{found.name}` is", "add an equation for it"
+                found.node, "cif-declaration", f"nothing says what `{found.name}` is", "add an equation for it"
             )
-        made: Typed | None = None
+        made: TypedNode | None = None
         for location, read in reversed(equations):
             value = self.typed(read, found.scope)
             if made is None or location is None:
@@ -286,7 +290,7 @@ class Values:
                 kind = value.type
             condition = sct.LocationReference(location=location)
             choice = ex.Conditional(condition=condition, then=value.expression, otherwise=made.expression)
-            made = Typed(found.read, choice, kind)
+            made = TypedNode(found.node, choice, kind)
         assert made is not None
         return made
 
@@ -320,9 +324,9 @@ class Values:
             case "ForeignType":
                 raise construct(read, f"the type `{read.word}`", "synthesis takes `bool`, ranges of `int` and `enum`")
         found = self.names.find(read.type, scope)
-        if isinstance(found, Declared) and found.kind == "Enumeration":
+        if isinstance(found, Declaration) and found.kind == "Enumeration":
             return self.enumeration(found)
-        if not isinstance(found, Declared) or found.kind != "Types":
+        if not isinstance(found, Declaration) or found.kind != "Types":
             raise CifFaultError(read, "type", f"`{read.type.text}` is no type")
         kind: Type | str = self.known(found)
         return kind
@@ -335,14 +339,14 @@ class Values:
             raise CifFaultError(read, "integer-range", f"nothing is in int[{low}..{high}]")
         return range(low, high + 1)
 
-    def enumeration(self, declared: Declared) -> ex.Enumeration:
+    def enumeration(self, declared: Declaration) -> ex.Enumeration:
         """Return the enumeration of a declaration."""
-        if declared.made is None:
-            declared.made = ex.Enumeration(name=declared.name, origin=declared.scope.path or None)
-            declared.made.literals.extend(
-                ex.EnumerationLiteral(name=plain(literal.name)) for literal in declared.read.literals
+        if declared.element is None:
+            declared.element = ex.Enumeration(name=declared.name, origin=declared.scope.path or None)
+            declared.element.literals.extend(
+                ex.EnumerationLiteral(name=plain(literal.name)) for literal in declared.node.literals
             )
-        found: ex.Enumeration = declared.made
+        found: ex.Enumeration = declared.element
         return found
 
 
@@ -353,10 +357,10 @@ def _too_large(read: Any, what: str, most: int) -> CifFaultError:
 
 def computed_from_itself(found: Definition) -> CifFaultError:
     """Return the fault of a definition or an argument that is computed from itself."""
-    if isinstance(found, Declared):
+    if isinstance(found, Declaration):
         verb = "defined by" if found.kind == "Types" else "computed from"
-        return CifFaultError(found.read, "cyclic-definition", f"`{found.name}` is {verb} itself")
-    return CifFaultError(found.read, "cyclic-definition", "what the parameter stands for is computed from itself")
+        return CifFaultError(found.node, "cyclic-definition", f"`{found.name}` is {verb} itself")
+    return CifFaultError(found.node, "cyclic-definition", "what the parameter stands for is computed from itself")
 
 
 class _ChangingError(Exception):

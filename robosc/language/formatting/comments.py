@@ -24,13 +24,13 @@ class Space:
     comments: list[Comment] = field(default_factory=list)
     breaks: list[int] = field(default_factory=lambda: [0])
 
-    def parted(self) -> tuple[Space, Space]:
+    def split(self) -> tuple[Space, Space]:
         """Split at the first comment beside a line break, which belongs to the second part."""
         count = len(self.comments)
         at = next((index for index in range(count) if self.breaks[index] or self.breaks[index + 1]), count)
         return Space(self.comments[:at], [0] * (at + 1)), Space(self.comments[at:], self.breaks[at:])
 
-    def joined(self, other: Space) -> Space:
+    def join(self, other: Space) -> Space:
         """Return the comments of both, in order."""
         if not self.comments:
             return other
@@ -52,13 +52,13 @@ def spaces(text: str, words: Iterable[Node]) -> dict[int, Space]:
     found: dict[int, Space] = {}
     end, moved = 0, Space()
     for word in words:
-        space = moved.joined(_space(text, end, word.position))
+        space = moved.join(_space(text, end, word.position))
         moved = Space()
         if word.value in {",", "{"}:
-            space, moved = space.parted()
+            space, moved = space.split()
         found[word.position] = space
         end = word.position_end
-    found[len(text)] = moved.joined(_space(text, end, len(text)))
+    found[len(text)] = moved.join(_space(text, end, len(text)))
     return found
 
 

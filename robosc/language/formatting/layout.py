@@ -59,10 +59,10 @@ _LOOSE = {"NeedsRequirement", "ProvideStatement"}
 
 def layout(text: str, tree: Node) -> Document:
     """Return the document of a text and its parse tree by the rule `Base`."""
-    return _Layout(spaces(text, _words(tree))).file(tree, len(text))
+    return _DocumentLayout(spaces(text, _words(tree))).file(tree, len(text))
 
 
-class _Layout:
+class _DocumentLayout:
     """Creates documents of nodes. The space before a node belongs to its parent."""
 
     def __init__(self, spaces: dict[int, Space]) -> None:

@@ -18,13 +18,13 @@ from robosc.model.reflection import tree
 from robosc.model.semantics.domains import domain
 from robosc.model.semantics.edges import edges_of
 from robosc.model.semantics.printing import conjunction
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
 
-class Lowered(NamedTuple):
+class LoweredModel(NamedTuple):
     """An sct model in CIF's terms, and the original of each element.
 
     Numbers are never negative, and never outside the range of the variable that they are assigned to. A `-` occurs only
@@ -36,22 +36,22 @@ class Lowered(NamedTuple):
     originals: Mapping[Any, Any]
 
 
-def transform(model: sct.SupervisoryControlModel) -> Lowered:
+def transform(model: sct.SupervisoryControlModel) -> LoweredModel:
     """Lower a model, with its supervisor if it has one. The original model does not change.
 
     Precondition: the model does not come from CIF. Raises ModelError with findings of the rule `cif` if numbers exceed
     32 bits, or if expressions would need too many cases.
     """
-    return once((transform, model), lambda: _Transformation(model).run())
+    return once((transform, model), lambda: _SctToCif(model).run())
 
 
-class _Transformation:
+class _SctToCif:
     def __init__(self, model: sct.SupervisoryControlModel) -> None:
         self._model = model
         #: Lowered element of each element; for a location of a numbered plant, its variable and number.
-        self._made: dict[Any, Any] = {}
+        self._copies: dict[Any, Any] = {}
         self._numbered: dict[sct.Location, tuple[sct.DiscreteVariable, int]] = {}
-        self._lowering = Lowering(self._made, self._numbered)
+        self._lowering = Lowering(self._copies, self._numbered)
         #: Reason why CIF cannot express an element, by the element to report it at.
         self._faults: dict[Any, str] = {}
         self._impossible = _impossible(model)
@@ -59,18 +59,18 @@ class _Transformation:
             reference.location for _, reference in tree(model) if isinstance(reference, sct.LocationReference)
         }
 
-    def run(self) -> Lowered:
-        self._made[self._model] = model = sct.SupervisoryControlModel(name=self._model.name)
+    def run(self) -> LoweredModel:
+        self._copies[self._model] = model = sct.SupervisoryControlModel(name=self._model.name)
         for enumeration in self._model.enumerations:
-            self._made[enumeration] = made = copied(enumeration)
-            self._made |= zip(enumeration.literals, made.literals, strict=True)
+            self._copies[enumeration] = made = copy_tree(enumeration)
+            self._copies |= zip(enumeration.literals, made.literals, strict=True)
             model.enumerations.append(made)
         model.plants.extend(map(self._plant, self._model.plants))
         self._refuse()  # Values computed from numbers that are too large would be reported again.
         for plant in self._model.plants:
-            self._made[plant].edges.extend(self._edges(plant.edges))
+            self._copies[plant].edges.extend(self._edges(plant.edges))
             for location in plant.locations:
-                self._made[location].edges.extend(self._edges(location.edges))
+                self._copies[location].edges.extend(self._edges(location.edges))
         model.requirements.extend(map(self._requirement, self._model.requirements))
         for invariant in self._model.invariants:
             condition = self._condition(invariant.condition)
@@ -78,7 +78,7 @@ class _Transformation:
         if self._model.supervisor is not None:
             model.supervisor = self._supervisor(self._model.supervisor)
         self._refuse()
-        return Lowered(model, {made: original for original, made in self._made.items()})
+        return LoweredModel(model, {made: original for original, made in self._copies.items()})
 
     def _refuse(self) -> None:
         if self._faults:
@@ -97,31 +97,31 @@ class _Transformation:
 
     def _plant(self, plant: sct.Plant) -> sct.Plant:
         """Lower a plant without its edges."""
-        self._made[plant] = made = sct.Plant(name=plant.name, kind=plant.kind, origin=plant.origin)
+        self._copies[plant] = made = sct.Plant(name=plant.name, kind=plant.kind, origin=plant.origin)
         made.inputs.extend(map(self._cell, plant.inputs))
         made.variables.extend(map(self._cell, plant.variables))
         for event in plant.events:
             if event not in self._impossible:
-                self._made[event] = sct.Event(
+                self._copies[event] = sct.Event(
                     name=event.name,
                     controllable=event.controllable,
                     kind=event.kind,
-                    inputs=[self._made[carried] for carried in event.inputs],
+                    inputs=[self._copies[carried] for carried in event.inputs],
                 )
-                made.events.append(self._made[event])
+                made.events.append(self._copies[event])
         if _is_numbered(plant):
             self._number_locations(plant, made)
             return made
         nameless = plant.kind == sct.PlantKind.message and len(plant.locations) == 1
         for location in plant.locations:
             name = "" if nameless and location not in self._referred else location.name
-            self._made[location] = sct.Location(name=name, initial=location.initial, marked=location.marked)
-            made.locations.append(self._made[location])
+            self._copies[location] = sct.Location(name=name, initial=location.initial, marked=location.marked)
+            made.locations.append(self._copies[location])
         return made
 
     def _cell(self, cell: Any) -> Any:
         """Lower an input or variable. A negative range is shifted to start at 0."""
-        self._made[cell] = made = type(cell)(name=cell.name, type=copied(cell.type, self._made))
+        self._copies[cell] = made = type(cell)(name=cell.name, type=copy_tree(cell.type, self._copies))
         if isinstance(made.type, ex.EnumerationType):
             made.type.first = made.type.last = None
         if isinstance(made.type, ex.IntegerType):
@@ -131,7 +131,7 @@ class _Transformation:
                 self._faults[cell] = "its range does not fit 32 bits"
         if isinstance(cell, sct.DiscreteVariable) and cell not in self._faults:
             assert cell.initial is not None
-            made.initial = self._lowering.assigned(cell, cell.initial)
+            made.initial = self._lowering.lower_assignment(cell, cell.initial)
         return made
 
     def _number_locations(self, plant: sct.Plant, made: sct.Plant) -> None:
@@ -146,7 +146,7 @@ class _Transformation:
         made.variables.append(variable)
         made.locations.append(only)
         for number, location in enumerate(plant.locations):
-            self._made[location] = only
+            self._copies[location] = only
             self._numbered[location] = variable, number
 
     def _edges(self, edges: Iterable[sct.Edge]) -> list[sct.Edge]:
@@ -154,10 +154,10 @@ class _Transformation:
 
     def _edge(self, edge: sct.Edge) -> sct.Edge:
         guard = conjunction(filter(None, [*self._possible(edge), self._condition(edge.guard)]))
-        made = sct.Edge(event=self._made[edge.event], guard=guard, target=self._made[edge.target])
+        made = sct.Edge(event=self._copies[edge.event], guard=guard, target=self._copies[edge.target])
         for update in edge.updates:
-            value = self._lowered(None, self._lowering.assigned, update.variable, update.value)
-            made.updates.append(sct.Update(variable=self._made[update.variable], value=value))
+            value = self._lowered(None, self._lowering.lower_assignment, update.variable, update.value)
+            made.updates.append(sct.Update(variable=self._copies[update.variable], value=value))
         if edge.target in self._numbered:
             variable, number = self._numbered[edge.target]
             made.updates.append(sct.Update(variable=variable, value=ex.IntegerLiteral(value=number)))
@@ -176,15 +176,15 @@ class _Transformation:
                 low, high = domain(carried.type)
                 for place, literal in enumerate(carried.type.enumeration.literals):
                     if not low <= place <= high:
-                        read = sct.InputReference(input=self._made[carried])
-                        other = ex.EnumerationLiteralReference(literal=self._made[literal])
+                        read = sct.InputReference(input=self._copies[carried])
+                        other = ex.EnumerationLiteralReference(literal=self._copies[literal])
                         yield ex.Inequation(left=read, right=other)
 
     def _requirement(self, requirement: sct.Requirement) -> sct.Requirement:
         return sct.Requirement(
             name=requirement.name,
             text=requirement.text,
-            event=self._made[requirement.event],
+            event=self._copies[requirement.event],
             kind=requirement.kind,
             condition=self._condition(requirement.condition),
         )
@@ -200,7 +200,7 @@ class _Transformation:
                 requirement, synthesis = (
                     self._condition(part, guard.event) for part in (guard.requirement, guard.synthesis)
                 )
-                event = self._made[guard.event]
+                event = self._copies[guard.event]
                 made.guards.append(sct.EventGuard(event=event, requirement=requirement, synthesis=synthesis))
         return made
 

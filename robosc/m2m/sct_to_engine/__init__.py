@@ -17,7 +17,7 @@ from robosc.m2m.sct_to_engine.lower_timers import lower_timers
 from robosc.m2m.sct_to_engine.merge_effects import EffectTerms, merge_effects
 from robosc.m2m.sct_to_engine.name_reasons import name_reasons
 from robosc.m2m.sct_to_engine.place_state import place_inputs, place_state
-from robosc.m2m.sct_to_engine.share_conditions import Shared, share_conditions
+from robosc.m2m.sct_to_engine.share_conditions import SharedTerms, share_conditions
 from robosc.m2m.sct_to_engine.terms import Term, Terms
 from robosc.model import engine, sct
 from robosc.model.semantics.roles import Roles, event_name, plant_of
@@ -132,7 +132,7 @@ def _expression(condition: Term) -> ex.Expression | None:
     return None if condition.constant == 0 else build_expression(condition)
 
 
-def _guard(guard: GuardTerms, shared: Shared) -> engine.Guard:
+def _guard(guard: GuardTerms, shared: SharedTerms) -> engine.Guard:
 
     def build(term: Term, origins: Sequence[engine.Origin]) -> engine.Term:
         condition = build_expression(term, shared)

@@ -12,13 +12,13 @@ from robosc.model.semantics.domains import Width, working_width
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-    from robosc.m2m.sct_to_engine.share_conditions import Shared
+    from robosc.m2m.sct_to_engine.share_conditions import SharedTerms
     from robosc.m2m.sct_to_engine.terms import Term
 
 
 def build_expression(
     root: Term,
-    shared: Shared | None = None,
+    shared: SharedTerms | None = None,
     before: Collection[engine.StateVariable] = (),
     *,
     body: bool = False,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.base.diagnostics import Diagnostic, ModelError, Severity
-from robosc.m2m.sct_to_engine.alternatives import left_open
+from robosc.m2m.sct_to_engine.alternatives import remaining_guard
 from robosc.model import engine, sct
 from robosc.model import expression as ex
 from robosc.model.places import place
@@ -76,7 +76,7 @@ def _one_of(edges: Sequence[sct.Edge], lower: Lowering) -> Term:
     if _all_covered(edges, lower):
         return lower.terms.true
     denied: set[Term] = set()
-    whole = lower.terms.junction(engine.Or, [left_open(guard, denied, lower.terms) for guard in guards])
+    whole = lower.terms.junction(engine.Or, [remaining_guard(guard, denied, lower.terms) for guard in guards])
     if any(isinstance(read, engine.Input) for read in whole.reads()):
         name = event_name(edges[0].event)
         message = f"whether `{name}` can happen depends on its data, which a controller learns when it happens"

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from robosc.m2m.sct_to_engine.combine_guards import GuardTerms
     from robosc.m2m.sct_to_engine.merge_effects import EffectTerms
-    from robosc.m2m.sct_to_engine.share_conditions import Shared
+    from robosc.m2m.sct_to_engine.share_conditions import SharedTerms
 
 _ASKED = (engine.Role.cancel, engine.Role.trigger, engine.Role.silent)
 
@@ -20,7 +20,7 @@ def find_readers(
     model: engine.EngineModel,
     guards: Mapping[sct.Event, GuardTerms],
     effects: Mapping[sct.Event, EffectTerms],
-    shared: Shared,
+    shared: SharedTerms,
 ) -> None:
     """Set the readers of each event, and of each condition that is a whole conjunct of a guard."""
     read: dict[object, list[engine.Reader]] = {}
@@ -50,7 +50,7 @@ def find_readers(
         condition.readers.extend(readers([condition]))
 
 
-def _read(guard: GuardTerms, shared: Shared) -> list[object]:
+def _read(guard: GuardTerms, shared: SharedTerms) -> list[object]:
     """Return the cells that a guard reads: its shared conditions, and locations and variables for the rest."""
     cells: list[object] = []
     for term in shared.ask_for(guard):

@@ -44,7 +44,7 @@ class Lowering:
         while pending:
             wanted, parts = pending.pop()
             if parts is not None:
-                self._done[wanted] = self._made(wanted, [self._done[part] for part in parts])
+                self._done[wanted] = self._combine(wanted, [self._done[part] for part in parts])
             elif wanted not in self._done:
                 parts = _parts(wanted)
                 pending.append((wanted, parts))
@@ -92,7 +92,7 @@ class Lowering:
             ],
         )
 
-    def _made(self, wanted: _Wanted, parts: list[Term]) -> Term:
+    def _combine(self, wanted: _Wanted, parts: list[Term]) -> Term:
         expression, positive = wanted
         kind = _junction(wanted)
         if kind is not None:
@@ -100,7 +100,7 @@ class Lowering:
         if isinstance(expression, ex.Negation):
             return parts[0]
         if isinstance(expression, ex.FunctionCall):
-            return self.terms.called(expression.function, *parts)
+            return self.terms.call(expression.function, *parts)
         if isinstance(expression, (ex.BinaryExpression, ex.UnaryMinus, ex.Conditional)):
             operator = type(expression)
             return self.terms.operation(operator if positive else COMPLEMENTS.get(operator, operator), *parts)

@@ -25,7 +25,7 @@ _ROUNDS = 5
 _Owners = dict["Term", dict[object, None]]
 
 
-class Shared:
+class SharedTerms:
     """Shared terms, and the composition of other terms from them."""
 
     def __init__(self, terms: Sequence[Term], opposites: Mapping[Term, Term]) -> None:
@@ -39,7 +39,7 @@ class Shared:
             if term.operator in _JUNCTIONS:
                 self._with.setdefault(min(term.operands, key=parts.__getitem__), []).append(term)
 
-    def folded(self, kind: type[ex.Expression], operands: Sequence[Term], but: Term | None = None) -> dict[Term, Term]:
+    def fold(self, kind: type[ex.Expression], operands: Sequence[Term], but: Term | None = None) -> dict[Term, Term]:
         """Map each operand of a junction to itself or to a shared junction of several operands, long ones first.
 
         Does not use the term `but`: a shared term must not be composed of itself.
@@ -61,7 +61,7 @@ class Shared:
         """Return the operands of a term. A shared junction replaces the operands that it consists of."""
         if term.operator not in _JUNCTIONS:
             return term.operands
-        return list(dict.fromkeys(self.folded(term.operator, term.operands, term).values()))
+        return list(dict.fromkeys(self.fold(term.operator, term.operands, term).values()))
 
     def inside(self, roots: Iterable[Term]) -> dict[Term, None]:
         """Return the shared terms in `roots`, without those inside other shared terms."""
@@ -83,7 +83,7 @@ class Shared:
             false = [origin for origin, part in guard.parts if part is guard.whole]
             either = [origin for origin, part in guard.parts if part.constant is None]
             return {} if guard.whole.constant else {guard.whole: false or either}
-        stands = self.folded(engine.And, operands_of(guard.whole))
+        stands = self.fold(engine.And, operands_of(guard.whole))
         asked: dict[Term, list[engine.Origin]] = {}
         for origin, part in guard.parts:
             for operand in operands_of(part):
@@ -95,7 +95,7 @@ class Shared:
 
 def share_conditions(
     guards: Mapping[sct.Event, GuardTerms], events: Mapping[sct.Event, engine.Event], terms: Terms, *, incremental: bool
-) -> Shared:
+) -> SharedTerms:
     """Return the shared terms, inner ones first.
 
     A junction is shared if several guards or other shared conditions refer to it or to its opposite. One reference to
@@ -105,14 +105,14 @@ def share_conditions(
     found, opposites = _find(guards.values(), terms, incremental=incremental)
     denied = set(opposites.values())
     for _ in range(_ROUNDS):
-        shared = Shared(found, opposites)
+        shared = SharedTerms(found, opposites)
         called = Counter(term for guard in guards.values() for term in shared.inside(shared.ask_for(guard)))
         called.update(inner for term in found for inner in shared.inside(shared.operands(term)))
         kept = [term for term in found if called[term] > (2 if term in denied else 1)]
         if len(kept) == len(found):
             break
         found = kept
-    shared = Shared(found, opposites)
+    shared = SharedTerms(found, opposites)
     for event, guard in guards.items():
         pending = list(shared.inside(shared.ask_for(guard)))
         told = set()

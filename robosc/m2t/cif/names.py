@@ -29,7 +29,7 @@ and div in mod not or sample sub
 KEYWORDS = frozenset(_WORDS.split())
 
 
-def escaped(name: str) -> str:
+def escape_keyword(name: str) -> str:
     """Return a name of one identifier, with a dollar sign before it if it is a keyword."""
     return f"${name}" if name in KEYWORDS else name
 
@@ -66,7 +66,7 @@ class CifNames:
 
     def declared(self, element: ex.NamedElement) -> str:
         """Return the name at the element's declaration and within its plant."""
-        return escaped(self._names[element])
+        return escape_keyword(self._names[element])
 
     def used(self, element: ex.NamedElement, plant: sct.Plant | None) -> str:
         """Return the name as it is used inside a plant, or outside of all plants."""
@@ -82,4 +82,4 @@ class AbsoluteNames:
     def used(self, element: ex.NamedElement, _plant: sct.Plant | None) -> str:
         """Return a name with all its scopes."""
         around = element.eContainer().origin
-        return f"{around}.{element.name}" if around else escaped(element.name)
+        return f"{around}.{element.name}" if around else escape_keyword(element.name)

@@ -18,7 +18,7 @@ from robosc.model.semantics.roles import input_values, provide_numbers
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from robosc.m2m.sct_to_cif import Lowered
+    from robosc.m2m.sct_to_cif import LoweredModel
 
 #: Maximum number of characters in a line. A longer word gets a line of its own.
 _WIDTH = 120
@@ -27,19 +27,19 @@ _WIDTH = 120
 class Writer:
     """Writes CIF for a lowered sct model."""
 
-    def __init__(self, lowered: Lowered) -> None:
+    def __init__(self, lowered: LoweredModel) -> None:
         self._model, self._originals = lowered
         self._names = CifNames(self._model)
         self._outside = CifPrinter(self._names, None)
         original = self._originals[self._model]
         self._meanings = {**_transitions(original), **_choices(original)}
 
-    def unsupervised(self) -> str:
+    def write_plants(self) -> str:
         """Return the plants and the requirements."""
         lines = document([f"The plants and requirements of {self._model.name}."], sign="@@")
-        return folded([*lines, *self._plants("requirement automaton"), *self._requirements()])
+        return fold_lines([*lines, *self._plants("requirement automaton"), *self._requirements()])
 
-    def supervised(self, supervisor: sct.Supervisor) -> str:
+    def write_supervisor(self, supervisor: sct.Supervisor) -> str:
         """Return the plants with their supervisor: its requirements, and an automaton of its additions."""
         events = [self._names.used(guard.event, None) for guard in supervisor.guards]
         kept = [
@@ -48,7 +48,7 @@ class Writer:
             if guard.requirement is not None
         ]
         added = any(guard.synthesis for guard in supervisor.guards)
-        return folded(
+        return fold_lines(
             [
                 *document(self._counted(supervisor), sign="@@"),
                 *self._plants("supervisor automaton"),
@@ -57,7 +57,7 @@ class Writer:
                 "",
                 *document(["What synthesis added." if added else "Synthesis added nothing to the requirements."]),
                 f"supervisor automaton {self._names.supervisor}:",
-                f"  alphabet {listed(events)};" if events else "  alphabet;",
+                f"  alphabet {join_by_commas(events)};" if events else "  alphabet;",
                 "",
                 "  location:",
                 "    initial; marked;",
@@ -78,7 +78,7 @@ class Writer:
         if self._model.enumerations:
             yield ""
         for enumeration in self._model.enumerations:
-            literals = listed(map(self._names.declared, enumeration.literals))
+            literals = join_by_commas(map(self._names.declared, enumeration.literals))
             yield f"enum {self._names.declared(enumeration)} = {literals};"
         for plant in self._model.plants:
             kind = requirement if plant.kind == sct.PlantKind.requirement else "plant"
@@ -124,7 +124,7 @@ class Writer:
         for (controllable, meaning), events in alike:
             yield from document([meaning] if meaning else [], "  ")
             kind = "controllable" if controllable else "uncontrollable"
-            yield f"  {kind} {listed(map(self._names.declared, events))};"
+            yield f"  {kind} {join_by_commas(map(self._names.declared, events))};"
 
     def _variables(self, plant: sct.Plant, printer: CifPrinter) -> Iterator[str]:
         """Return the inputs and variables of a plant, with a note on each whose number differs from the model's."""
@@ -135,11 +135,11 @@ class Writer:
                 kind = self._names.declared(member.type.enumeration)
             elif isinstance(member.type, ex.IntegerType):
                 kind = f"int[{member.type.minimum}..{member.type.maximum}]"
-                yield from document(self._held(member, member.type), "  ")
+                yield from document(self._range_declarations(member, member.type), "  ")
             initial = member.initial if isinstance(member, sct.DiscreteVariable) else None
             yield f"  input {kind} {name};" if initial is None else f"  disc {kind} {name} = {printer(initial)};"
 
-    def _held(self, member: sct.Input | sct.DiscreteVariable, kind: ex.IntegerType) -> list[str]:
+    def _range_declarations(self, member: sct.Input | sct.DiscreteVariable, kind: ex.IntegerType) -> list[str]:
         """Return notes on the number in an integer variable."""
         if member not in self._originals:
             return ["The number of the provide statement that is chosen, 0 for none."]
@@ -152,7 +152,7 @@ class Writer:
         return edge_text(
             self._names.used(edge.event, plant),
             "" if edge.guard is None else printer(edge.guard),
-            listed(updates),
+            join_by_commas(updates),
             "" if edge.target is location else self._names.declared(edge.target),
         )
 
@@ -171,7 +171,7 @@ class Writer:
 
 def document(texts: Iterable[str], indent: str = "", sign: str = "@") -> list[str]:
     """Return annotations with these texts."""
-    return [f"{indent}{sign}doc({quoted(text)})" for text in texts]
+    return [f"{indent}{sign}doc({quote(text)})" for text in texts]
 
 
 def edge_text(event: str, guard: str, updates: str = "", target: str = "") -> str:
@@ -180,12 +180,12 @@ def edge_text(event: str, guard: str, updates: str = "", target: str = "") -> st
     return f"    edge {event}{''.join(f'{BREAK}{word} {text}' for word, text in parts if text)};"
 
 
-def listed(texts: Iterable[str]) -> str:
+def join_by_commas(texts: Iterable[str]) -> str:
     """Return texts joined by commas."""
     return f",{BREAK}".join(texts)
 
 
-def quoted(text: str) -> str:
+def quote(text: str) -> str:
     """Return a text as a CIF string in ASCII. A long one becomes a sum of strings, which may span several lines."""
     shown = " ".join(text.split()).encode("ascii", "backslashreplace").decode()
     shown = "".join(character if character.isprintable() else f"\\x{ord(character):02x}" for character in shown)
@@ -193,7 +193,7 @@ def quoted(text: str) -> str:
     return f"{BREAK}+ ".join('"' + part.replace("\\", "\\\\").replace('"', '\\"') + '"' for part in parts)
 
 
-def folded(lines: Iterable[str]) -> str:
+def fold_lines(lines: Iterable[str]) -> str:
     """Return declarations in lines of readable length."""
     return "".join(map(_folded, lines))
 

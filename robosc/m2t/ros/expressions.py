@@ -9,7 +9,7 @@ from robosc.m2t.c.expressions import number
 from robosc.model import expression as ex
 from robosc.model import rosgraph, sct
 from robosc.model.semantics.messages import reads_parameters
-from robosc.model.semantics.operators import ARITHMETIC, PRECEDENCE, SYMBOLS, Rule, operator_of
+from robosc.model.semantics.operators import ARITHMETIC, PRECEDENCE, SYMBOLS, TypeRule, operator_of
 from robosc.model.semantics.printing import Printed, Printer
 from robosc.model.semantics.typing import DOUBLE, Types
 from robosc.model.semantics.walks import fold, operands
@@ -26,7 +26,7 @@ _CONVERSIONS: dict[type[ex.Type | None], str] = {
 }
 
 
-def converted(place: str, kind: ex.Type | None) -> str:
+def convert(place: str, kind: ex.Type | None) -> str:
     """Return a place in ROS data as a value of a type of the model."""
     conversion = _CONVERSIONS.get(type(kind))
     return f"{conversion}({place})" if conversion else place
@@ -86,7 +86,7 @@ class CppPrinter(Printer):
         texts = [text for text, _ in given]
         match expression:
             case rosgraph.WireAccess():
-                return Printed(converted(self.wire(expression, texts), expression.type))
+                return Printed(convert(self.wire(expression, texts), expression.type))
             case rosgraph.ConversionCall():
                 read = self.wire(expression.argument, texts)
                 kept = f", {self._node}" if reads_parameters(expression.conversion) else ""
@@ -135,7 +135,7 @@ class CppPrinter(Printer):
         assert row is not None
         arguments = map(self._whole, expression.arguments, given)
         name = _FUNCTIONS.get(row.symbol, row.symbol)
-        if row.rule is Rule.ELEMENTS:
+        if row.rule is TypeRule.ELEMENTS:
             number = "double" if self._double(expression) else "Integer"
             name = f"{_OF_ARRAYS[row.symbol]}<{number}>"
         owner = f"{self._reader}." if row.is_partial else ""

@@ -13,7 +13,7 @@ from robosc.m2t.ros.names import CppNames
 from robosc.model import engine, rosgraph, sct
 from robosc.model import expression as ex
 from robosc.model.reflection import tree
-from robosc.model.semantics.definition import reported
+from robosc.model.semantics.definition import reported_variables
 from robosc.model.semantics.messages import (
     first_value,
     holds_objects,
@@ -187,7 +187,7 @@ class Enumeration:
 
 
 @dataclass(frozen=True)
-class Rule:
+class ConversionRule:
     """A rule of a conversion."""
 
     condition: str
@@ -202,7 +202,7 @@ class Conversion:
     name: str
     function: str
     type: str
-    rules: list[Rule]
+    rules: list[ConversionRule]
     default: str
     reads_parameters: bool
 
@@ -235,7 +235,7 @@ class Part:
     is_array: bool
 
 
-class Node:
+class GeneratedNode:
     """The node of one graph, prepared for the templates, in the order of the model.
 
     `on_shutdown` names the messages to send when the node stops the robot, `on_withheld` those to send if the data of a
@@ -273,7 +273,7 @@ class Node:
             self._carriers |= dict.fromkeys([action.error, action.canceled], ("response", action.interface))
         self.components = [
             (self._names.components[component], list(map(self._variable, variables)))
-            for component, variables in self._names.kept.items()
+            for component, variables in self._names.stored.items()
         ]
         if graph.parameters:
             self.components.append((self._names.parameters, list(map(self._variable, graph.parameters))))
@@ -307,7 +307,7 @@ class Node:
             outside |= {action.request.event, action.feedback.event, action.response.event}
             outside |= {action.error.event, action.canceled.event}
         self.internal = [self._handler(event) for event in self._reactions if event not in outside]
-        shown = reported(graph)
+        shown = reported_variables(graph)
         self.reported = [
             reports.component(plant, shown.get(plant.origin, ()), self._names)
             for plant in graph.model.plants
@@ -387,7 +387,9 @@ class Node:
             self._names.conversion(conversion),
             self._type(ex.EnumerationType(enumeration=conversion.enumeration)),
             [
-                Rule(self._tested(rule, printer), self._names.literal(rule.literal), reads_elements(rule.condition))
+                ConversionRule(
+                    self._tested(rule, printer), self._names.literal(rule.literal), reads_elements(rule.condition)
+                )
                 for rule in conversion.rules
             ],
             self._names.literal(conversion.default),
@@ -416,7 +418,7 @@ class Node:
     def _reception(self, reception: rosgraph.Reception) -> EventHandler:
         values = self._values(reception)
         inputs = [self._input(assignment) for assignment in reception.inputs]
-        handler = self._handler(reception.event, inputs, reports.received(values, self._names))
+        handler = self._handler(reception.event, inputs, reports.received_parts(values, self._names))
         # An unreadable answer is an error, too. The reason selects the data for the log.
         is_error = reception.event.kind == sct.EventKind.error
         reads = is_error and (reads_reason(values) or handler.data is not None)
@@ -533,7 +535,7 @@ class Node:
             client.interface,
             request,
             self._reception(client.response),
-            reports.received([*self._values(client.response), *self._values(client.error)], self._names),
+            reports.received_parts([*self._values(client.response), *self._values(client.error)], self._names),
             self._reception(client.error),
             self._reception(action.feedback) if action else None,
             self._reception(action.canceled) if action else None,
@@ -572,10 +574,10 @@ class Node:
     def _alternative(self, provided: rosgraph.ProvidedData) -> Alternative:
         return Alternative(
             self._names.is_in(provided.location),
-            [self._written(field) for field in provided.fields],
+            [self._writing_of(field) for field in provided.fields],
         )
 
-    def _written(self, assignment: rosgraph.FieldAssignment) -> tuple[str, str, str]:
+    def _writing_of(self, assignment: rosgraph.FieldAssignment) -> tuple[str, str, str]:
         """Return the method that writes a field, the field's name, and its value."""
         name, value, kind = ".".join(assignment.path), assignment.value, assignment.type
         if holds_objects(kind) and isinstance(value, rosgraph.WireAccess):

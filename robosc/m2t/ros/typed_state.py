@@ -64,7 +64,7 @@ class _Maker:
                 continue
             name = self._fields.fresh(snake_case(parts.name))
             yield self._state(parts.plant, f"The state of {parts.name}.", name)
-            variables: list[sct.DiscreteVariable | rosgraph.NodeVariable] = [*parts.plant.variables, *parts.kept]
+            variables: list[sct.DiscreteVariable | rosgraph.NodeVariable] = [*parts.plant.variables, *parts.stored]
             for variable in variables:
                 own = self._fields.fresh(f"{name}_{snake_case(variable.name)}")
                 yield self._variable(variable, f"{parts.name}.{variable.name}", own)

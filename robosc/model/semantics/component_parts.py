@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
 from robosc.model import rosgraph, sct
-from robosc.model.semantics.definition import reported
+from robosc.model.semantics.definition import reported_variables
 from robosc.model.semantics.roles import plant_of
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ class Parts:
 
     name: str
     plant: sct.Plant | None
-    kept: Sequence[rosgraph.NodeVariable]
+    stored: Sequence[rosgraph.NodeVariable]
     #: Messages, requests of services, goals of actions.
     commands: Sequence[rosgraph.Sending]
     topics: Sequence[rosgraph.Subscription]
@@ -48,7 +48,7 @@ def components(graph: rosgraph.RosGraph) -> list[Parts]:
     called = _grouped((_owner(client.request.event), client) for client in clients)
     for name in [*topics, *commands]:
         plants.setdefault(name, None)
-    kept = reported(graph)
+    kept = reported_variables(graph)
     return [
         Parts(
             name,

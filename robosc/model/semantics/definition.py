@@ -28,7 +28,7 @@ def definition(graph: rosgraph.RosGraph) -> dict[str, Any]:
     A component has states, variables and transitions.
     """
     plants = graph.model.plants
-    kept = reported(graph)
+    kept = reported_variables(graph)
     assigning = {(reaction.event, location) for reaction in graph.reactions for location in reaction.locations}
     return {
         "robot": graph.name,
@@ -68,7 +68,7 @@ def _lines(value: Any) -> str:
     return "[\n" + ",\n".join(f"  {json.dumps(element)}" for element in value) + "]"
 
 
-def reported(graph: rosgraph.RosGraph) -> dict[str | None, list[rosgraph.NodeVariable]]:
+def reported_variables(graph: rosgraph.RosGraph) -> dict[str | None, list[rosgraph.NodeVariable]]:
     """Return the variables that reports show, by component. Arrays and objects are excluded: they may be large."""
     found: dict[str | None, list[rosgraph.NodeVariable]] = {}
     for variable in graph.variables:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from robosc.model import expression as ex
 from robosc.model import rosgraph
-from robosc.model.semantics.operators import Rule, UnreadableError, Value, as_double, divide, operator_of
+from robosc.model.semantics.operators import TypeRule, UnreadableError, Value, as_double, divide, operator_of
 from robosc.model.semantics.walks import operands
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ class Program(Generic[_Result]):
             decide = (_DECIDE, (row.decided, row.compute(row.decided, False), end))
             return [given[0], decide, given[1], (_UNARY, bool), end]
         compute = row.compute
-        if self._fit is not None and row.rule is Rule.ARITHMETIC:
+        if self._fit is not None and row.rule is TypeRule.ARITHMETIC:
             compute = partial(_fitted, self._fit, compute)
         if isinstance(expression, ex.FunctionCall):
             return [*given, (_CALL, (len(given), compute))]

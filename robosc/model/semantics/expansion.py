@@ -10,7 +10,7 @@ from robosc.model import robosc
 from robosc.model.reflection import contents, features, is_attribute, tree
 from robosc.model.semantics.evaluation import Value, evaluate, literal, saturate
 from robosc.model.semantics.operators import UnreadableError
-from robosc.model.semantics.walks import copied, walk
+from robosc.model.semantics.walks import copy_tree, walk
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Mapping
@@ -129,7 +129,7 @@ class Expansion:
         """Return a constant expression as a literal. If it has no value, return it expanded."""
         return _folded(self(expression, within))
 
-    def argued(self, expression: ex.Expression, arguments: Arguments) -> ex.Expression:
+    def expand_with(self, expression: ex.Expression, arguments: Arguments) -> ex.Expression:
         """Expand an expression outside of components, such as the condition of an enum's rule, with these arguments."""
         self._readable = False
         start = _Environment(None, arguments, {})
@@ -169,7 +169,7 @@ class Expansion:
         element, environment = node
         match element:
             case robosc.Access(item=robosc.FormalParameter() as parameter) if parameter in environment.arguments:
-                return copied(environment.arguments[parameter])
+                return copy_tree(environment.arguments[parameter])
             case robosc.Access(item=(robosc.Constant() | robosc.Condition()) as named):
                 written = yield from self._named(element, named, environment)
                 if written is not None:
@@ -191,7 +191,7 @@ class Expansion:
         if owner is None and _is_member(item) and isinstance(item, robosc.Condition):
             return None
         if (item, owner) in self._constants:
-            return copied(self._constants[item, owner])
+            return copy_tree(self._constants[item, owner])
         opened = environment.opened | {item}
         inner = _Environment(owner, owner.arguments if owner else {}, {}, opened, moved=True)
         value: ex.Expression = yield (item.value, inner)
@@ -199,7 +199,7 @@ class Expansion:
             return value
         folded = _folded(value)
         if folded is not value:
-            self._constants[item, owner] = copied(folded)
+            self._constants[item, owner] = copy_tree(folded)
         return folded
 
     def _call(self, call: robosc.Call, environment: _Environment) -> Generator[Any, Any, ex.Expression | None]:

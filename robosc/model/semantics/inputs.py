@@ -11,7 +11,7 @@ from robosc.model.semantics.communication import PortEvent, data_type, happens_a
 from robosc.model.semantics.operators import operator_of
 from robosc.model.semantics.printing import RoboscPrinter
 from robosc.model.semantics.typing import BOOLEAN, INTEGER, EnumType, Types, declared_type
-from robosc.model.semantics.walks import copied, fold, operands, parts
+from robosc.model.semantics.walks import copy_tree, fold, operands, parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -58,7 +58,7 @@ class Data:
 
 
 @dataclass(frozen=True)
-class Computed:
+class ComputedValue:
     """A value that the node computes from data without a finite domain, such as `value.range < 0.5`.
 
     Values with the same text are equal. `bounds` are the bounds of an integer, if any apply.
@@ -81,7 +81,7 @@ class FailureReason:
     enum: robosc.EnumDataType
 
 
-Told: TypeAlias = "Data | Computed | FailureReason"
+InputSource: TypeAlias = "Data | ComputedValue | FailureReason"
 
 
 def inputs_in(
@@ -91,7 +91,7 @@ def inputs_in(
     bounds: tuple[int, int] | None = None,
     *,
     is_condition: bool = True,
-) -> Iterator[tuple[ex.Expression, Told | None]]:
+) -> Iterator[tuple[ex.Expression, InputSource | None]]:
     """Iterate over the parts of an expanded expression that become inputs, from left to right.
 
     The input of a part is None if it cannot be one. `bounds` are those of the variable that the expression is assigned
@@ -119,7 +119,10 @@ def inputs_in(
             assert part.enumeration is not None
             yield part, FailureReason(port, event, part.enumeration)
         elif kind in {BOOLEAN, INTEGER} or isinstance(kind, EnumType):
-            yield part, Computed(port, event, RoboscPrinter()(part), limits if kind == INTEGER else None, part, kind)
+            yield (
+                part,
+                ComputedValue(port, event, RoboscPrinter()(part), limits if kind == INTEGER else None, part, kind),
+            )
         elif isinstance(part, robosc.Access) and part.value:
             yield part, None if reads[part].beyond else Data(port, event, property_path(part) or ())
         else:
@@ -129,13 +132,13 @@ def inputs_in(
             pending += reversed(list(zip(inside, kept, strict=True)))
 
 
-def readable(carried: Computed) -> Computed:
+def readable(carried: ComputedValue) -> ComputedValue:
     """Return the input that is true if all array elements for a value exist: a value is equal to itself."""
-    same = ex.Equation(left=copied(carried.expression), right=copied(carried.expression))
-    return Computed(carried.port, carried.event, RoboscPrinter()(same), None, same, BOOLEAN)
+    same = ex.Equation(left=copy_tree(carried.expression), right=copy_tree(carried.expression))
+    return ComputedValue(carried.port, carried.event, RoboscPrinter()(same), None, same, BOOLEAN)
 
 
-def may_be_missing(carried: Computed) -> bool:
+def may_be_missing(carried: ComputedValue) -> bool:
     """Return whether an array element that the value needs may be missing, at an event that happens even then."""
     return happens_anyway(carried.event) and any(map(_is_partial, parts(carried.expression)))
 

@@ -183,7 +183,7 @@ class Instances:
         """Return whether another instance has a communication of the same name."""
         return self._names[communication.name] > 1
 
-    def provided(self, port: PortInstance) -> list[Statement[robosc.ProvideStatement]]:
+    def provide_statements(self, port: PortInstance) -> list[Statement[robosc.ProvideStatement]]:
         """Return the statements on the data of a communication, in the order of the text.
 
         Statements outside of components override those inside.
@@ -272,7 +272,7 @@ class Instances:
         return provided
 
 
-def imported(base: robosc.Base) -> list[tuple[robosc.Component, robosc.Library]]:
+def imported_components(base: robosc.Base) -> list[tuple[robosc.Component, robosc.Library]]:
     """Return each imported component with its library, in the order of the text. Skips unresolved libraries."""
     return [
         (component, component.type.library)
@@ -284,7 +284,8 @@ def imported(base: robosc.Base) -> list[tuple[robosc.Component, robosc.Library]]
 
 
 def libraries(
-    base: robosc.Base, imports: Callable[[robosc.Base], list[tuple[robosc.Component, robosc.Library]]] = imported
+    base: robosc.Base,
+    imports: Callable[[robosc.Base], list[tuple[robosc.Component, robosc.Library]]] = imported_components,
 ) -> list[robosc.Library]:
     """Return every library that a base imports, directly or indirectly, each once, the nearest first.
 

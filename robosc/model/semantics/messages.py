@@ -28,7 +28,7 @@ EACH = "*"
 
 
 @dataclass(frozen=True)
-class Read:
+class MessageRead:
     """A part of a message that is read: a value of a type, or the argument of a conversion.
 
     `reference` is the first expression that reads it. Without type and conversion the part is an object, and none
@@ -46,16 +46,18 @@ class Read:
 
 
 #: Parts read of a message. An array whose elements are all read has the parts of an element.
-Shown: TypeAlias = "dict[Path, Read | Shown]"
+Shown: TypeAlias = "dict[Path, MessageRead | Shown]"
 
 
 def receptions(graph: rosgraph.RosGraph) -> list[rosgraph.Reception]:
     """Return all receptions of data, and the errors of services, which have a reason."""
     errors = [service.error for service in graph.serviceClients]
-    return [*(reception for _, _, several in received(graph) for reception in several), *errors]
+    return [*(reception for _, _, several in received_messages(graph) for reception in several), *errors]
 
 
-def received(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Interface, Section, Sequence[rosgraph.Reception]]]:
+def received_messages(
+    graph: rosgraph.RosGraph,
+) -> Iterator[tuple[rosgraph.Interface, Section, Sequence[rosgraph.Reception]]]:
     """Yield each kind of incoming ROS message: its interface, the section, and its receptions."""
     for topic in graph.subscriptions:
         yield topic.interface, Section.MESSAGE, topic.receptions
@@ -74,7 +76,7 @@ def sections(graph: rosgraph.RosGraph) -> dict[str, tuple[str, str, Section]]:
     """
     known = {
         event_name(reception.event): (interface.package, interface.type, section)
-        for interface, section, several in received(graph)
+        for interface, section, several in received_messages(graph)
         for reception in several
     }
     answers = {event_name(client.error.event): event_name(client.response.event) for client in graph.serviceClients}
@@ -190,7 +192,7 @@ def origins(graph: rosgraph.RosGraph) -> dict[rosgraph.NodeVariable, dict[tuple[
     return {variable: places for variable, places in found.items() if places}
 
 
-def kept_reads(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Reception, Path, Read]]:
+def kept_reads(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Reception, Path, MessageRead]]:
     """Yield the reads of stored data, as reads of the message that the data came in."""
     known = origins(graph)
     for _, part in tree(graph):
@@ -202,7 +204,7 @@ def kept_reads(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Reception, P
             if isinstance(kind, rosgraph.ArrayType) and conversion is None:
                 kind, inside = kind.element, (*inside, EACH)
             for reception, path in known.get(variable, ()) if variable else ():
-                yield reception, (*path, *inside), Read(part, kind, conversion)
+                yield reception, (*path, *inside), MessageRead(part, kind, conversion)
 
 
 def reads_reason(values: Iterable[ex.Expression]) -> bool:
@@ -210,7 +212,7 @@ def reads_reason(values: Iterable[ex.Expression]) -> bool:
     return any(isinstance(part, rosgraph.ErrorReason) for value in values for _, part in tree(value))
 
 
-def reads(values: Iterable[ex.Expression]) -> Iterator[tuple[Path, Read]]:
+def reads(values: Iterable[ex.Expression]) -> Iterator[tuple[Path, MessageRead]]:
     """Yield the paths of a message that expressions read. The argument of a conversion is one read, its conversion.
 
     A stored object counts as a read of all its known fields: they may be read or sent later.
@@ -223,18 +225,18 @@ def reads(values: Iterable[ex.Expression]) -> Iterator[tuple[Path, Read]]:
         if isinstance(value, rosgraph.WireAccess) and value.variable is None and kept and holds_objects(kept):
             for inside, kind in parts_of(kept):
                 path = (*path_of(value), *inside)
-                yield path, Read(value if EACH in path else access_to(path, type(kind)()), kind)
+                yield path, MessageRead(value if EACH in path else access_to(path, type(kind)()), kind)
         argument = None
         for _, part in tree(value):
             if isinstance(part, rosgraph.ConversionCall):
                 argument = part.argument
                 if source_of(argument) is None:
-                    yield path_of(argument), Read(part, conversion=part.conversion)
+                    yield path_of(argument), MessageRead(part, conversion=part.conversion)
             elif isinstance(part, rosgraph.WireAccess) and part is not argument and source_of(part) is None:
                 if isinstance(part.type, rosgraph.ArrayType):
-                    yield (*path_of(part), EACH), Read(part, part.type.element)
+                    yield (*path_of(part), EACH), MessageRead(part, part.type.element)
                 else:
-                    yield path_of(part), Read(part, part.type)
+                    yield path_of(part), MessageRead(part, part.type)
 
 
 def parts_of(kind: ex.Type | None, path: Path = ()) -> Iterator[tuple[Path, ex.Type]]:
@@ -260,12 +262,12 @@ def access_to(path: Path, kind: ex.Type | None = None) -> rosgraph.WireAccess:
     return rosgraph.WireAccess(steps=steps, type=kind)
 
 
-def shown(values: Iterable[ex.Expression]) -> Shown:
+def logged_data(values: Iterable[ex.Expression]) -> Shown:
     """Return the data that expressions read, as the event log shows it.
 
     A read of an element at any position shows the whole array.
     """
-    found: dict[Path, Read] = {}
+    found: dict[Path, MessageRead] = {}
     for path, read in reads(values):
         if path not in found or not found[path].is_value:
             found[path] = read
@@ -276,10 +278,10 @@ def shown(values: Iterable[ex.Expression]) -> Shown:
     return _in_arrays(found)
 
 
-def _in_arrays(found: dict[Path, Read]) -> Shown:
+def _in_arrays(found: dict[Path, MessageRead]) -> Shown:
     arrays = {path[: path.index(EACH)] for path in found if EACH in path}
     made: Shown = {}
-    elements: dict[Path, dict[Path, Read]] = {}
+    elements: dict[Path, dict[Path, MessageRead]] = {}
     for path, read in found.items():
         array = next((path[:length] for length in range(len(path)) if path[:length] in arrays), None)
         if array is None:

@@ -68,7 +68,7 @@ def escape(name: str, keywords: Collection[str]) -> str:
     return name if longest is None else name + "_" * (longest - len(stem) + 1)
 
 
-def written(name: str) -> str:
+def escape_keyword(name: str) -> str:
     """Return a name for a RoboSC text at a place where a keyword may stand."""
     return f"^{name}" if name in ROBOSC_KEYWORDS else name
 

@@ -12,7 +12,7 @@ from robosc.base.diagnostics.visible import visible
 from robosc.model import expression as ex
 from robosc.model import robosc, sct
 from robosc.model.semantics.communication import RUNNING_WORD
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.operators import ATOM, PRECEDENCE, SYMBOLS, Associativity, operator_of
 from robosc.model.semantics.walks import fold, operands
 
@@ -117,7 +117,7 @@ class RoboscPrinter(Printer):
         texts = [text for text, _ in given]
         match expression:
             case robosc.Access():
-                name = "value" if expression.item is None else written(expression.item.name)
+                name = "value" if expression.item is None else escape_keyword(expression.item.name)
                 component = expression.component
                 if isinstance(expression.item, robosc.RequirementState):
                     component = expression.item.eContainer()
@@ -128,7 +128,9 @@ class RoboscPrinter(Printer):
                 return Printed(owner + name + "".join(_step(segment, indices) for segment in expression.segments))
             case robosc.ArrayQuantifier():
                 array, body = texts
-                return Printed(f"({expression.quantifier} {written(expression.element.name)} in {array}: {body})")
+                return Printed(
+                    f"({expression.quantifier} {escape_keyword(expression.element.name)} in {array}: {body})"
+                )
             case robosc.InstanceQuantifier():
                 return Printed(f"({expression.quantifier} {_name(expression.template)}: {texts[0]})")
             case robosc.ErrorReason():
@@ -141,7 +143,7 @@ class RoboscPrinter(Printer):
 
     def owner(self, component: robosc.Component) -> str:
         """Return the prefix for the name of a component's member."""
-        return f"{written(component.name)}."
+        return f"{escape_keyword(component.name)}."
 
     def atom(self, expression: ex.Expression) -> str:
         """Return the text of a literal."""
@@ -156,7 +158,7 @@ class RoboscPrinter(Printer):
 
 def _name(found: ex.NamedElement | None) -> str:
     """Return the name of a referenced element. Linking reports unresolved references."""
-    return written(found.name) if found else "…"
+    return escape_keyword(found.name) if found else "…"
 
 
 def _step(segment: robosc.AccessSegment, indices: Iterator[str]) -> str:

@@ -148,7 +148,7 @@ def walk(
     return result  # type: ignore[no-any-return]
 
 
-def copied(root: _Element, instead: Mapping[Any, Any] | None = None) -> _Element:
+def copy_tree(root: _Element, instead: Mapping[Any, Any] | None = None) -> _Element:
     """Return a deep copy of an expression or a type. The original stays in its container.
 
     `instead` maps elements that the original refers to to those that the copy refers to.

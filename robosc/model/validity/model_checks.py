@@ -12,7 +12,7 @@ from typing import Any
 from robosc.model import expression as ex
 from robosc.model import robosc
 from robosc.model.reflection import tree
-from robosc.model.semantics.operators import Rule, operator_of
+from robosc.model.semantics.operators import TypeRule, operator_of
 from robosc.model.semantics.typing import BOOLEAN, DOUBLE, INTEGER, UNKNOWN, EnumType, Type, Types, is_number
 from robosc.model.semantics.walks import operands
 
@@ -65,7 +65,7 @@ def demand(holds: Callable[[Any], bool], message: str) -> Check:
     return check
 
 
-def typed(feature: str, wanted: Callable[[Any], Type] = lambda _: BOOLEAN) -> Check:
+def check_type(feature: str, wanted: Callable[[Any], Type] = lambda _: BOOLEAN) -> Check:
     """Return the check that the expression in a feature, if any, has the type that `wanted` returns for the element."""
 
     def check(element: Any, model: Model) -> Iterator[Fault]:
@@ -81,13 +81,13 @@ def unique(*features: str) -> Check:
 
     def check(element: Any, _model: Model) -> Iterator[Fault]:
         for feature in features:
-            for named in repeated(getattr(element, feature), lambda named: named.name):
+            for named in find_duplicates(getattr(element, feature), lambda named: named.name):
                 yield named, f"the name '{named.name}' is given twice"
 
     return check
 
 
-def repeated(elements: Iterable[Any], key: Callable[[Any], Any]) -> Iterator[Any]:
+def find_duplicates(elements: Iterable[Any], key: Callable[[Any], Any]) -> Iterator[Any]:
     """Iterate over the elements that have the key of an earlier one."""
     seen = set()
     for element in elements:
@@ -104,7 +104,7 @@ def around(element: Any, kind: type) -> Any:
     return found
 
 
-_WANTED = {Rule.LOGICAL: BOOLEAN, Rule.DOUBLE: DOUBLE, Rule.INTEGER: INTEGER, Rule.ROUNDING: DOUBLE}
+_WANTED = {TypeRule.LOGICAL: BOOLEAN, TypeRule.DOUBLE: DOUBLE, TypeRule.INTEGER: INTEGER, TypeRule.ROUNDING: DOUBLE}
 
 
 def fitting_operands(expression: ex.Expression, model: Model) -> Iterator[Fault]:
@@ -119,11 +119,11 @@ def fitting_operands(expression: ex.Expression, model: Model) -> Iterator[Fault]
         wanted = INTEGER if isinstance(expression, ex.DoubleConversion) else _WANTED[row.rule]
         for operand in given:
             yield from model.unlike(operand, wanted)
-    elif row is not None and row.rule not in {Rule.SIZE, Rule.ELEMENTS}:
+    elif row is not None and row.rule not in {TypeRule.SIZE, TypeRule.ELEMENTS}:
         faults = [*_differ(expression, given, model)]
         yield from faults
         found = model.types(given[0])
-        if row.rule is not Rule.EQUALITY and not faults and not is_number(found) and found != UNKNOWN:
+        if row.rule is not TypeRule.EQUALITY and not faults and not is_number(found) and found != UNKNOWN:
             yield expression, f"numbers are wanted, not {_named(found)}"
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from robosc.model.validity.model_checks import Checks, Fault, Model
 
 
-def _made(made: robosc.InstantiatedComponent | robosc.ImportedComponent, _model: Model) -> Iterator[Fault]:
+def _check_instance(made: robosc.InstantiatedComponent | robosc.ImportedComponent, _model: Model) -> Iterator[Fault]:
     user = around(made, robosc.Component)
     if user is not None and user.parameters:
         yield made, f"the template '{user.name}' has no text of its own"
@@ -154,7 +154,7 @@ _OWN_OBJECT = demand(
 )
 
 #: The other checks follow imports. They are skipped if an import is broken.
-IMPORT_CHECKS: Checks = {robosc.InstantiatedComponent: [_made], robosc.ImportedComponent: [_made]}
+IMPORT_CHECKS: Checks = {robosc.InstantiatedComponent: [_check_instance], robosc.ImportedComponent: [_check_instance]}
 CHECKS: Checks = {
     robosc.Transition: [_OWN_TARGET],
     robosc.CommunicationReference: [_communication],

@@ -14,7 +14,7 @@ from robosc.model.reflection import tree
 from robosc.model.semantics.failures import FAILURES
 from robosc.model.semantics.messages import EACH, path_of, reads_elements, source_of
 from robosc.model.semantics.typing import BOOLEAN, declared_type, infer
-from robosc.model.validity.model_checks import demand, fitting_operands, typed
+from robosc.model.validity.model_checks import check_type, demand, fitting_operands
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -178,16 +178,16 @@ CHECKS: Checks = {
     ex.Expression: [fitting_operands],
     object: [_own_event],
     rosgraph.RosGraph: [_received_shapes],
-    rosgraph.NodeVariable: [typed("initial", lambda variable: declared_type(variable.type))],
-    rosgraph.FieldAssignment: [typed("value", lambda field: declared_type(field.type)), _FIELD],
-    rosgraph.InputAssignment: [typed("value", lambda assignment: declared_type(assignment.input.type))],
-    rosgraph.NodeAssignment: [typed("value", lambda assignment: declared_type(assignment.variable.type))],
-    rosgraph.ConversionRule: [typed("condition")],
+    rosgraph.NodeVariable: [check_type("initial", lambda variable: declared_type(variable.type))],
+    rosgraph.FieldAssignment: [check_type("value", lambda field: declared_type(field.type)), _FIELD],
+    rosgraph.InputAssignment: [check_type("value", lambda assignment: declared_type(assignment.input.type))],
+    rosgraph.NodeAssignment: [check_type("value", lambda assignment: declared_type(assignment.variable.type))],
+    rosgraph.ConversionRule: [check_type("condition")],
     rosgraph.Conversion: [_literals, _converted_shape],
     rosgraph.Reception: [_inputs],
     rosgraph.Sending: [_sent_shape],
     rosgraph.ProvidedData: [_DATA],
-    rosgraph.Reaction: [_ONE_PLANT, typed("guard", lambda _: BOOLEAN)],
+    rosgraph.Reaction: [_ONE_PLANT, check_type("guard", lambda _: BOOLEAN)],
     rosgraph.Subscription: [_interface(rosgraph.InterfaceKind.message)],
     rosgraph.Publisher: [_interface(rosgraph.InterfaceKind.message)],
     rosgraph.ServiceClient: [_interface(rosgraph.InterfaceKind.service)],

@@ -95,7 +95,7 @@ class Watcher:
 
     def before_event(self, event: str) -> Iterator[Goal]:
         """Yield the goals that an enabled event reaches as it happens, with the inputs that are set."""
-        seen = [Goal(edge, taken) for edge, taken in self._transitions.tried(event)]
+        seen = [Goal(edge, taken) for edge, taken in self._transitions.attempts(event)]
         yield from (goal for goal in [*seen, Goal(self._events[event])] if goal in self._goals)
 
     def at_rest(self) -> frozenset[Goal]:

@@ -7,10 +7,10 @@ from itertools import product
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
-from robosc.base.ros_types.wire import Basic, DefinitionError, Nested, Section, Sequence
+from robosc.base.ros_types.wire import Basic, DefinitionError, NestedType, Section, Sequence
 from robosc.model import expression as ex
 from robosc.model import rosgraph
-from robosc.model.semantics.messages import EACH, Read, holds_objects, parts_of, path_of
+from robosc.model.semantics.messages import EACH, MessageRead, holds_objects, parts_of, path_of
 from robosc.model.semantics.messages import reads as all_reads
 from robosc.run.runtime.core.node_data import BLANK
 
@@ -119,11 +119,11 @@ class Definition:
                 yield from self._ways(path[1:], (*before, str(index)))
 
     def _reached(self, path: Path) -> WireType | None:
-        found = self.distribution.reached(self.interface.package, self.interface.type, self.section, path)
+        found = self.distribution.type_at(self.interface.package, self.interface.type, self.section, path)
         return None if found is None else found[0]
 
 
-def data_read(reads: Iterable[tuple[Path, Read]], prefix: Path = ()) -> Iterator[tuple[Path, ex.Type]]:
+def data_read(reads: Iterable[tuple[Path, MessageRead]], prefix: Path = ()) -> Iterator[tuple[Path, ex.Type]]:
     """Yield all data of a message that is read, also by conversions; repeated if it is read again."""
     for general, read in reads:
         for path in _some(general, _ends(read.reference)):
@@ -177,8 +177,8 @@ def new_object(
     distribution: RosDistribution, interface: rosgraph.Interface, section: Section, path: Iterable[str]
 ) -> Any:
     """Return the object at a path in new data of a type; if the type is unknown, all its fields are zero."""
-    reached = distribution.reached(interface.package, interface.type, section, path)
-    if reached is None or not isinstance(reached[0], Nested):
+    reached = distribution.type_at(interface.package, interface.type, section, path)
+    if reached is None or not isinstance(reached[0], NestedType):
         return BLANK
     return _new(*reached, distribution)
 

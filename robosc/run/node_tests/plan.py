@@ -14,8 +14,8 @@ from robosc.model import sct
 from robosc.model.semantics.roles import event_name
 from robosc.run.node_tests.coverage import Goal, Watcher, goals
 from robosc.run.node_tests.guide import Guide, Way
-from robosc.run.node_tests.steps import WAIT, Place, Step, Stimulus
-from robosc.synthesis import encoded
+from robosc.run.node_tests.steps import WAIT, Place, Stimulus, TourStep
+from robosc.synthesis import use_encoding
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -39,14 +39,14 @@ _IN_VAIN = 4
 class _Way(NamedTuple):
     """Consecutive steps, and the goals that they show together, as bits."""
 
-    steps: tuple[Step, ...]
+    steps: tuple[TourStep, ...]
     shows: int
 
 
 @dataclass
 class _Known:
     saved: SavedLoop
-    steps: list[Step] | None = None
+    steps: list[TourStep] | None = None
 
 
 @dataclass
@@ -62,7 +62,7 @@ class Plan:
     period: int
     pause: int
     _known: dict[Place, _Known] = field(default_factory=dict)
-    _found: dict[Place, dict[Place, list[_Way]]] = field(default_factory=dict)
+    _ways_from: dict[Place, dict[Place, list[_Way]]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self._loop = ControlLoop(self.model, self.settings, Hooks(self._before))
@@ -113,7 +113,7 @@ class Plan:
         """The goals that can be seen: from the first known place on, else in the supervised system."""
         if self.is_whole:
             return {goal for goal in self.goals if self.bits[goal] & self._anywhere}
-        return encoded(self.model, lambda encoding: self._guide(encoding).possible)
+        return use_encoding(self.model, lambda encoding: self._guide(encoding).possible)
 
     @cached_property
     def is_whole(self) -> bool:
@@ -128,7 +128,7 @@ class Plan:
                     pending.append(step.end)
         return not pending
 
-    def steps(self, place: Place) -> list[Step]:
+    def steps(self, place: Place) -> list[TourStep]:
         """Return all steps from a place that lead to another one or show a goal."""
         known = self._known[place]
         if known.steps is None:
@@ -136,7 +136,7 @@ class Plan:
             known.steps = [step for step in found if step is not None and (step.end != place or step.shows)]
         return known.steps
 
-    def _step(self, place: Place, saved: SavedLoop, stimulus: Stimulus) -> Step | None:
+    def _step(self, place: Place, saved: SavedLoop, stimulus: Stimulus) -> TourStep | None:
         loop = self._loop
         loop.restore(saved)
         self._pauses, self._shown = place.pauses, 0
@@ -161,10 +161,10 @@ class Plan:
             self._pauses = False
         return self._ended(stimulus)
 
-    def _ended(self, stimulus: Stimulus) -> Step:
+    def _ended(self, stimulus: Stimulus) -> TourStep:
         self._shown |= self._rest()
         self._pass_period()
-        return Step(stimulus, self.place(self._loop.saved, pauses=self._pauses), self._shown)
+        return TourStep(stimulus, self.place(self._loop.saved, pauses=self._pauses), self._shown)
 
     def _pass_period(self) -> None:
         """Run a tick; if time counts, after a period, with the timers that expire on the way."""
@@ -187,7 +187,7 @@ class Plan:
 
     # Tours
 
-    def tour(self, start: Place, shown: AbstractSet[Goal]) -> list[Step]:
+    def tour(self, start: Place, shown: AbstractSet[Goal]) -> list[TourStep]:
         """Return a short path from a start that shows goals that can be shown and were not, as far as it is found.
 
         If there are too many places to explore, decision diagrams guide the search.
@@ -199,11 +199,11 @@ class Plan:
         if self.is_whole:
             tours = [self._planned(start, wanted, choice) for choice in _choices(_PLANS)]
         else:
-            tours = encoded(self.model, lambda encoding: self._all_guided(start, wanted, encoding))
+            tours = use_encoding(self.model, lambda encoding: self._all_guided(start, wanted, encoding))
         return max(tours, key=lambda tour: ((_together(tour) & wanted).bit_count(), -len(tour)))
 
-    def _planned(self, start: Place, wanted: int, choice: random.Random) -> list[Step]:
-        tour: list[Step] = []
+    def _planned(self, start: Place, wanted: int, choice: random.Random) -> list[TourStep]:
+        tour: list[TourStep] = []
         left, here = wanted, start
         while left and (way := self._way_to_any(here, left, choice)):
             tour += way
@@ -211,12 +211,12 @@ class Plan:
             left &= ~_together(way)
         return self._shortened(start, tour, wanted, _DETOUR)
 
-    def _way_to_any(self, start: Place, wanted: int, choice: random.Random) -> list[Step]:
+    def _way_to_any(self, start: Place, wanted: int, choice: random.Random) -> list[TourStep]:
         """Return the shortest path to a wanted goal; among several, favor one that shows many, with some randomness."""
-        ways: dict[Place, list[Step]] = {start: []}
+        ways: dict[Place, list[TourStep]] = {start: []}
         layer = [start]
         while layer:
-            found: list[tuple[float, float, list[Step]]] = []
+            found: list[tuple[float, float, list[TourStep]]] = []
             onwards: list[Place] = []
             for place in layer:
                 for step in self.steps(place):
@@ -231,13 +231,13 @@ class Plan:
             layer = onwards
         return []
 
-    def _all_guided(self, start: Place, wanted: int, encoding: Encoding) -> list[list[Step]]:
+    def _all_guided(self, start: Place, wanted: int, encoding: Encoding) -> list[list[TourStep]]:
         guide = self._guide(encoding)
         return [self._guided(start, wanted, guide, choice) for choice in _choices(_GUIDED)]
 
-    def _guided(self, start: Place, wanted: int, guide: Guide, choice: random.Random) -> list[Step]:
+    def _guided(self, start: Place, wanted: int, guide: Guide, choice: random.Random) -> list[TourStep]:
         """Repeat the step that shows the most goals, else follow the supervised system's path to a missing goal."""
-        tour: list[Step] = []
+        tour: list[TourStep] = []
         left, here, in_vain = wanted, start, Counter[Goal]()
         while left:
             # Timers first: some expire only before anything has come in.
@@ -275,9 +275,9 @@ class Plan:
                 return Way([(event, {})], {goal})
         return None
 
-    def _followed(self, start: Place, events: Iterable[tuple[str, dict[str, Value]]], wanted: int) -> list[Step]:
+    def _followed(self, start: Place, events: Iterable[tuple[str, dict[str, Value]]], wanted: int) -> list[TourStep]:
         """Return steps that cause these events, or similar ones, until a wanted goal is seen."""
-        way: list[Step] = []
+        way: list[TourStep] = []
         for event, inputs in events:
             for _ in range(1 + len(self._timers)):
                 here = way[-1].end if way else start
@@ -295,7 +295,7 @@ class Plan:
             return ".u_after" in event or event in self._resets
         return event in dict(stimulus.events)
 
-    def _shortened(self, start: Place, tour: list[Step], wanted: int, detour: int) -> list[Step]:
+    def _shortened(self, start: Place, tour: list[TourStep], wanted: int, detour: int) -> list[TourStep]:
         """Remove detours from the tour: leave out a part, or take a shorter path, if no goal is lost."""
         improved = True
         while improved:
@@ -323,7 +323,7 @@ class Plan:
 
         The result is cached if all places were explored, since many tours request it.
         """
-        if (found := self._found.get(start)) is not None:
+        if (found := self._ways_from.get(start)) is not None:
             return found
         first = _Way((), 0)
         found, nearest, layer = {start: [first]}, {start: first}, [start]
@@ -340,7 +340,7 @@ class Plan:
                         onwards.append(step.end)
             layer = onwards
         if self.is_whole:
-            self._found[start] = found
+            self._ways_from[start] = found
         return found
 
 
@@ -354,11 +354,11 @@ def _unlike(stimulus: Stimulus, event: str, inputs: Mapping[str, Value]) -> int:
     return sum(given.get(name) != value for name, value in inputs.items())
 
 
-def _together(steps: Iterable[Step]) -> int:
+def _together(steps: Iterable[TourStep]) -> int:
     return reduce(or_, (step.shows for step in steps), 0)
 
 
-def _running(steps: Sequence[Step]) -> list[int]:
+def _running(steps: Sequence[TourStep]) -> list[int]:
     """Return the goals shown by each prefix of the steps, from the empty one on."""
     shown = [0]
     for step in steps:

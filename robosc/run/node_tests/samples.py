@@ -39,7 +39,7 @@ _CLASSES = 64
 
 
 @dataclass(frozen=True)
-class Read:
+class LoggedValue:
     """Value of a message in the event log: unchanged, or after a conversion."""
 
     path: Path
@@ -56,14 +56,14 @@ class Class:
 
 
 @dataclass
-class Incoming:
+class IncomingKind:
     """Kind of incoming data: its events with their logged reads, all fields read, and sample messages.
 
     `samples`: some messages for each tuple of literals that the conversions make of them, in the order of the events.
     `classes`: fully readable messages, grouped by the inputs of the supervisor.
     """
 
-    events: list[tuple[str, list[Read]]]
+    events: list[tuple[str, list[LoggedValue]]]
     fields: dict[Path, Field]
     #: Events that a message may not cause, since array elements that they need may be missing.
     unreadable: set[str]
@@ -86,7 +86,7 @@ class Incoming:
         return found
 
     @property
-    def conversions(self) -> list[Read]:
+    def conversions(self) -> list[LoggedValue]:
         """The values that the log shows as literals."""
         return [read for _, shown in self.events for read in shown if read.conversion is not None]
 
@@ -159,8 +159,10 @@ def incoming(
     distribution: RosDistribution,
     interface: rosgraph.Interface,
     part: Section,
-    receptions: Sequence[tuple[str, messages.Shown, Collection[ex.Expression], Collection[tuple[Path, messages.Read]]]],
-) -> Incoming:
+    receptions: Sequence[
+        tuple[str, messages.Shown, Collection[ex.Expression], Collection[tuple[Path, messages.MessageRead]]]
+    ],
+) -> IncomingKind:
     """Return one kind of incoming message: its events with their logged values, and the fields that are read."""
     definition = Definition(distribution, interface, part)
     fields: dict[Path, Field] = {}
@@ -172,23 +174,24 @@ def incoming(
         for path, kind in data_read([*messages.reads(values), *later]):
             fields.setdefault(path, definition.field(path, kind))
         found = [
-            Read(path, part.conversion if isinstance(part, messages.Read) else None) for path, part in shown.items()
+            LoggedValue(path, part.conversion if isinstance(part, messages.MessageRead) else None)
+            for path, part in shown.items()
         ]
         events.append((event, found))
     inner = {(), *(path[:length] for path in fields for length in range(len(path)))} - {
         path for path, field in fields.items() if not isinstance(field.type, rosgraph.ObjectType)
     }
     fields = {path: field for path, field in fields.items() if path not in inner}
-    return Incoming(events, fields, unreadable, initial=definition.initial(fields))
+    return IncomingKind(events, fields, unreadable, initial=definition.initial(fields))
 
 
-def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dict[sct.Event, Incoming]:
+def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dict[sct.Event, IncomingKind]:
     """Return the messages to choose from for each incoming event; the events of one topic share them."""
     data = NodeData(graph, Engine(graph.model))
     data.reason = Failure.ABORTED
     values, kept = Values(graph), list(messages.kept_reads(graph))
-    known: dict[sct.Event, Incoming] = {}
-    for interface, part, receptions in messages.received(graph):
+    known: dict[sct.Event, IncomingKind] = {}
+    for interface, part, receptions in messages.received_messages(graph):
         described = []
         for reception in receptions:
             read = [assigned.value for assigned in reception.inputs] + data.values_read(reception.event)
@@ -203,7 +206,7 @@ def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dic
     return known
 
 
-def _read_by_error(response: rosgraph.Reception, data: NodeData) -> Iterator[tuple[Path, messages.Read]]:
+def _read_by_error(response: rosgraph.Reception, data: NodeData) -> Iterator[tuple[Path, messages.MessageRead]]:
     """Yield data of a result that the error of an action reads: a response that can't be read is an error."""
     client = response.eContainer()
     if isinstance(client, rosgraph.ActionClient) and client.response is response:
@@ -211,7 +214,7 @@ def _read_by_error(response: rosgraph.Reception, data: NodeData) -> Iterator[tup
         yield from messages.reads([*values, *data.values_read(client.error.event)])
 
 
-def _find_samples(kind: Incoming, values: Values, data: NodeData, receptions: Sequence[rosgraph.Reception]) -> None:
+def _find_samples(kind: IncomingKind, values: Values, data: NodeData, receptions: Sequence[rosgraph.Reception]) -> None:
     """Fill in `samples` and `classes`: try messages until no new ones appear within a number of trials."""
     choice = random.Random(_SEED)  # noqa: S311  # reproducible
     pools = {path: values.of(field) for path, field in kind.fields.items()}
@@ -277,16 +280,16 @@ def _tried(
             for path in choice.sample(paths, min(len(paths), choice.randint(1, 3))):
                 made[path] = choice.choice(pools[path])
     if choice.random() < 1 / 16:
-        made = shortened(made, choice)
+        made = shorten(made, choice)
     return {path: made[path] for path in paths if path in made}
 
 
-def shortened(values: Mapping[Path, Leaf], choice: random.Random) -> dict[Path, Leaf]:
+def shorten(values: Mapping[Path, Leaf], choice: random.Random) -> dict[Path, Leaf]:
     """Return some of the values, so that an array may be too short."""
     return dict(islice(values.items(), choice.randrange(len(values) + 1)))
 
 
-def _literal(read: Read, argument: Any, data: NodeData) -> str:
+def _literal(read: LoggedValue, argument: Any, data: NodeData) -> str:
     assert read.conversion is not None
     for step in read.path:
         try:

@@ -14,7 +14,7 @@ from robosc.model.places import place
 from robosc.model.semantics.durations import timer_text
 from robosc.model.semantics.printing import RobotPrinter
 from robosc.model.semantics.roles import event_name, plant_of
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 from robosc.run.node_tests.trace_test import trace_test_of
 from robosc.run.report import digests, printing
 from robosc.run.report.trace_coverage import play
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from robosc.language.configuration import Configuration
     from robosc.m2t.models import Models
     from robosc.model import rosgraph
-    from robosc.run.report.trace_coverage import Shown
+    from robosc.run.report.trace_coverage import TraceCoverage
 
 #: First paragraph of the report.
 NOTICE = (
@@ -115,7 +115,7 @@ def _requirements(
     model: sct.SupervisoryControlModel,
     stated: Sequence[sct.StatedRequirement],
     verdicts: Sequence[Verdict],
-    shown: Shown,
+    shown: TraceCoverage,
     sources: printing.Sources,
 ) -> list[dict[str, Any]]:
     """Return one entry for each requirement and property of the text.
@@ -163,10 +163,12 @@ def _kind(stated: sct.StatedRequirement) -> str:
     return "property"
 
 
-def _guarded(requirement: sct.Requirement, guards: Mapping[sct.Event, sct.EventGuard], shown: Shown) -> dict[str, Any]:
+def _guarded(
+    requirement: sct.Requirement, guards: Mapping[sct.Event, sct.EventGuard], shown: TraceCoverage
+) -> dict[str, Any]:
     """Return the condition on a requirement's event, the guard that synthesis added, and the results of the tests."""
     guard = guards.get(requirement.event)
-    added = None if guard is None or guard.synthesis is None else RobotPrinter()(copied(guard.synthesis))
+    added = None if guard is None or guard.synthesis is None else RobotPrinter()(copy_tree(guard.synthesis))
     seen = {}
     for word, where in (("allowed", shown.allowed), ("forbidden", shown.forbidden)):
         path, line = where.get(requirement, ("", 0))
@@ -174,7 +176,7 @@ def _guarded(requirement: sct.Requirement, guards: Mapping[sct.Event, sct.EventG
     return {
         "event": event_name(requirement.event),
         "meaning": words(requirement.event),
-        "condition": f"{requirement.kind.name} {RobotPrinter()(copied(requirement.condition))}",
+        "condition": f"{requirement.kind.name} {RobotPrinter()(copy_tree(requirement.condition))}",
         "added_by_synthesis": added,
         "why": (guard.explanation or None) if guard and added else None,
         "tests": seen,

@@ -20,14 +20,14 @@ _NAMED = re.compile(r"`([\w.]+)`")
 
 
 @dataclass(frozen=True)
-class Extended:
+class ExtendedText:
     """Text of a robot with a property for each condition, one per line from line `first` on."""
 
     text: str
     first: int
     conditions: Sequence[Holds]
 
-    def told(self, finding: Diagnostic) -> Diagnostic:
+    def move_to_scenario(self, finding: Diagnostic) -> Diagnostic:
         """Return a finding with its place in the scenario file: at the condition that it is about."""
         number = finding.span.line - self.first
         if not 0 <= number < len(self.conditions):
@@ -52,11 +52,11 @@ class Extended:
         return [declared.condition for declared in found]
 
 
-def extended(text: str, end: int, conditions: Sequence[Holds]) -> Extended:
+def add_conditions(text: str, end: int, conditions: Sequence[Holds]) -> ExtendedText:
     """Return the text of a robot that ends at an offset, with the conditions added before its closing brace."""
     brace = text.rindex("}", 0, end)
     lines = "".join(f"{_before(number)}{condition.text})\n" for number, condition in enumerate(conditions))
-    return Extended(f"{text[:brace]}\n{lines}{text[brace:]}", text.count("\n", 0, brace) + 2, conditions)
+    return ExtendedText(f"{text[:brace]}\n{lines}{text[brace:]}", text.count("\n", 0, brace) + 2, conditions)
 
 
 def _name(number: int) -> str:

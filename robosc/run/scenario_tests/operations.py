@@ -62,9 +62,9 @@ class Operations:
         if self._operations:
             self._operations[-1].withheld.add(event)
 
-    def compared(self, program: CProgram) -> Diagnostic | None:
+    def compare(self, program: CProgram) -> Diagnostic | None:
         """Return a finding for the first call after which the generated loop differs, else None."""
-        with program.running([program.follower]) as process:
+        with program.start_command([program.follower]) as process:
             lockstep = Lockstep(program.model, process)
             lockstep.begin(self._settings)
             began = lockstep.loop.timers.now

@@ -8,8 +8,8 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from robosc.analysis.explain import NamingError, event_named
-from robosc.analysis.wording import called, listed, name, words
+from robosc.analysis.explain import NamingError, find_event
+from robosc.analysis.wording import join_with_and, name, quote_requirements, words
 from robosc.engine import Blocked, Engine
 from robosc.model import rosgraph, sct
 from robosc.model.semantics.evaluation import evaluate
@@ -21,11 +21,11 @@ from robosc.run.node_tests.messages import Record, leaf_values
 from robosc.run.node_tests.trace_player import Incoming as Reader
 from robosc.run.node_tests.trace_player import Line as TraceLine
 from robosc.run.node_tests.trace_player import TraceError, merged, same, with_nan
-from robosc.run.node_tests.trace_test import described
-from robosc.run.runtime.core.event_log import nested
+from robosc.run.node_tests.trace_test import describe_incoming
+from robosc.run.runtime.core.event_log import nest
 from robosc.run.runtime.core.json_text import json_text
-from robosc.run.runtime.core.port import CancelAnswer, Failure, Outcome
-from robosc.run.scenario_tests.reading import Allowed, Holds, Incoming, Refusal, Sent, Wait
+from robosc.run.runtime.core.port import CancelAnswer, Failure, GoalOutcome
+from robosc.run.scenario_tests.reading import Holds, IncomingEvent, Permission, Refusal, SentCommand, Wait
 from robosc.run.simulation.data import DataError, EventData
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from robosc.language.configuration import Configuration
     from robosc.model import expression as ex
     from robosc.run.node_tests.robot import RunningGoal
-    from robosc.run.node_tests.samples import Read
+    from robosc.run.node_tests.samples import LoggedValue
     from robosc.run.runtime.core.json_text import Json
     from robosc.run.runtime.core.port import Client
     from robosc.run.scenario_tests.operations import Operations
@@ -84,16 +84,16 @@ def unknown_events(model: sct.SupervisoryControlModel, scenarios: Iterable[Scena
     Also for each line with an event that the robot does not send.
     """
     for line in (line for scenario in scenarios for line in scenario.steps):
-        if not isinstance(line, (Incoming, Refusal, Allowed, Sent)):
+        if not isinstance(line, (IncomingEvent, Refusal, Permission, SentCommand)):
             continue
         try:
-            event = event_named(model, line.event)
+            event = find_event(model, line.event)
         except NamingError as error:
             yield line.fault(error.message, error.hint or None)
             continue
-        if isinstance(line, Incoming):
+        if isinstance(line, IncomingEvent):
             yield from _impossible(line, event)
-        elif isinstance(line, Sent) and not event.controllable:
+        elif isinstance(line, SentCommand) and not event.controllable:
             yield line.fault(f"the {words(event)} comes from the robot: the controller does not send it")
 
 
@@ -101,15 +101,15 @@ def unfit_data(graph: rosgraph.RosGraph, types: RosTypes, scenarios: Iterable[Sc
     """Yield a finding for each line whose data does not fit its event. Precondition: each event and reason is known."""
     checked = EventData(Engine(graph.model), graph, types)
     for line in (line for scenario in scenarios for line in scenario.steps):
-        if isinstance(line, Incoming) and line.data is not None:
+        if isinstance(line, IncomingEvent) and line.data is not None:
             data = {"value": line.data} if line.reason is None else {"value": line.data, "reason": line.reason}
             try:
-                checked.check(event_name(event_named(graph.model, line.event)), data, is_message=line.is_message)
+                checked.check(event_name(find_event(graph.model, line.event)), data, is_message=line.is_message)
             except DataError as error:
                 yield line.fault(str(error), error.hint)
 
 
-def _impossible(line: Incoming, event: sct.Event) -> Iterator[Diagnostic]:
+def _impossible(line: IncomingEvent, event: sct.Event) -> Iterator[Diagnostic]:
     """Yield findings if the robot does not send an event, or not with the line's reason or data."""
     possible = possible_reasons(event)
     if event.kind not in _FROM_THE_ROBOT:
@@ -118,7 +118,7 @@ def _impossible(line: Incoming, event: sct.Event) -> Iterator[Diagnostic]:
     elif line.reason is not None and not possible:
         yield line.fault("only the error of a service or an action has a reason", f"leave out `because {line.reason}`")
     elif line.reason is not None and line.reason not in possible:
-        hint = f"possible is {listed([f'`{reason}`' for reason in sorted(possible)])}"
+        hint = f"possible is {join_with_and([f'`{reason}`' for reason in sorted(possible)])}"
         yield line.fault(f"the {words(event)} can't have the reason `{line.reason}`", hint)
     elif possible and line.data is not None and not brings_data(event, line.reason):
         yield line.fault(f"an error with the reason `{line.reason}` brings no data", "leave out `with …`")
@@ -155,13 +155,13 @@ class Player(Drive):
         for action in graph.actionClients:
             self._clients |= dict.fromkeys([action.error.event, action.canceled.event], action)
             self._acts[action.feedback.event] = partial(self._feed_back, action)
-            self._acts[action.response.event] = partial(self._end, action, Outcome.SUCCEEDED)
-            self._acts[action.canceled.event] = partial(self._end, action, Outcome.CANCELED)
+            self._acts[action.response.event] = partial(self._end, action, GoalOutcome.SUCCEEDED)
+            self._acts[action.canceled.event] = partial(self._end, action, GoalOutcome.CANCELED)
 
     @property
     def trace(self) -> list[str]:
         """The lines of the event log."""
-        return self._lines.kept
+        return self._lines.lines
 
     @property
     def sources(self) -> list[Line]:
@@ -176,7 +176,7 @@ class Player(Drive):
         """
         self._controller = self._begin(_Controller)
         self._controller.note(operations)
-        self._controller.keep_messages(lambda: len(self._lines.kept))
+        self._controller.keep_messages(lambda: len(self._lines.lines))
         self._controller.start()
         findings: list[Diagnostic] = []
         self._since = 0
@@ -189,7 +189,7 @@ class Player(Drive):
                 fault = self._played(line)
                 self._attribute(line)
                 if fault is not None:
-                    if isinstance(line, (Incoming, Refusal, Wait)):
+                    if isinstance(line, (IncomingEvent, Refusal, Wait)):
                         findings.append(fault)
                         break
                     findings.append(self._with_canceling(fault))
@@ -198,21 +198,21 @@ class Player(Drive):
         return findings
 
     def _attribute(self, line: Line) -> None:
-        self._sources += [line] * (len(self._lines.kept) - len(self._sources))
+        self._sources += [line] * (len(self._lines.lines) - len(self._sources))
 
     def _played(self, line: Line) -> Diagnostic | None:
         try:
             match line:
-                case Wait() | Incoming() | Refusal():
-                    self._since = len(self._lines.kept)
+                case Wait() | IncomingEvent() | Refusal():
+                    self._since = len(self._lines.lines)
                     self._step(line)
                 case Holds(text=text):
                     if not evaluate(self._conditions[line], self._controller.engine.read):
                         return line.fault(f"`{text}` does not hold", self._state())
-                case Allowed():
-                    return self._verdict(line, event_named(self._graph.model, line.event))
-                case Sent():
-                    return self._sent(line, event_named(self._graph.model, line.event))
+                case Permission():
+                    return self._verdict(line, find_event(self._graph.model, line.event))
+                case SentCommand():
+                    return self._sent(line, find_event(self._graph.model, line.event))
         except NamingError as error:
             return line.fault(error.message, error.hint or None)
         except TraceError as error:
@@ -221,17 +221,17 @@ class Player(Drive):
 
     # Steps
 
-    def _step(self, line: Wait | Incoming | Refusal) -> None:
-        if isinstance(line, Incoming):
+    def _step(self, line: Wait | IncomingEvent | Refusal) -> None:
+        if isinstance(line, IncomingEvent):
             self._come_in(line)
         elif isinstance(line, Refusal):
-            self._refuse(event_named(self._graph.model, line.event))
+            self._refuse(find_event(self._graph.model, line.event))
         else:
             for _ in range(math.ceil(round(line.seconds / self._period, 6))):
                 self._pass_period()
 
-    def _come_in(self, line: Incoming) -> None:
-        event = event_named(self._graph.model, line.event)
+    def _come_in(self, line: IncomingEvent) -> None:
+        event = find_event(self._graph.model, line.event)
         if not self._controller.engine.enabled(event_name(event)):
             if event.kind == sct.EventKind.canceled and self._clients[event] in self._robot.goals:
                 hint = f"write `error from {self._called(event)} because canceled`"
@@ -244,7 +244,7 @@ class Player(Drive):
         else:
             self._bring(event, line, self._acts[event])
 
-    def _bring(self, source: sct.Event, line: Incoming, act: Callable[[Any], None]) -> None:
+    def _bring(self, source: sct.Event, line: IncomingEvent, act: Callable[[Any], None]) -> None:
         """Handle incoming data that has the shape of the event `source`."""
         data, fields = self._message(source, line)
 
@@ -254,7 +254,7 @@ class Player(Drive):
 
         self._let_in(come_in)
 
-    def _message(self, source: sct.Event, line: Incoming, *others: sct.Event) -> tuple[Any, dict[str, Any]]:
+    def _message(self, source: sct.Event, line: IncomingEvent, *others: sct.Event) -> tuple[Any, dict[str, Any]]:
         """Return a message with the data of a line, and its fields that are set or differ from zero.
 
         `others` are further events that read it.
@@ -269,10 +269,10 @@ class Player(Drive):
                 data = {"value": _by_index(line.data, reads)}
             given = with_nan(dict(line.data)) if is_message else None
             played = TraceLine(line.span.line, 0.0, "in", event_name(event), data, given)
-            fields = merged(fields, Reader(described(kind)).message([played]))
+            fields = merged(fields, Reader(describe_incoming(kind)).message([played]))
         values = leaf_values(fields)
         defaults = kind.defaults(values)
-        return kind.message(values), nested({**values, **defaults}) if defaults else fields
+        return kind.message(values), nest({**values, **defaults}) if defaults else fields
 
     def _publish(self, topic: rosgraph.Subscription, data: Any) -> None:
         self._controller.receive(topic, data)
@@ -289,12 +289,12 @@ class Player(Drive):
         goal = self._robot.goals[action]
         goal.accepted = self._now if goal.accepted is None else goal.accepted
 
-    def _end(self, action: rosgraph.ActionClient, outcome: Outcome, data: Any) -> None:
+    def _end(self, action: rosgraph.ActionClient, outcome: GoalOutcome, data: Any) -> None:
         self._robot.goals.pop(action).handlers.ended(outcome, data, "")
 
     # Failures
 
-    def _fail(self, event: sct.Event, line: Incoming) -> None:
+    def _fail(self, event: sct.Event, line: IncomingEvent) -> None:
         client = self._clients[event]
         reason = Failure(line.reason or possible_reasons(event)[0])
         is_answer = line.reason is None and line.data is not None and isinstance(client, rosgraph.ServiceClient)
@@ -305,7 +305,7 @@ class Player(Drive):
         else:
             self._fail_goal(client, reason, line)
 
-    def _answer_unreadably(self, client: Client, line: Incoming) -> None:
+    def _answer_unreadably(self, client: Client, line: IncomingEvent) -> None:
         """Answer with data that the node can't read: that of a line, or a message without elements of arrays."""
         event, others = client.response.event, [client.error.event] if isinstance(client, rosgraph.ActionClient) else []
         blank = self.incoming[event].message({})
@@ -339,7 +339,7 @@ class Player(Drive):
         while not self._has_happened(client.error.event) and caller.waiting:
             self._pass_period()
 
-    def _fail_goal(self, client: rosgraph.ActionClient, reason: Failure, line: Incoming) -> None:
+    def _fail_goal(self, client: rosgraph.ActionClient, reason: Failure, line: IncomingEvent) -> None:
         if reason is Failure.CANCELED and self._controller.engine.enabled(event_name(client.canceled.event)):
             hint = f"write `canceled from {self._called(client.canceled.event)}`"
             raise NamingError("the controller cancels this goal itself", hint)
@@ -353,7 +353,7 @@ class Player(Drive):
             self._forget(client)
             match reason:
                 case Failure.ABORTED | Failure.CANCELED | Failure.LOST:
-                    goal.handlers.ended(Outcome(reason), result, "")
+                    goal.handlers.ended(GoalOutcome(reason), result, "")
                 case Failure.REJECTED:
                     goal.handlers.rejected()
                 case _:
@@ -394,7 +394,7 @@ class Player(Drive):
             del self._robot.goals[client]
 
     def _has_happened(self, event: sct.Event) -> bool:
-        return any(json.loads(line)["event"] == event_name(event) for line in self._lines.kept[self._since :])
+        return any(json.loads(line)["event"] == event_name(event) for line in self._lines.lines[self._since :])
 
     def _refuse(self, event: sct.Event) -> None:
         """Refuse to cancel the goal that would end with an event."""
@@ -428,14 +428,14 @@ class Player(Drive):
 
     # Expectations
 
-    def _verdict(self, line: Allowed, event: sct.Event) -> Diagnostic | None:
+    def _verdict(self, line: Permission, event: sct.Event) -> Diagnostic | None:
         engine = self._controller.engine
         by, told = engine.blocked_by(event_name(event)), words(event)
         failing = engine.failing(event_name(event))
         if not line.forbidden:
             if by is None:
                 return None
-            why = f"{called(failing)} forbids it" if failing else _WHY[by]
+            why = f"{quote_requirements(failing)} forbids it" if failing else _WHY[by]
             return line.fault(f"the {told} is not allowed: {why}", self._state())
         if by in (None, Blocked.PLANT):
             why = "it is allowed" if by is None else _WHY[Blocked.PLANT]
@@ -445,11 +445,11 @@ class Player(Drive):
             for requirement in failing
         ):
             return None
-        others = called(failing) if failing else "synthesis"
+        others = quote_requirements(failing) if failing else "synthesis"
         return line.fault(f"the {told} is not forbidden by `{line.by}`, but by {others}", self._state())
 
-    def _sent(self, line: Sent, event: sct.Event) -> Diagnostic | None:
-        lines = enumerate(map(json.loads, self._lines.kept[self._since :]), self._since)
+    def _sent(self, line: SentCommand, event: sct.Event) -> Diagnostic | None:
+        lines = enumerate(map(json.loads, self._lines.lines[self._since :]), self._since)
         found = [(number, entry) for number, entry in lines if entry["event"] == event_name(event)]
         told = words(event)
         if not line.expected:
@@ -499,7 +499,7 @@ _WHY = {
 }
 
 
-def _is_raw(reads: Sequence[Read], data: Any) -> bool:
+def _is_raw(reads: Sequence[LoggedValue], data: Any) -> bool:
     """Return whether data has the fields of the ROS message, not what the event log has in their place.
 
     The event log has literals for enums, and lists for arrays that the model reads as a whole. Raises NamingError for

@@ -42,7 +42,7 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Incoming(Line):
+class IncomingEvent(Line):
     """Incoming event from the robot; `event` is named as for `explain`, such as `scan` or `dock.error`.
 
     `data` is the data of the event as in the event log. `is_message`: it has all fields of the ROS message. `reason`:
@@ -78,7 +78,7 @@ class Holds(Line):
 
 
 @dataclass(frozen=True)
-class Allowed(Line):
+class Permission(Line):
     """Expectation that an event is allowed or forbidden, optionally by a certain requirement."""
 
     event: str
@@ -87,7 +87,7 @@ class Allowed(Line):
 
 
 @dataclass(frozen=True)
-class Sent(Line):
+class SentCommand(Line):
     """Expectation that a command was sent since the last step, or not; optionally with this data."""
 
     event: str
@@ -116,7 +116,7 @@ def read_scenarios(file: str, text: str) -> tuple[list[Scenario], list[Holds], l
         start_of_file = Line(file, Span(1, 1, 1, 1))
         reader.findings.append(start_of_file.fault("the file has no scenario", 'begin with `scenario "…"`'))
     for scenario in reader.scenarios:
-        if not any(isinstance(step, (Holds, Allowed, Sent)) for step in scenario.steps):
+        if not any(isinstance(step, (Holds, Permission, SentCommand)) for step in scenario.steps):
             reader.findings.append(scenario.line.fault("nothing is expected in this scenario", "write `expect …`"))
     return reader.scenarios, reader.conditions, sorted(reader.findings, key=lambda finding: finding.span.line)
 
@@ -196,7 +196,7 @@ class _Reader:
         elif step.is_refusal:
             yield Refusal(line.file, line.span, step.event)
         else:
-            yield Incoming(line.file, line.span, step.event, step.data, step.is_message, step.reason)
+            yield IncomingEvent(line.file, line.span, step.event, step.data, step.is_message, step.reason)
 
     def _expected(self, text: str, line: Line) -> Iterator[Line]:
         given = _EXPECTED.fullmatch(text)
@@ -219,10 +219,10 @@ class _Reader:
             data = self._data(text, given, line)
             if not expected and data is not None:
                 self.findings.append(line.fault("what is not sent has no data", "leave out `with …`"))
-            yield Sent(line.file, line.span, event_in_words(given), expected, data)
+            yield SentCommand(line.file, line.span, event_in_words(given), expected, data)
         else:
             by = given["by"].strip().strip('"') if given["by"] else None
-            yield Allowed(line.file, line.span, event_in_words(given), bool(given["forbidden"]), by)
+            yield Permission(line.file, line.span, event_in_words(given), bool(given["forbidden"]), by)
 
     def _data(self, text: str, given: re.Match[str], line: Line) -> Any:
         """Return the data at the end of an expectation; None if there is none, or if it can't be parsed."""

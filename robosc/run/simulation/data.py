@@ -22,7 +22,7 @@ from robosc.model.semantics.messages import is_structured, receptions, source_of
 from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import event_name, plant_of
 from robosc.model.semantics.walks import operands
-from robosc.run.runtime.core.event_log import nested
+from robosc.run.runtime.core.event_log import nest
 from robosc.run.runtime.core.node_data import NodeData
 from robosc.run.simulation.unreadable import Unreadable, past_end
 from robosc.run.simulation.wire_fit import DIGITS, WireFit, in_short, place
@@ -150,7 +150,7 @@ class EventData:
                     told: Value = reason or ""
                 else:
                     told = computed[given.text] if given.text in computed else self._value(event, given, value)
-                found[given.name] = domain.shown(domain.internal(told))
+                found[given.name] = domain.external(domain.internal(told))
             except ValueError as error:
                 raise DataError(f"{self._label(given, value)}: {error}") from None
         return found
@@ -245,7 +245,7 @@ class EventData:
         assert self._node is not None
         return str(self._node.literal(conversion, self._received(event, _ABSENT, path)))
 
-    def fitting(self, event: str, values: Mapping[str, Value]) -> dict[str, Value]:
+    def fit_reason(self, event: str, values: Mapping[str, Value]) -> dict[str, Value]:
         """Return values of an event's inputs, with those replaced that do not fit its reason."""
         declared = self._events[event]
         reason = next((given.name for given in declared.inputs if is_reason(given)), None)
@@ -253,11 +253,11 @@ class EventData:
             return dict(values)
         if not brings_data(declared, str(values[reason])):
             return self.inputs(event, {"reason": values[reason]})
-        if self.unreadable(event, self.shaped(event, values)) is None:
+        if self.unreadable(event, self.shape(event, values)) is None:
             return dict(values)
         return {**values, reason: possible_reasons(declared)[0]}
 
-    def shaped(
+    def shape(
         self, event: str, values: Mapping[str, Value], others: Mapping[tuple[str, ...], Any] | None = None
     ) -> dict[str, Any]:
         """Return data that gives the event's inputs these values, by name; `others` are further values by path."""
@@ -272,15 +272,15 @@ class EventData:
             return shown
         if len(paths) == 1 and next(iter(paths)) in ((), ("data",)):  # as in an event log
             return {"value": next(iter(paths.values())), **shown}
-        return {"value": nested(paths), **shown}
+        return {"value": nest(paths), **shown}
 
     def _path(self, given: sct.Input) -> tuple[str, ...]:
         """Return the path of an input in the data of its event."""
         assignment = self._assignments.get(given)
         return tuple(_words(given)) if assignment is None else tuple(map(_field, _access(assignment).steps))
 
-    def _received(self, event: str, data: Any, path: tuple[str, ...] = ()) -> _Given:
-        return _Given(data, path, self._defaults, event)
+    def _received(self, event: str, data: Any, path: tuple[str, ...] = ()) -> _EventValues:
+        return _EventValues(data, path, self._defaults, event)
 
     def _value(self, event: str, given: sct.Input, data: Any) -> Value:
         assignment = self._assignments.get(given)
@@ -309,7 +309,7 @@ class EventData:
             raise DataError(f"expected one of {literals}, or the data to tell it from: {error}") from None
 
 
-class _Given(NamedTuple):
+class _EventValues(NamedTuple):
     """JSON in place of data from ROS, and its path in the data of its event."""
 
     value: Any
@@ -317,7 +317,7 @@ class _Given(NamedTuple):
     defaults: WireFit | None
     event: str
 
-    def below(self, value: Any, step: str) -> _Given:
+    def below(self, value: Any, step: str) -> _EventValues:
         """Return a field or an element."""
         return self._replace(value=value, path=(*self.path, step))
 
@@ -346,7 +346,7 @@ class _Given(NamedTuple):
 class _JsonData(NodeData):
     """Node data that reads JSON in place of data from ROS."""
 
-    def literal(self, conversion: rosgraph.Conversion, data: _Given) -> str:
+    def literal(self, conversion: rosgraph.Conversion, data: _EventValues) -> str:
         """Return the literal that a conversion makes of data. Raises DataError, also for data of unused rules."""
         for _, part in [read for rule in conversion.rules for read in tree(rule.condition)]:
             if isinstance(part, rosgraph.WireAccess) and part.quantifier is None and not operands(part):
@@ -354,7 +354,7 @@ class _JsonData(NodeData):
                     self.leaf(self._reach(part, data), part.type)
         return str(self.convert(conversion, data).name)
 
-    def _field(self, owner: _Given, name: str) -> _Given:
+    def _field(self, owner: _EventValues, name: str) -> _EventValues:
         value = owner.value
         if value is not _ABSENT and not isinstance(value, dict):
             raise DataError(f"{owner.place} is {in_short(value)}, expected an object with {name}")
@@ -369,7 +369,7 @@ class _JsonData(NodeData):
     def leaf(self, value: Any, kind: ex.Type | None) -> Any:
         if isinstance(kind, rosgraph.ArrayType):
             return super().leaf(_list(value), kind)
-        if kind is None or not isinstance(value, _Given):
+        if kind is None or not isinstance(value, _EventValues):
             return value  # an object, or an element of an array that was read as a whole
         return super().leaf(_basic(value, kind), kind)
 
@@ -377,7 +377,7 @@ class _JsonData(NodeData):
 class _Array(Sequence[Any]):
     """Elements of an array in JSON, with their places; the array may be long and have few."""
 
-    def __init__(self, array: _Given) -> None:
+    def __init__(self, array: _EventValues) -> None:
         self._array = array
         self._elements = _elements(array)
         self._length = max(max(self._elements, default=-1) + 1, array.length)
@@ -393,12 +393,12 @@ class _Array(Sequence[Any]):
         return self._array.below(self._elements.get(index, _ABSENT), str(index))
 
 
-def _list(array: _Given | list[_Given]) -> Sequence[_Given]:
+def _list(array: _EventValues | list[_EventValues]) -> Sequence[_EventValues]:
     """Return the elements of an array in JSON; a slice is returned unchanged."""
-    return _Array(array) if isinstance(array, _Given) else array
+    return _Array(array) if isinstance(array, _EventValues) else array
 
 
-def _elements(array: _Given) -> dict[int, Any]:
+def _elements(array: _EventValues) -> dict[int, Any]:
     data = array.value
     if data is _ABSENT:
         return {}
@@ -409,7 +409,7 @@ def _elements(array: _Given) -> dict[int, Any]:
     raise DataError(f"{array.place} is {in_short(data)}, expected a list, or an object from index to element")
 
 
-def _basic(given: _Given, kind: ex.Type | None) -> Any:
+def _basic(given: _EventValues, kind: ex.Type | None) -> Any:
     name, plain, zero = next((basic for known, basic in _BASIC.items() if isinstance(kind, known)), ("", object, 0))
     data = given.value
     if data is _ABSENT:
@@ -499,4 +499,4 @@ def _words(given: sct.Input) -> list[str]:
 
 def _default(kind: ex.Type, value: Any = 0) -> Value:
     domain = Domain(kind)
-    return domain.shown(domain.clamp(0 if value is None else int(value)))
+    return domain.external(domain.clamp(0 if value is None else int(value)))

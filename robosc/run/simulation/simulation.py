@@ -42,7 +42,7 @@ def whole_state(engine: Engine) -> dict[str, Value]:
 
 
 @dataclass(frozen=True)
-class Happened:
+class RequestResult:
     """Requested event: whether it happened, else what blocked it, and the state afterwards."""
 
     event: str
@@ -89,7 +89,7 @@ class Simulation:
         """`types`: the definitions of ROS types, for fields missing in data; None: those of the environment."""
         self.engine = Engine(model)
         self.data = EventData(self.engine, graph, types)
-        self.trace: list[Happened] = []
+        self.trace: list[RequestResult] = []
         self._before: list[State] = []
         self._inputs = {event_name(event): list(event.inputs) for plant in model.plants for event in plant.events}
 
@@ -98,26 +98,26 @@ class Simulation:
         """The enabled events, in the order of the model."""
         return [event for event in self.engine.events if self.engine.enabled(event)]
 
-    def perform(self, event: str, data: Mapping[str, Any] | None = None) -> Happened:
+    def perform(self, event: str, data: Mapping[str, Any] | None = None) -> RequestResult:
         """Perform an event with data in the shape of the event log if it is enabled, else change nothing.
 
         A refusal to cancel a goal changes nothing, too. Raises DataError, and KeyError for an unknown event.
         """
         if event == REFUSE:
             given = data or {}
-            return Happened(event, given, refusal(self.engine, given["of"]), whole_state(self.engine))
+            return RequestResult(event, given, refusal(self.engine, given["of"]), whole_state(self.engine))
         inputs = self.data.inputs(event, data or {})
         before = self.engine.state
         by = self.engine.blocked_by(event) or self.data.unreadable(event, data or {})
         if by is None:
             self.engine.perform(event, inputs)
-        happened = Happened(event, data or {}, by, whole_state(self.engine))
+        happened = RequestResult(event, data or {}, by, whole_state(self.engine))
         if by is None:
             self._before.append(before)
             self.trace.append(happened)
         return happened
 
-    def undo(self) -> Happened | None:
+    def undo(self) -> RequestResult | None:
         """Take back the last event that happened and return it; None if there is none."""
         if not self.trace:
             return None
@@ -131,9 +131,9 @@ class Simulation:
             return None
         event = random.choice(enabled)
         values = {given.name: _any(given.type, random) for given in self._inputs[event]}
-        return event, self.data.shaped(event, self.data.fitting(event, values))
+        return event, self.data.shape(event, self.data.fit_reason(event, values))
 
-    def random_step(self, random: Random) -> Happened | None:
+    def random_step(self, random: Random) -> RequestResult | None:
         """Perform one of the enabled events, with random data; return None if none is enabled."""
         chosen = self.random_event(random)
         return None if chosen is None else self.perform(*chosen)
@@ -147,7 +147,7 @@ class Simulation:
         if by is Blocked.PLANT:
             return "the robot is not ready for it"
         if by is Blocked.REQUIREMENT:
-            texts = [failing.text for failing in self.engine.failing(event) if failing.text]
+            texts = [failing.text for failing in self.engine.failing_requirements(event) if failing.text]
             return f"forbidden by {' and '.join(texts) or 'a requirement'}"
         supervisor = self.engine.model.supervisor
         assert supervisor is not None

@@ -11,7 +11,7 @@ from robosc.base.files import reading as files
 from robosc.base.files.json_reading import JsonError, json_value
 from robosc.base.recordings import recorded_texts
 from robosc.language.text import decode
-from robosc.run.simulation.script import WAIT, Step, read_script, unfit_data
+from robosc.run.simulation.script import WAIT, ScriptStep, read_script, unfit_data
 from robosc.run.simulation.simulation import LoopSimulation
 from robosc.run.simulation.tracker import ReportError, Tracker
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from robosc.analysis.paths import TraceStep
     from robosc.base.diagnostics import Diagnostic
     from robosc.run.simulation.simulation import Simulation
-    from robosc.run.simulation.tracker import Told
+    from robosc.run.simulation.tracker import ReportedMoment
 
 
 class PlayError(Exception):
@@ -35,7 +35,7 @@ class PlayError(Exception):
         self.texts = texts or {}
 
 
-def script_steps(simulation: Simulation, path: str) -> list[Step]:
+def script_steps(simulation: Simulation, path: str) -> list[ScriptStep]:
     """Return the steps of a script or event log. Raises PlayError, and OSError if it can't be read."""
     text, faults = decode(path, files.read(path))
     events = [*simulation.engine.events, WAIT]
@@ -47,7 +47,7 @@ def script_steps(simulation: Simulation, path: str) -> list[Step]:
     return steps
 
 
-def recorded_moments(simulation: Simulation, path: str, node: str | None) -> Iterator[tuple[float, Told]]:
+def recorded_moments(simulation: Simulation, path: str, node: str | None) -> Iterator[tuple[float, ReportedMoment]]:
     """Yield the recorded reports of a node with their times in seconds; the simulation is in the state after each.
 
     `node` is its full name; None means the only node that reports this robot. Raises PlayError, RecordingError, and
@@ -79,7 +79,7 @@ def recorded_moments(simulation: Simulation, path: str, node: str | None) -> Ite
         raise PlayError(f"{path} has no reports of this robot on {asked}{f': {fault}' if fault else ''}")
 
 
-def counterexample_steps(simulation: Simulation, wanted: str | None) -> tuple[list[Step], str]:
+def counterexample_steps(simulation: Simulation, wanted: str | None) -> tuple[list[ScriptStep], str]:
     """Return a counterexample of a property and the explanation of `verify`; None means the first refuted one.
 
     Irrelevant data has the defaults of ROS. Raises PlayError if there is no counterexample.
@@ -103,9 +103,9 @@ def _is_called(verified: str, wanted: str) -> bool:
     return verified == wanted or re.match(rf"property {re.escape(wanted)}(?!\w)", verified) is not None
 
 
-def _steps(simulation: Simulation, trace: Sequence[TraceStep]) -> list[Step]:
+def _steps(simulation: Simulation, trace: Sequence[TraceStep]) -> list[ScriptStep]:
     inputs = {event: simulation.data.inputs(event, {}) for event in {step.event for step in trace}}
     return [
-        Step(number, step.event, simulation.data.shaped(step.event, {**inputs[step.event], **step.inputs}))
+        ScriptStep(number, step.event, simulation.data.shape(step.event, {**inputs[step.event], **step.inputs}))
         for number, step in enumerate(trace, 1)
     ]

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 from robosc.model import expression as ex
 from robosc.model import rosgraph, sct
 from robosc.model.semantics.communication import happens_anyway
-from robosc.model.semantics.definition import reported
+from robosc.model.semantics.definition import reported_variables
 from robosc.model.semantics.evaluation import evaluate
 from robosc.model.semantics.messages import reads_elements
 from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import event_name
-from robosc.run.runtime.core.event_log import shown
-from robosc.run.runtime.core.node_data import NodeData, bounded
+from robosc.run.runtime.core.event_log import format_value
+from robosc.run.runtime.core.node_data import NodeData, within_range
 from robosc.run.simulation.data import reason_of, whole
 from robosc.run.simulation.unreadable import UnknownError, read
 
@@ -33,7 +33,7 @@ Values = dict[str, bool | int | float | str | None]
 _NOT_GIVEN = object()
 
 
-class Kept:
+class StoredVariables:
     """Tracker of those variables of components that reports on `~/state` show and the supervisor does not need."""
 
     def __init__(self, engine: Engine, graph: rosgraph.RosGraph | None) -> None:
@@ -46,7 +46,7 @@ class Kept:
         if graph is None:
             return
         self._node = NodeData(graph, engine)
-        shown = reported(graph)
+        shown = reported_variables(graph)
         for plant in engine.model.plants:
             if plant.kind == sct.PlantKind.behaviour:
                 self._names |= {
@@ -78,11 +78,13 @@ class Kept:
                 if assigned.variable in self._names:
                     value = self._value(assigned.value, values, data) if taken else None
                     kind = assigned.variable.type
-                    changed[self._names[assigned.variable]] = None if value is None else _finite(bounded(value, kind))
+                    changed[self._names[assigned.variable]] = (
+                        None if value is None else _finite(within_range(value, kind))
+                    )
         self._engine.state = now
         return {**values, **changed}
 
-    def told(self, values: Values, variables: Mapping[str, Any]) -> Values:
+    def update(self, values: Values, variables: Mapping[str, Any]) -> Values:
         """Return the values updated by a report, by `Component.variable`; other variables of it are ignored."""
         known = {name: value for name, value in variables.items() if name in self.initial}
         return {
@@ -153,5 +155,5 @@ class Kept:
 def _finite(value: Any) -> bool | int | float | str | None:
     if value is None or (isinstance(value, float) and not math.isfinite(value)):
         return None
-    told: bool | int | float | str | None = shown(value)  # type: ignore[assignment]
+    told: bool | int | float | str | None = format_value(value)  # type: ignore[assignment]
     return told

@@ -22,7 +22,7 @@ class ReportError(ValueError):
 
 
 @dataclass(frozen=True)
-class Told:
+class ReportedMoment:
     """Event that has happened, None if only a state was reported; the state after it, and the transitions taken.
 
     `variables` are the reported values of that state, by `Component.variable`, also of those that the
@@ -68,7 +68,7 @@ class Tracker:
         self.timers = Timers(self.engine, 0)
         self._began = None
 
-    def report(self, report: Any) -> Iterator[Told]:
+    def report(self, report: Any) -> Iterator[ReportedMoment]:
         """Yield the events of a report; the engine is in the state after each. Raises ReportError."""
         if not isinstance(report, dict):
             raise ReportError("it is no object")
@@ -118,7 +118,7 @@ class Tracker:
         ends: Mapping[sct.Plant | sct.DiscreteVariable, Value],
         variables: Mapping[str, Any],
         now: int,
-    ) -> Iterator[Told]:
+    ) -> Iterator[ReportedMoment]:
         self.timers.at(now)
         paths = self._paths(events, ends)
         for number, event in enumerate(events):
@@ -132,10 +132,10 @@ class Tracker:
                 after |= ends
             self.engine.state = self.engine.state_with(after)
             edges = tuple(edge for edge, _ in taken.values() if edge.source is not None)
-            yield Told(event, self.engine.state, edges, variables if is_last else {})
+            yield ReportedMoment(event, self.engine.state, edges, variables if is_last else {})
         if not events:
             self.engine.state = self.engine.state_with(ends)
-            yield Told(None, self.engine.state, (), variables)
+            yield ReportedMoment(None, self.engine.state, (), variables)
 
     def _paths(
         self, events: Sequence[str], ends: Mapping[sct.Plant | sct.DiscreteVariable, Value]

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.base.ros_types import DefinitionError, RosDistribution, RosTypes, Section
 from robosc.base.ros_types.unknown_fields import unknown_field
-from robosc.base.ros_types.wire import INTEGER_RANGES, PRIMITIVES, Basic, Nested, Sequence, WireType
+from robosc.base.ros_types.wire import INTEGER_RANGES, PRIMITIVES, Basic, NestedType, Sequence, WireType
 from robosc.model import expression as ex
 from robosc.model import rosgraph
-from robosc.model.semantics.messages import EACH, Read, kept_reads, receptions, sections
+from robosc.model.semantics.messages import EACH, MessageRead, kept_reads, receptions, sections
 from robosc.model.semantics.messages import reads as all_reads
 from robosc.model.semantics.roles import event_name
 
@@ -60,7 +60,7 @@ class _Kind(NamedTuple):
     @property
     def fields(self) -> Mapping[str, WireType] | None:
         """The fields of an object; None if they are unknown."""
-        if not isinstance(self.type, Nested):
+        if not isinstance(self.type, NestedType):
             return None
         try:
             return self.distribution.fields(self.type.package, self.type.name, self.section)
@@ -70,7 +70,7 @@ class _Kind(NamedTuple):
     @property
     def is_known(self) -> bool:
         """Whether the definition of the type is known."""
-        return not isinstance(self.type, Nested) or self.fields is not None
+        return not isinstance(self.type, NestedType) or self.fields is not None
 
     def inside(self, step: str, *, is_element: bool) -> _Kind | None:
         """Return the type of a field or an element; None if it is unknown."""
@@ -89,7 +89,7 @@ class _Part:
 
     value: Any
     kinds: tuple[_Kind, ...]
-    reads: tuple[tuple[Path, Read], ...]
+    reads: tuple[tuple[Path, MessageRead], ...]
     path: Path = ()
     is_lone: bool = False
     literals: bool = True
@@ -129,7 +129,7 @@ class _Part:
                 if path and (path[0] == step or (is_array and _is_index(path[0])))
             )
             yield replace(
-                _opened(tuple(reads), self.literals),
+                _open_part(tuple(reads), self.literals),
                 value=value,
                 kinds=tuple(kind for kind in kinds if kind is not None),
                 path=(*self.path, step),
@@ -146,9 +146,9 @@ def place(path: Path) -> str:
     return "value" + "".join(f"[{step}]" if step.isdigit() else f".{step}" for step in path)
 
 
-def _opened(reads: tuple[tuple[Path, Read], ...], literals: bool) -> _Part:
+def _open_part(reads: tuple[tuple[Path, MessageRead], ...], literals: bool) -> _Part:
     """Return a part with its reads, also those by the rules of enumerations."""
-    opened: list[tuple[Path, Read]] = []
+    opened: list[tuple[Path, MessageRead]] = []
     conversions: list[rosgraph.Conversion] = []
     pending = list(reads)
     while pending:
@@ -167,7 +167,7 @@ class WireFit:
         """`types`: the definitions of ROS types; None: those of the environment."""
         self._types = types
         self._sections = sections(graph)
-        self._reads: dict[str, tuple[tuple[Path, Read], ...]] = {}
+        self._reads: dict[str, tuple[tuple[Path, MessageRead], ...]] = {}
         values: dict[str, list[ex.Expression]] = {}
         for reception in receptions(graph):
             name = event_name(reception.event)
@@ -191,7 +191,7 @@ class WireFit:
 
     def wire_type(self, event: str, path: tuple[str, ...]) -> WireType | None:
         """Return the type of a field in ROS 2 or else ROS 1; None if it is unknown."""
-        found = (known.reached(*self._sections[event], path) for known in self.types.distributions)
+        found = (known.type_at(*self._sections[event], path) for known in self.types.distributions)
         return next((reached[0] for reached in found if reached is not None), None)
 
     def fault(self, event: str, value: Any, *, is_message: bool = False) -> Fault | None:
@@ -243,9 +243,9 @@ class WireFit:
     def _whole(self, event: str, value: Any, *, literals: bool = True) -> _Part:
         """Return all data of an event; a lone value stands for the only field that is read, or that exists."""
         package, name, section = self._sections[event]
-        kinds = tuple(_Kind(Nested(package, name), section, known) for known in self.types.distributions)
+        kinds = tuple(_Kind(NestedType(package, name), section, known) for known in self.types.distributions)
         reads = self._reads.get(event, ())
-        part = replace(_opened(reads, literals), value=value, kinds=kinds)
+        part = replace(_open_part(reads, literals), value=value, kinds=kinds)
         if isinstance(value, dict) or part.is_literal:
             return part
         heads = {path[0] if path else "" for path, _ in part.reads}
@@ -274,14 +274,14 @@ def _expected(part: _Part) -> str | None:
         return None if None in expected else expected[0]
     for path, read in part.reads:
         if path:
-            found = _misfit(Sequence(Nested("", "")) if _is_index(path[0]) else Nested("", ""), part.value)
+            found = _misfit(Sequence(NestedType("", "")) if _is_index(path[0]) else NestedType("", ""), part.value)
         elif isinstance(read.type, ex.IntegerType):
             several = [_misfit(Basic(name), part.value) for name in _INTEGERS]
             found = None if None in several else several[0]
         elif isinstance(read.type, ex.BooleanType | ex.DoubleType | ex.StringType):
             found = _misfit(Basic(_WIDEST[type(read.type)]), part.value)
         elif isinstance(read.type, rosgraph.ArrayType):
-            found = _misfit(Sequence(Nested("", "")), part.value)
+            found = _misfit(Sequence(NestedType("", "")), part.value)
         else:
             found = None
         if found is not None:
@@ -292,7 +292,7 @@ def _expected(part: _Part) -> str | None:
 def _misfit(wire: WireType, value: Any) -> str | None:
     """Return the expected data in place of a value; None if the value fits the type."""
     match wire:
-        case Nested():
+        case NestedType():
             return None if isinstance(value, dict) else "an object"
         case Sequence():
             return _misfit_of_array(wire, value)

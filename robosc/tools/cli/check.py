@@ -10,7 +10,7 @@ import click
 from robosc.base.diagnostics import ModelError
 from robosc.base.diagnostics.visible import visible
 from robosc.base.files import reading as files
-from robosc.base.files.reading import noting
+from robosc.base.files.reading import record_inputs
 from robosc.base.files.writing import write_file
 from robosc.base.ros_types import RosTypes
 from robosc.language.checks import check as rules_of
@@ -77,7 +77,7 @@ def command(models: Sequence[str], form: str, fix: bool, watch: bool, paths: Pat
     )
 
 
-class _Checked(NamedTuple):
+class _CheckedModel(NamedTuple):
     """A model and all its findings."""
 
     reading: Reading
@@ -90,13 +90,13 @@ def _mend(model: str, paths: Paths) -> None:
         raise CallError(f"{model} is no .rscd file: only a text can be mended")
     interfaces = RosTypes(paths.interfaces)
 
-    def checked(content: str) -> _Checked:
+    def checked(content: str) -> _CheckedModel:
         interruption.check()
-        with noting():  # files that this reads may be overwritten
+        with record_inputs():  # files that this reads may be overwritten
             reading = read_text(model, paths.libraries, interfaces, Documents({model: content}))
-        return _Checked(reading, [*reading.findings, *rules_of(reading.base, reading.findings, interfaces)])
+        return _CheckedModel(reading, [*reading.findings, *rules_of(reading.base, reading.findings, interfaces)])
 
-    with noting():
+    with record_inputs():
         written = files.read(model)
     try:
         content = before = written.decode("utf-8")
@@ -130,7 +130,7 @@ def _check(models: Sequence[str], form: str, paths: Paths) -> None:
                 except (click.ClickException, click.exceptions.Exit, OSError):
                     raise
                 except Exception as fault:
-                    if interruption.happened():
+                    if interruption.was_interrupted():
                         raise
                     faults.append(fault)
     finally:

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
     from robosc.base.diagnostics import Diagnostic
     from robosc.m2t.models import Models
-    from robosc.tools.debugger import Wanted
+    from robosc.tools.debugger import LaunchTarget
 
 
-class _Kept(Report):
+class _FindingList(Report):
     """Collects findings for the debugger's client, which shows them."""
 
     def _show(self) -> None:
@@ -62,8 +62,8 @@ def command(port: int | None, once: bool) -> None:
     )
 
 
-def _load(wanted: Wanted) -> tuple[Models, Sequence[Diagnostic], Mapping[str, str]]:
-    report = _Kept(aside=True)
+def _load(wanted: LaunchTarget) -> tuple[Models, Sequence[Diagnostic], Mapping[str, str]]:
+    report = _FindingList(aside=True)
     given = [
         f"{name}={value if isinstance(value, str) else json.dumps(value)}" for name, value in wanted.parameters.items()
     ]

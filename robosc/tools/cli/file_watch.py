@@ -30,7 +30,7 @@ def whenever_files_change(
     changed: list[str] = []
     while True:
         before = _stamps([*named, *read], folders)
-        with files.noting():
+        with files.record_inputs():
             do(changed)
             read = files.inputs()
         # Files that were read for the first time are compared with their present state, all others with their earlier

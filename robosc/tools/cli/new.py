@@ -52,7 +52,7 @@ def command(name: str, folder: str | None, yes: bool, **given: Any) -> None:
     """
     # Reject invalid names in the call before any prompt.
     _choices(name, given)
-    choices = _choices(name, given if yes or not _on_terminal() else _asked(given))
+    choices = _choices(name, given if yes or not _on_terminal() else _ask(given))
     target = Path(folder or choices.stem)
     if os.path.lexists(target) and (not target.is_dir() or any(target.iterdir())):
         raise CallError(f"{visible(str(target))} is there already: nothing is written over; -o names another folder")
@@ -79,7 +79,7 @@ def _on_terminal() -> bool:
     return sys.stdin.isatty() and sys.stdout.isatty()
 
 
-def _asked(given: dict[str, Any]) -> dict[str, Any]:
+def _ask(given: dict[str, Any]) -> dict[str, Any]:
     """Return the options of the call, with the user's answers for all missing choices."""
     answers = dict(given)
     if not answers["ros"]:

@@ -62,7 +62,7 @@ def progress(what: str | Callable[[], str]) -> Iterator[None]:
 
 
 @contextmanager
-def synthesizing(model: sct.SupervisoryControlModel) -> Iterator[Statistics]:
+def show_progress(model: sct.SupervisoryControlModel) -> Iterator[Statistics]:
     """Show the progress of a model's synthesis in the `with` block, which fills these statistics.
 
     An interrupt ends it within a moment. Raises MemoryError with a hint if memory is exhausted.

@@ -128,10 +128,10 @@ def supervise_models(models: Models, report: Report, *, memory: int | None = Non
     """
     from robosc.analysis.supervise import supervise
     from robosc.synthesis import MEMORY
-    from robosc.tools.cli.progress import synthesizing
+    from robosc.tools.cli.progress import show_progress
 
     if supervise_otherwise(models.sct, memory=memory) is None and models.sct.supervisor is None:
-        with synthesizing(models.sct) as statistics:
+        with show_progress(models.sct) as statistics:
             supervision = supervise(models.sct, memory=memory or MEMORY, statistics=statistics)
         report.add(supervision.findings)
         report.stop_on_errors()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from robosc.analysis.wording import with_words
+from robosc.analysis.wording import describe_event
 from robosc.base.files import reading as files
 from robosc.engine import Settings
 from robosc.language.text import decode
@@ -124,7 +124,7 @@ def _run(simulation: Simulation, number: int, seed: int) -> None:
 
 
 def _converse(simulation: Simulation, seed: int) -> None:
-    named = {event_name(event): with_words(event) for event in simulation.engine.roles.events}
+    named = {event_name(event): describe_event(event) for event in simulation.engine.roles.events}
     session = Session(simulation, seed, named)
     interactive = sys.stdin.isatty()
     if hasattr(sys.stdin, "reconfigure"):

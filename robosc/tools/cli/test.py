@@ -23,7 +23,7 @@ from robosc.m2t.models import Models, TraceTest
 from robosc.m2t.targets import TARGETS
 from robosc.run.node_tests.trace_test import player_files
 from robosc.run.scenario_tests import RULE, LiveError, LiveNode, Player, read_scenarios, unfit_data, unknown_events
-from robosc.run.scenario_tests.conditions import extended
+from robosc.run.scenario_tests.conditions import add_conditions
 from robosc.run.scenario_tests.operations import Operations
 from robosc.tools.cli import CallError, say
 from robosc.tools.cli.options import (
@@ -150,10 +150,10 @@ def _read(
         scenarios += found
         conditions += expected
     report.add(unknown_events(plain.sct, scenarios))
-    return (*_meant(path, plain, conditions, paths, report), scenarios)
+    return (*_resolve_conditions(path, plain, conditions, paths, report), scenarios)
 
 
-def _meant(
+def _resolve_conditions(
     path: str, plain: Models, conditions: Sequence[Holds], paths: Paths, report: Report
 ) -> tuple[Models, Mapping[Holds, ex.Expression]]:
     """Return models with which the conditions can be evaluated, and their expressions in these models."""
@@ -162,11 +162,11 @@ def _meant(
     text, _ = decode(path, files.read(path))
     assert plain.robosc is not None
     span = plain.robosc.source.span  # type: ignore[union-attr]  # a model from a text has a place
-    longer = extended(text.content, text.offset(span.end_line, span.end_column), conditions)
+    longer = add_conditions(text.content, text.offset(span.end_line, span.end_column), conditions)
     types = RosTypes(paths.interfaces)
     reading = read_text(path, paths.libraries, types, Documents({path: longer.text}))
     findings = [*reading.findings, *(check(reading.base, reading.findings, types) if reading.base else ())]
-    report.add(longer.told(finding) for finding in findings if finding.severity is Severity.ERROR)
+    report.add(longer.move_to_scenario(finding) for finding in findings if finding.severity is Severity.ERROR)
     report.stop_on_errors()
     robot: rsc.Robot = reading.base  # type: ignore[assignment]  # equal except for the properties
     model = robosc.to_sct(robot)
@@ -211,5 +211,5 @@ def _compared(models: Models, settings: Configuration, runs: Sequence[Operations
     generated = robosc.generate("supervisor", models, settings)
     with temporary_folder() as folder:
         program = CProgram(models.sct, folder, compiler, generated)
-        differences = [run.compared(program) for run in runs]
+        differences = [run.compare(program) for run in runs]
     return [difference for difference in differences if difference is not None]

@@ -13,7 +13,7 @@ from robosc.base.files.reading import inputs
 from robosc.base.files.writing import write
 from robosc.language.configuration import LOCATIONS
 from robosc.m2t.targets import TARGETS, Target, targets, together
-from robosc.synthesis.memory import bounded
+from robosc.synthesis.memory import limit_memory
 from robosc.tools.cli import CallError, interruption, put, say
 from robosc.tools.cli.options import Paths, configuration, findings_format, memory, model, paths, synthesizer
 from robosc.tools.cli.progress import progress
@@ -153,7 +153,7 @@ def command(
         models = replace(models, folder=folder)
         tests: dict[Target, TraceTest | None] = {}
         files = {}
-        with together(), bounded(megabytes << 20, "generating"):
+        with together(), limit_memory(megabytes << 20, "generating"):
             for target in targets:
                 with progress(f"generating {target.name}"):
                     tests[target] = _tests(target, models, settings, paths) if with_tests else None

@@ -6,7 +6,7 @@ of a model at which a run can stop, `stops` decides where it stops, and `views` 
 """
 
 from robosc.tools.debugger.adapter import Adapter
-from robosc.tools.debugger.launch import Loader, Wanted
+from robosc.tools.debugger.launch import LaunchTarget, Loader
 from robosc.tools.debugger.protocol import Connection, serve_port, serve_stdio
 
-__all__ = ["Adapter", "Connection", "Loader", "Wanted", "serve_port", "serve_stdio"]
+__all__ = ["Adapter", "Connection", "LaunchTarget", "Loader", "serve_port", "serve_stdio"]

@@ -7,7 +7,7 @@ import sys
 import traceback
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from robosc.analysis.explain import NamingError, Renderer, event_named
+from robosc.analysis.explain import NamingError, Renderer, find_event
 from robosc.base.diagnostics import as_text
 from robosc.base.files.json_reading import JsonError, json_value
 from robosc.model.semantics.failures import possible_reasons
@@ -19,7 +19,7 @@ from robosc.run.simulation.script import WAIT, spoken
 from robosc.run.simulation.sources import PlayError
 from robosc.tools.debugger.launch import Launch, RequestError
 from robosc.tools.debugger.stops import FILTERS, Stop, Stops
-from robosc.tools.debugger.views import Views, at, shown
+from robosc.tools.debugger.views import Views, at, format_value
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -115,7 +115,7 @@ class Adapter:
             body, after = await self._answer(command, {} if arguments is None else arguments)
             self._connection.send("response", **answer, success=True, **({} if body is None else {"body": body}))
         except (RequestError, PlayError, NamingError, DataError, OSError, MemoryError) as error:
-            self._refuse(answer, _said(error))
+            self._refuse(answer, _error_text(error))
             if isinstance(error, PlayError) and error.findings:
                 self._output(as_text.render(error.findings, error.texts), "stderr")
             if command == "launch":
@@ -184,7 +184,7 @@ class Adapter:
 
     def _launched(self, arguments: Mapping[str, Any]) -> _Run:
         launch = Launch.of(arguments)
-        models, findings, texts = self._load(launch.wanted)
+        models, findings, texts = self._load(launch.target)
         self._output(as_text.render(findings, texts), "stderr")
         simulation = Simulation(models.sct, models.rosgraph, models.ros_types)
         steps, told = launch.steps(simulation)
@@ -225,10 +225,10 @@ class Adapter:
         if moment is None:
             self._over(run)
             return
-        self._output(self._told(moment))
+        self._output(self._describe(moment))
         run.stops.look()
         hit = run.stops.hit(moment)
-        self._stopped(hit or Stop("step", run.views.told(moment)))
+        self._stopped(hit or Stop("step", run.views.describe(moment)))
 
     def _over(self, run: _Run) -> None:
         """Stop or terminate, because no step is left to play."""
@@ -268,7 +268,7 @@ class Adapter:
         moment = run.replay.back()
         if moment is None:
             return None, lambda: self._stopped(Stop("entry", "this is where the robot began"))
-        self._output(f"taken back: {run.views.told(moment)}\n")
+        self._output(f"taken back: {run.views.describe(moment)}\n")
         run.stops.look()
         return None, lambda: self._stopped(Stop("step", "one step back"))
 
@@ -337,7 +337,7 @@ class Adapter:
         stop = run.stops.hit(moment)
         if stop is None and run.replay.is_over:
             stop = Stop("pause", "the script is at its end")
-        return self._told(moment), stop, False
+        return self._describe(moment), stop, False
 
     def _back(self, run: _Run, _: int) -> tuple[str, Stop | None, bool]:
         moment = run.replay.back()
@@ -353,14 +353,16 @@ class Adapter:
             run.replay.forward()
             run.stops.look()
             stop = run.stops.hit(last)
-        return f"taken back: {run.views.told(moment)}\n", stop, False
+        return f"taken back: {run.views.describe(moment)}\n", stop, False
 
-    def _told(self, moment: Moment) -> str:
+    def _describe(self, moment: Moment) -> str:
         run = self._debugged
         changed = [
-            f"    {name} = {shown(value)}\n" for name, value in moment.after.items() if moment.before[name] != value
+            f"    {name} = {format_value(value)}\n"
+            for name, value in moment.after.items()
+            if moment.before[name] != value
         ]
-        return "".join([f"{run.views.told(moment)}\n", *changed])
+        return "".join([f"{run.views.describe(moment)}\n", *changed])
 
     def _stopped(self, stop: Stop) -> None:
         self._stop = stop
@@ -493,7 +495,7 @@ class Adapter:
         if text in ("", "help", "?"):
             return {"result": _HELP, "variablesReference": 0}, None
         if word == "why":
-            told = run.views.explained(event_name(event_named(run.replay.engine.model, rest.strip())))
+            told = run.views.explain(event_name(find_event(run.replay.engine.model, rest.strip())))
             said = Renderer(run.replay.engine.model, at).answer(told)
             return {"result": said, "variablesReference": 0}, None
         if word == WAIT:
@@ -503,21 +505,23 @@ class Adapter:
             return {"result": value, "variablesReference": 0}, None
         moment = run.replay.inject(*_event(run.replay.engine.model, text))
         if moment.by is not None:
-            raise RequestError(run.views.told(moment))
-        return {"result": self._told(moment).rstrip(), "variablesReference": 0}, lambda: self._injected(run, [moment])
+            raise RequestError(run.views.describe(moment))
+        return {"result": self._describe(moment).rstrip(), "variablesReference": 0}, lambda: self._injected(
+            run, [moment]
+        )
 
     def _waited(self, run: _Run, text: str) -> tuple[Mapping[str, Any], Callable[[], None]]:
         steps, findings = read_script("", text, [WAIT])
         if findings:
             raise RequestError(f"{findings[0].message}; {findings[0].hint}")
         moments = run.replay.let_go_by(steps[0].data["seconds"])
-        said = "".join(map(self._told, moments)).rstrip()
+        said = "".join(map(self._describe, moments)).rstrip()
         return {"result": said, "variablesReference": 0}, lambda: self._injected(run, moments)
 
     @staticmethod
     def _is_event(run: _Run, text: str) -> bool:
         try:
-            event_named(run.replay.engine.model, text)
+            find_event(run.replay.engine.model, text)
         except NamingError:
             return False
         return True
@@ -525,7 +529,7 @@ class Adapter:
     def _injected(self, run: _Run, moments: Sequence[Moment]) -> None:
         run.stops.look()
         hit = next(filter(None, (run.stops.hit(moment) for moment in moments)), None)
-        self._stopped(hit or Stop("step", run.views.told(moments[-1])))
+        self._stopped(hit or Stop("step", run.views.describe(moments[-1])))
 
     def _completions(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
         engine = self._debugged.replay.engine
@@ -590,7 +594,7 @@ def _event(model: sct.SupervisoryControlModel, text: str) -> tuple[str, Mapping[
     """Return an event and its data as typed, by its name or in words. Raises NamingError, RequestError."""
     word, _, rest = text.partition(" ")
     try:
-        event = event_named(model, word)
+        event = find_event(model, word)
     except NamingError:
         try:
             step = spoken(model, text) if word in FIRST_WORDS else None
@@ -617,7 +621,7 @@ def _data(text: str, event: sct.Event) -> Mapping[str, Any]:
     return data if isinstance(data, dict) and set(data) <= known else {"value": data}
 
 
-def _said(error: Exception) -> str:
+def _error_text(error: Exception) -> str:
     if isinstance(error, OSError) and error.filename:
         return f"{error.filename}: {error.strerror}"
     return str(error)

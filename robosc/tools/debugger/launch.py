@@ -12,7 +12,7 @@ from robosc.run.simulation.sources import counterexample_steps, script_steps
 if TYPE_CHECKING:
     from robosc.base.diagnostics import Diagnostic
     from robosc.m2t.models import Models
-    from robosc.run.simulation import Simulation, Step
+    from robosc.run.simulation import ScriptStep, Simulation
 
 #: Default number of random events after which a run stops by itself.
 _MOST_AT_RANDOM = 10_000
@@ -35,7 +35,7 @@ class RequestError(Exception):
 
 
 @dataclass(frozen=True)
-class Wanted:
+class LaunchTarget:
     """The model to launch, its folders for libraries and ROS definitions, and the values of its parameters."""
 
     program: str
@@ -45,14 +45,14 @@ class Wanted:
 
 
 #: Loads a model with its supervisor, its findings such as warnings, and the texts of its files. Raises PlayError.
-Loader = Callable[[Wanted], tuple["Models", "Sequence[Diagnostic]", Mapping[str, str]]]
+Loader = Callable[[LaunchTarget], tuple["Models", "Sequence[Diagnostic]", Mapping[str, str]]]
 
 
 @dataclass(frozen=True)
 class Launch:
     """The arguments of a launch; `most` is the number of random events after which the run stops."""
 
-    wanted: Wanted
+    target: LaunchTarget
     script: str | None
     counterexample: str | bool | None
     seed: int
@@ -76,7 +76,7 @@ class Launch:
             raise RequestError("launch: `script` and `counterexample` exclude each other")
         libraries, interfaces = (tuple(map(str, arguments.get(name) or ())) for name in ("libraries", "interfaces"))
         return cls(
-            Wanted(arguments["program"], libraries, interfaces, arguments.get("parameters") or {}),
+            LaunchTarget(arguments["program"], libraries, interfaces, arguments.get("parameters") or {}),
             script,
             counterexample,
             arguments.get("seed") or 0,
@@ -84,7 +84,7 @@ class Launch:
             arguments.get("stopOnEntry") is not False,
         )
 
-    def steps(self, simulation: Simulation) -> tuple[list[Step] | None, str]:
+    def steps(self, simulation: Simulation) -> tuple[list[ScriptStep] | None, str]:
         """Return the steps to play (None to play random events), and a message about them.
 
         Raises PlayError, and OSError if the script cannot be read.

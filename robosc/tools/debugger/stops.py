@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.explain import NamingError
 from robosc.tools.debugger.breakpoints import Targets, Watcher, real
-from robosc.tools.debugger.views import shown
+from robosc.tools.debugger.views import format_value
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -81,7 +81,7 @@ class Stops:
     def hit(self, moment: Moment) -> Stop | None:
         """Return the reason for which the last step stops the run, or None if it does not."""
         if moment.by is not None and REFUSED in self._filters:
-            return Stop("exception", self._views.told(moment))
+            return Stop("exception", self._views.describe(moment))
         for reason, points in (("breakpoint", self._in_files), ("function breakpoint", self._by_name)):
             hit = [
                 (point.identifier, description) for point in points for description in self._hit(point.targets, moment)
@@ -90,7 +90,7 @@ class Stops:
                 return Stop(reason, hit[0][1], list(dict.fromkeys(number for number, _ in hit)))
         changed = [name for name in self._by_value if moment.before[name] != moment.after[name]]
         if changed:
-            said = f"{changed[0]} is {shown(moment.after[changed[0]])}"
+            said = f"{changed[0]} is {format_value(moment.after[changed[0]])}"
             return Stop("data breakpoint", said, [self._by_value[name] for name in changed])
         forbidden = self._hit(self._filters.get(FORBIDDEN, ()), moment)
         return Stop("exception", forbidden[0]) if forbidden else None

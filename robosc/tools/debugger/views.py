@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.blocking_in_words import counterexample_in_words
-from robosc.analysis.explain import NEEDLESS, explain, explored, state_given
+from robosc.analysis.explain import NEEDLESS, explain, explore, parse_state
 from robosc.analysis.wording import in_words, name, words
 from robosc.base.files import reading as files
 from robosc.model import sct
@@ -84,11 +84,11 @@ class Views:
         if last.event == WAIT:
             return self._frame("time has gone by", self._model)
         if last.event == REFUSE:
-            return self._frame(self.told(last), self._model)
+            return self._frame(self.describe(last), self._model)
         event = self.events[last.event]
-        return self._frame(self.told(last), next(iter(last.edges), event))
+        return self._frame(self.describe(last), next(iter(last.edges), event))
 
-    def told(self, moment: Moment) -> str:
+    def describe(self, moment: Moment) -> str:
         """Return a step in words."""
         if moment.event == WAIT:
             return f"{_seconds(moment.end.timers[0])} on the clock"
@@ -163,7 +163,7 @@ class Views:
 
     def _variables(self, plant: sct.Plant) -> list[Variable]:
         return [
-            Variable(variable.name, shown(self._engine.value(variable)), path=f"{name(plant)}.{variable.name}")
+            Variable(variable.name, format_value(self._engine.value(variable)), path=f"{name(plant)}.{variable.name}")
             for variable in plant.variables
         ]
 
@@ -194,14 +194,14 @@ class Views:
         ]
 
     def _why(self, event: str) -> Callable[[], Sequence[Variable]]:
-        return lambda: self._reasons(self.explained(event))
+        return lambda: self._reasons(self.explain(event))
 
-    def explained(self, event: str) -> Explanation:
+    def explain(self, event: str) -> Explanation:
         """Return the explanation of `explain` for an event in the present state."""
         key = event, self._engine.state
         if key not in self._explained:
-            codes = state_given(self._model, json.dumps({"state": whole_state(self._engine)}))
-            self._explained[key] = explored(self._model, lambda system: explain(system, self.events[event], codes))
+            codes = parse_state(self._model, json.dumps({"state": whole_state(self._engine)}))
+            self._explained[key] = explore(self._model, lambda system: explain(system, self.events[event], codes))
         return self._explained[key]
 
     def _reasons(self, told: Explanation) -> list[Variable]:
@@ -231,9 +231,9 @@ class Views:
             if owner in (name(plant), plant.name):
                 variable = next((variable for variable in plant.variables if variable.name == last), None)
                 if variable is not None:
-                    return shown(self._engine.value(variable))
+                    return format_value(self._engine.value(variable))
                 if last in {location.name for location in plant.locations}:
-                    return shown(here == last)
+                    return format_value(here == last)
         return None
 
     def state_name(self, text: str) -> str | None:
@@ -255,7 +255,7 @@ def at(element: Any) -> str:
     return f"{Path(file).name}:{span.line}:{span.column}"
 
 
-def shown(value: object) -> str:
+def format_value(value: object) -> str:
     """Return a value as the language writes it."""
     return json.dumps(value) if isinstance(value, bool) else str(value)
 

@@ -52,11 +52,11 @@ def completion(snapshot: Snapshot, analysis: Analysis, params: types.CompletionP
         documents = {**snapshot.documents}
         if document is not None:
             documents[analysis.path] = replace(document, content=content)
-        with_text = snapshot.with_documents(documents)
+        with_text = snapshot.replace_documents(documents)
         return read(analysis.path, snapshot.libraries, snapshot.ros_types, with_text.texts)
 
     def libraries() -> list[str]:
-        return LibraryPath(snapshot.libraries, snapshot.texts).known(analysis.path)
+        return LibraryPath(snapshot.libraries, snapshot.texts).library_names(analysis.path)
 
     start, end, found = proposals(text.content, offset, reread, snapshot.ros_types, libraries)
     place = to_range(text, start, end)

@@ -40,7 +40,7 @@ _SEVERITIES = {
 }
 
 
-def published(snapshot: Snapshot, analyses: Iterable[Analysis]) -> dict[Path, list[types.Diagnostic]]:
+def findings_by_path(snapshot: Snapshot, analyses: Iterable[Analysis]) -> dict[Path, list[types.Diagnostic]]:
     """Return the findings in each text that these analyses read, by its path, each finding once."""
     findings: dict[str, list[Diagnostic]] = {}
     texts: dict[str, Text] = {}
@@ -54,7 +54,7 @@ def published(snapshot: Snapshot, analyses: Iterable[Analysis]) -> dict[Path, li
     }
 
 
-def abandoned(why: str) -> types.Diagnostic:
+def abandoned_diagnostic(why: str) -> types.Diagnostic:
     """Return the diagnostic of a text whose analysis was abandoned."""
     place = types.Range(types.Position(0, 0), types.Position(0, 1))
     message = f"{why}: the findings of this text are missing\nhint: run `robosc check` on it"
@@ -160,7 +160,7 @@ def _change(
 def _checked(snapshot: Snapshot, analysis: Analysis, content: str) -> Analysis:
     """Return the analysis with another content of the text."""
     document = snapshot.documents[analysis.path]
-    after = snapshot.with_documents({**snapshot.documents, analysis.path: replace(document, content=content)})
+    after = snapshot.replace_documents({**snapshot.documents, analysis.path: replace(document, content=content)})
     found = after.analysis(analysis.path)
     assert found is not None
     return found

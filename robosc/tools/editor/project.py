@@ -188,7 +188,7 @@ class _Memory:
     """The last analysis of each text, and the texts on which it depends."""
 
     analyses: dict[Path, tuple[Analysis, Mapping[Path, str], Mapping[Path, str | None]]] = field(default_factory=dict)
-    made: int = 0
+    analysis_count: int = 0
     locks: defaultdict[Path, threading.Lock] = field(default_factory=lambda: defaultdict(threading.Lock))
 
     @contextmanager
@@ -210,8 +210,8 @@ class _Memory:
 
     def count(self) -> None:
         """Count an analysis; collect garbage now and then, because models contain reference cycles."""
-        self.made += 1
-        if self.made % _COLLECTED == 0:
+        self.analysis_count += 1
+        if self.analysis_count % _COLLECTED == 0:
             gc.collect()
 
 
@@ -291,16 +291,16 @@ class Snapshot:
             for path, document in self.documents.items()
         }
 
-    def edited(self, edits: Mapping[Path, Iterable[Edit]]) -> Snapshot:
+    def apply_edits(self, edits: Mapping[Path, Iterable[Edit]]) -> Snapshot:
         """Return the project after edits of texts, by their paths."""
         documents = dict(self.documents)
         for path, changes in edits.items():
             before = documents.get(path) or Document(path.as_uri(), None, self.texts.read(path).decode())
             text, _ = decode(str(path), before.content.encode("utf-8", "surrogatepass"))
             documents[path] = replace(before, content=text.after(changes, before.content))
-        return self.with_documents(documents)
+        return self.replace_documents(documents)
 
-    def with_documents(self, documents: Mapping[Path, Document]) -> Snapshot:
+    def replace_documents(self, documents: Mapping[Path, Document]) -> Snapshot:
         """Return the project with other texts."""
         return replace(self, documents=documents, memory=_Memory())
 

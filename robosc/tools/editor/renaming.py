@@ -12,7 +12,7 @@ from pygls.exceptions import JsonRpcException
 from robosc.base.diagnostics import Edit
 from robosc.language.checks.automatic_edits import objection
 from robosc.language.tokens import is_name
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 from robosc.tools.editor.places import to_edits, to_offset, to_range
 from robosc.tools.editor.reading import occurrences
 
@@ -73,7 +73,7 @@ def rename_everywhere(
     for file, reference in occurrences(snapshot, analysis, name.start):
         texts[file.text.file] = file.text
         place = file.text.span(reference.start, reference.end)
-        edits.setdefault(file.text.file, []).append(Edit(place, written(new)))
+        edits.setdefault(file.text.file, []).append(Edit(place, escape_keyword(new)))
     _require_same(snapshot, analysis, name.name, edits, mended)
     changes = {file: to_edits(texts[file], found) for file, found in edits.items() if found}
     return types.WorkspaceEdit({snapshot.uri(file): found for file, found in changes.items()})
@@ -118,7 +118,7 @@ def _require_same(
             if any(re.search(rf"\b{re.escape(word)}\b", part) for part in skipped):
                 raise _refused(f"mend {file.text.file} first: `{word}` stands in what can't be read")
     by_path = {Path(name).resolve(): changes for name, changes in edits.items()}
-    after = snapshot.edited(by_path)
+    after = snapshot.apply_edits(by_path)
     for path, found in analyses.items():
         renamed = after.analysis(path)
         own = {name: by_path[at] for name in found.reading.files if (at := Path(name).resolve()) in by_path}

@@ -23,7 +23,7 @@ from pygls.exceptions import JsonRpcException
 from pygls.lsp.server import LanguageServer
 from pygls.protocol import LanguageServerProtocol, lsp_method
 
-from robosc.base.interruption import checking
+from robosc.base.interruption import call_at_checkpoints
 from robosc.language.grammar import language
 from robosc.tools.editor import reading
 from robosc.tools.editor.answers import Verdict
@@ -33,9 +33,9 @@ from robosc.tools.editor.completion import OPTIONS, SIGNATURE_OPTIONS, completio
 from robosc.tools.editor.findings import (
     ADD_LIBRARY_FOLDER,
     CODE_ACTION_OPTIONS,
-    abandoned,
+    abandoned_diagnostic,
     code_actions,
-    published,
+    findings_by_path,
     quickly,
 )
 from robosc.tools.editor.places import to_offset
@@ -188,7 +188,7 @@ class Server(LanguageServer):
         def in_turn() -> _Answer:
             check = self._check(snapshot, canceled)
             check()
-            with checking(check):
+            with call_at_checkpoints(check):
                 return job(snapshot)
 
         try:
@@ -251,16 +251,16 @@ class Server(LanguageServer):
         analyses, told = [], {}
         for path in snapshot.documents:
             try:
-                with checking(self._check(snapshot)):
+                with call_at_checkpoints(self._check(snapshot)):
                     analysis = snapshot.analysis(path)
             except JsonRpcException as error:
                 if error.code != _REQUEST_FAILED:
                     raise
-                told[path] = [abandoned(_TOO_LONG)]
+                told[path] = [abandoned_diagnostic(_TOO_LONG)]
                 continue
             if analysis is not None:
                 analyses.append(analysis)
-        told |= {path: found for path, found in published(snapshot, analyses).items() if path not in told}
+        told |= {path: found for path, found in findings_by_path(snapshot, analyses).items() if path not in told}
         for analysis in analyses:
             if analysis.is_large:
                 analysis.slices.prepare()
@@ -270,7 +270,7 @@ class Server(LanguageServer):
         """Publish the findings of the definition in which the user typed, and return whether this is possible."""
 
         def in_turn() -> list[types.Diagnostic] | None:
-            with checking(self._check(snapshot)):
+            with call_at_checkpoints(self._check(snapshot)):
                 return quickly(snapshot, path)
 
         try:

@@ -53,7 +53,7 @@ class Slices:
     def prepare(self) -> None:
         """Compute the data for the first slice in advance."""
         self._needed(set(), set())
-        _ = self._naming, self._visible, self._made
+        _ = self._naming, self._visible, self._templates
 
     def slice(self, text: Text) -> Slice | None:
         """Return the slice for a text that differs from this one within one definition, or None."""
@@ -73,7 +73,7 @@ class Slices:
         if index + 1 < len(self._ranges) and "\n" not in before[end : self._ranges[index + 1][0]]:
             return None
         words = set(_WORD.findall(after[start : end + grown]))
-        kept = self._needed({index, *self._naming[index], *self._made, *self._neighbours(index)}, words)
+        kept = self._needed({index, *self._naming[index], *self._templates, *self._neighbours(index)}, words)
         parts, at = [], 0
         for other, (first, behind) in enumerate(self._ranges):
             moved = grown if other > index else 0
@@ -148,7 +148,7 @@ class Slices:
         return found
 
     @cached_property
-    def _made(self) -> set[int]:
+    def _templates(self) -> set[int]:
         return {
             index
             for element, index in self._declared.items()

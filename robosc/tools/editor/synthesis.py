@@ -99,7 +99,7 @@ class Verdicts:
 
     def ask(self, asked: Question, libraries: Sequence[str], interfaces: Sequence[str]) -> Verdict | str | None:
         """Return the verdict on exactly these texts, or why there is none; None while synthesis runs."""
-        known = self.known(asked.path, asked.texts)
+        known = self.lookup(asked.path, asked.texts)
         if known is not None:
             return known
         running = self._running.get(asked.path)
@@ -110,7 +110,7 @@ class Verdicts:
             self._running[asked.path] = asked.texts, task
         return None
 
-    def known(self, path: Path, texts: Mapping[str, str]) -> Verdict | str | None:
+    def lookup(self, path: Path, texts: Mapping[str, str]) -> Verdict | str | None:
         """Return the verdict on exactly these texts, or None if there is none."""
         found = self._answers.get(path)
         return found[1] if found is not None and found[0] == texts else None

@@ -7,12 +7,12 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.wording import name, words
-from robosc.language.highlighting.lines import coloured
+from robosc.language.highlighting.lines import color_lines
 from robosc.language.text import Text
 from robosc.model import expression as ex
 from robosc.model import rosgraph, sct
 from robosc.model.places import place
-from robosc.model.semantics.definition import reported
+from robosc.model.semantics.definition import reported_variables
 from robosc.model.semantics.domains import domain
 from robosc.model.semantics.edges import edges_of, origin
 from robosc.model.semantics.roles import Roles, event_name, plant_of
@@ -67,7 +67,7 @@ def describe(models: Models, texts: Mapping[str, str]) -> dict[str, Any]:
         "commands": [event_name(event) for event in commands_of(model)],
         "requirements": requirements + invariants,
         "communication": [] if models.rosgraph is None else _communication(models),
-        "files": [{"name": PurePath(path).name, "lines": coloured(path, text)} for path, text in texts.items()],
+        "files": [{"name": PurePath(path).name, "lines": color_lines(path, text)} for path, text in texts.items()],
     }
 
 
@@ -105,7 +105,7 @@ def _is_written(edge: sct.Edge) -> bool:
 class _Describer:
     def __init__(self, texts: Mapping[str, str], graph: rosgraph.RosGraph | None) -> None:
         self._graph = graph
-        self._reported = {} if graph is None else reported(graph)
+        self._reported = {} if graph is None else reported_variables(graph)
         self._texts = {path: Text(path, text) for path, text in texts.items()}
         self.files: dict[str, int] = {path: number for number, path in enumerate(texts)}
 
@@ -130,7 +130,10 @@ class _Describer:
         A transition from every state has `source` null.
         """
         position = {location: number for number, location in enumerate(plant.locations)}
-        variables: list[sct.DiscreteVariable | rosgraph.NodeVariable] = [*plant.variables, *self._kept(plant)]
+        variables: list[sct.DiscreteVariable | rosgraph.NodeVariable] = [
+            *plant.variables,
+            *self._stored_variables(plant),
+        ]
         return {
             "name": name(plant),
             "key": plant.name,
@@ -162,7 +165,7 @@ class _Describer:
             ],
         }
 
-    def _kept(self, plant: sct.Plant) -> list[rosgraph.NodeVariable]:
+    def _stored_variables(self, plant: sct.Plant) -> list[rosgraph.NodeVariable]:
         """Return the variables of a component that only the node stores, not the supervisor."""
         return self._reported.get(plant.origin, []) if plant.kind == sct.PlantKind.behaviour else []
 

@@ -37,7 +37,7 @@ class Live(Moments):
         self._publishers = publishers
         self._say()
 
-    def defined(self, text: str) -> None:
+    def receive_definition(self, text: str) -> None:
         """Receive the JSON text of a definition, when a node or this listener has started."""
         self._faults.clear()
         try:
@@ -48,7 +48,7 @@ class Live(Moments):
         self._tracker.begin()
         self._say()
 
-    def told(self, text: str) -> None:
+    def receive_report(self, text: str) -> None:
         """Receive the JSON text of one report on `~/state`."""
         try:
             report = json_value(text)

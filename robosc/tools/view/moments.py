@@ -7,11 +7,11 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.blocking_in_words import counterexample_in_words
-from robosc.analysis.explain import NEEDLESS, explain, explored, state_given
+from robosc.analysis.explain import NEEDLESS, explain, explore, parse_state
 from robosc.analysis.wording import in_words, words
 from robosc.model.semantics.roles import Roles, event_name
 from robosc.run.simulation.simulation import whole_state
-from robosc.run.simulation.stored_variables import Kept
+from robosc.run.simulation.stored_variables import StoredVariables
 from robosc.tools.view.description import automata_of, commands_of, transitions_of
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from robosc.model import rosgraph, sct
     from robosc.run.simulation import Simulation
     from robosc.run.simulation.stored_variables import Values
-    from robosc.run.simulation.tracker import Told
+    from robosc.run.simulation.tracker import ReportedMoment
 
 
 #: Maximum number of cached answers of `explain`.
@@ -76,9 +76,9 @@ class Moments:
         self.moments: list[dict[str, Any]] = []
         self._states: list[State] = []
         self._running: list[Mapping[str, int]] = []
-        self._node = Kept(self.engine, graph)
+        self._node = StoredVariables(self.engine, graph)
         #: Variables that only the node stores, at each moment.
-        self._kept: list[Values] = []
+        self._stored: list[Values] = []
         self._verdicts: dict[str, dict[str, str] | None] = {}
 
     @property
@@ -108,30 +108,30 @@ class Moments:
         if self._states:
             moment |= self._changes(self._states[-1], state)
             moment["timers"] = _changed(self._running[-1], running)
-            before = self._kept[-1]
+            before = self._stored[-1]
             moment["state"] |= {name: value for name, value in kept.items() if value != before[name]}
         else:
             moment |= self._whole(running, kept)
         self.moments.append(moment)
         self._states.append(state)
         self._running.append(dict(running))
-        self._kept.append(kept)
+        self._stored.append(kept)
         if self._most is not None and len(self.moments) > self._most:
             self._forget(len(self.moments) // 2)
 
     @property
     def _kept_last(self) -> Values:
         """Variables that only the node stores, at the last moment."""
-        return self._kept[-1] if self._kept else self._node.initial
+        return self._stored[-1] if self._stored else self._node.initial
 
-    def _add_told(self, time: float, running: Mapping[str, int], told: Told) -> None:
+    def _add_told(self, time: float, running: Mapping[str, int], told: ReportedMoment) -> None:
         """Add a moment that a node has reported."""
         said = (
             {"words": "what the node says"}
             if told.event is None
-            else {"event": told.event, "words": self.said(told.event)}
+            else {"event": told.event, "words": self.describe_event(told.event)}
         )
-        self._add(time, running, said, told.edges, self._node.told(self._kept_last, told.variables))
+        self._add(time, running, said, told.edges, self._node.update(self._kept_last, told.variables))
 
     def _changes(self, before: State, now: State) -> dict[str, Any]:
         """Return the changes between two states; the engine must be in the second."""
@@ -139,7 +139,7 @@ class Moments:
         state = {}
         for cell, (name, element) in enumerate(now.layout.elements):
             if before.cells[cell] != now.cells[cell]:
-                state[name] = now.layout.domains[cell].shown(now.cells[cell])
+                state[name] = now.layout.domains[cell].external(now.cells[cell])
                 concerned |= dict.fromkeys(self._readers.get(element, ()))
         commands, enabled = {}, {}
         for event in self.events:
@@ -175,7 +175,7 @@ class Moments:
     def _cut(self, length: int) -> None:
         """Remove moments until `length` are left; the engine must be in the state of the last of them."""
         kept = length - self.first
-        del self.moments[kept:], self._states[kept:], self._running[kept:], self._kept[kept:]
+        del self.moments[kept:], self._states[kept:], self._running[kept:], self._stored[kept:]
         self.cuts.append(length)
         self._look()
 
@@ -183,20 +183,20 @@ class Moments:
         """Drop the oldest moments, and give the new first one its complete values."""
         now = self.engine.state
         self.engine.state = self._states[number]
-        first = self.moments[number] | self._whole(self._running[number], self._kept[number])
+        first = self.moments[number] | self._whole(self._running[number], self._stored[number])
         self.engine.state = now
         self._look()
         self.moments[: number + 1] = [first]
-        del self._states[:number], self._running[:number], self._kept[:number]
+        del self._states[:number], self._running[:number], self._stored[:number]
         self.first += number
 
-    def said(self, event: str) -> str:
+    def describe_event(self, event: str) -> str:
         """Return an event in the words of the model."""
         return words(self.events[event]).replace("`", "")
 
     # Listeners and explanations
 
-    async def changed(self, cuts: int, length: int, status: str) -> None:
+    async def wait_for_change(self, cuts: int, length: int, status: str) -> None:
         """Wait until moments are added or removed, or the status changes, compared to the arguments."""
 
         def is_other() -> bool:
@@ -210,7 +210,7 @@ class Moments:
         async with self._changed:
             self._changed.notify_all()
 
-    def explained(self, number: int, event: str) -> dict[str, Any]:
+    def explain(self, number: int, event: str) -> dict[str, Any]:
         """Return the explanation of an event at a moment, in words.
 
         Raises ActionError if there is no such event.
@@ -222,8 +222,8 @@ class Moments:
         if key not in self._explained:
             if len(self._explained) == _MOST_EXPLAINED:
                 self._explained.clear()
-            codes = state_given(self._model, json.dumps({"state": dict(state)}))
-            told = explored(self._model, lambda system: explain(system, self.events[event], codes))
+            codes = parse_state(self._model, json.dumps({"state": dict(state)}))
+            told = explore(self._model, lambda system: explain(system, self.events[event], codes))
             blocking = told.counterexample
             self._explained[key] = {
                 "allowed": told.allowed,

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from random import Random
 
     from robosc.model import rosgraph
-    from robosc.run.simulation import Simulation, Step
+    from robosc.run.simulation import ScriptStep, Simulation
     from robosc.run.simulation.replay import Moment
-    from robosc.run.simulation.tracker import Told
+    from robosc.run.simulation.tracker import ReportedMoment
 
 #: Names of the actions on a run.
 ACTIONS = ("perform", "wait", "undo", "redo", "random", "restart", "continue")
@@ -39,9 +39,9 @@ class Record(Moments):
         self,
         simulation: Simulation,
         graph: rosgraph.RosGraph | None = None,
-        steps: Sequence[Step] | None = None,
+        steps: Sequence[ScriptStep] | None = None,
         seed: int = 0,
-        recorded: Iterable[tuple[float, Told]] | None = None,
+        recorded: Iterable[tuple[float, ReportedMoment]] | None = None,
     ) -> None:
         """Add the recorded reports of a node, with times in seconds, and then play the steps.
 
@@ -109,7 +109,7 @@ class Record(Moments):
             beside = {} if self._graph is None else data_beside(self._graph, self.events[event])
             if others and set(others) != set(beside):
                 raise ActionError(f"`kept` of {event} has the fields {', '.join(map('.'.join, beside)) or '(none)'}")
-            data = self.simulation.data.shaped(event, inputs, others) if inputs or others else {}
+            data = self.simulation.data.shape(event, inputs, others) if inputs or others else {}
         if not isinstance(data, dict | None):
             raise ActionError("data is an object")
         self._replay.freely()
@@ -118,7 +118,7 @@ class Record(Moments):
             self._keep(moment)
         else:
             assert moment.by is not None
-            raise ActionError(f"{self.said(event)}: {self.simulation.reason(event, moment.by)}")
+            raise ActionError(f"{self.describe_event(event)}: {self.simulation.reason(event, moment.by)}")
 
     def _chosen(self, random: Random) -> tuple[str, dict[str, Any]] | None:
         """Return a random possible event with random data, including data that only the node stores."""
@@ -131,7 +131,7 @@ class Record(Moments):
         inputs = self.simulation.data.inputs(event, data)
         if not brings_data(self.events[event], data.get("reason")):
             return event, data
-        return event, self.simulation.data.shaped(event, inputs, others) if others else data
+        return event, self.simulation.data.shape(event, inputs, others) if others else data
 
     def _forward(self, number: int) -> None:
         for _ in range(number):
@@ -154,7 +154,7 @@ class Record(Moments):
     def _words(self, moment: Moment) -> str:
         if moment.event == REFUSE:
             return refusal_in_words(self.engine, moment.data["of"]).replace("`", "")
-        return "time goes by" if moment.event == WAIT else self.said(moment.event)
+        return "time goes by" if moment.event == WAIT else self.describe_event(moment.event)
 
     def _keep(self, moment: Moment | None) -> None:
         told: dict[str, Any] = {}

@@ -95,7 +95,9 @@ class _Answers:
     async def moments(self, request: Request) -> Response:
         """Stream all moments so far, and then each new one."""
         try:
-            return StreamingResponse(told(self._records[self._robot(request)]), media_type="text/event-stream")
+            return StreamingResponse(
+                stream_moments(self._records[self._robot(request)]), media_type="text/event-stream"
+            )
         except ActionError as error:
             return _refused(error, 404)
 
@@ -104,7 +106,7 @@ class _Answers:
         try:
             moment, event = int(request.query_params["moment"]), request.query_params["event"]
             record = self._records[self._robot(request)]
-            return JSONResponse(await run_in_threadpool(record.explained, moment, event))
+            return JSONResponse(await run_in_threadpool(record.explain, moment, event))
         except (ValueError, KeyError, ActionError) as error:
             return _refused(error, 400)
 
@@ -130,7 +132,7 @@ class _Answers:
         return JSONResponse({"moment": record.length - 1})
 
 
-async def told(record: Moments) -> AsyncIterator[str]:
+async def stream_moments(record: Moments) -> AsyncIterator[str]:
     """Yield moments as server-sent events `{from, moments, status}`.
 
     They replace earlier moments from the number `from` on. If `from` skips numbers, the moments in between are no
@@ -138,7 +140,7 @@ async def told(record: Moments) -> AsyncIterator[str]:
     """
     cuts, told, status = len(record.cuts), 0, ""
     while True:
-        await record.changed(cuts, told, status)
+        await record.wait_for_change(cuts, told, status)
         told = max(record.first, min(told, *record.cuts[cuts:], record.length))
         cuts, status = len(record.cuts), record.status
         portion = record.moments[told - record.first :][:_PORTION]

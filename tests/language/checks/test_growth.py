@@ -42,7 +42,7 @@ def test_what_would_be_too_large_is_never_written_out(monkeypatch: pytest.Monkey
         steps += 1
         return copied(*arguments)
 
-    monkeypatch.setattr(expansion, "copied", counted)
+    monkeypatch.setattr(expansion, "copy_tree", counted)
     reading = read("r.rscd", documents=Documents({"r.rscd": text}))
     findings = [*reading.findings, *check(reading.base, reading.findings)]
     assert [finding.message for finding in findings] == [TOO_LARGE]

@@ -20,7 +20,7 @@ from robosc.engine.state import Domain
 from robosc.model import engine, sct
 from robosc.model.semantics.durations import timer_text
 from robosc.model.semantics.roles import event_name
-from robosc.synthesis import encoded
+from robosc.synthesis import use_encoding
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -225,7 +225,7 @@ class TimeComparison:
             first = next(case for case, here in zip(differing, states, strict=True) if (here & last).satisfiable())
             return first, system.trace(path)
 
-        shown = encoded(self._executed.model, look)
+        shown = use_encoding(self._executed.model, look)
         if shown is None:
             return
         case, trace = shown

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
         Claim,
         Domain,
         Event,
+        EventOutcome,
         Literal,
         Machine,
-        Outcome,
         Restriction,
         Slot,
         Value,
@@ -69,7 +69,7 @@ class Effort:
     random: int = 500_000
 
 
-class Walked(NamedTuple):
+class ComparisonExtent(NamedTuple):
     """Extent of the comparison: numbers of states and events, whether it is exhaustive, and random steps.
 
     Without random steps, a comparison that is not exhaustive covers each event in all states, reachable or not.
@@ -84,7 +84,7 @@ class Walked(NamedTuple):
 class _Pair:
     """An event in both readings, with its effects in the states so far."""
 
-    def __init__(self, text: Event, plants: Event, layout: _Layout, most: int) -> None:
+    def __init__(self, text: Event, plants: Event, layout: _SlotLayout, most: int) -> None:
         self.text, self.plants = text, plants
         self.reads = sorted(text.reads | plants.reads)
         self.mask = layout.mask(self.reads)
@@ -117,7 +117,7 @@ class _Pair:
         return {name: domain[random.randrange(_size(domain))] for name, domain in self.domains.items()}
 
 
-class _Layout:
+class _SlotLayout:
     """States as integers, with some bits for each slot that any condition or event reads."""
 
     def __init__(self, domains: Mapping[Slot, Domain]) -> None:
@@ -169,7 +169,7 @@ class _Group:
         return found
 
 
-def _groups(pairs: Iterable[_Pair], layout: _Layout) -> Iterator[_Group]:
+def _groups(pairs: Iterable[_Pair], layout: _SlotLayout) -> Iterator[_Group]:
     """Yield groups of all pairs, in their order."""
     together: list[_Pair] = []
     slots: set[Slot] = set()
@@ -194,7 +194,7 @@ class Lockstep:
         claims = list(zip(text.conditions, plants.conditions, strict=True))
         read = {slot for event in (*text.events.values(), *plants.events.values()) for slot in event.reads}
         read |= {slot for pair in claims for claim in pair for slot in claim.condition.reads}
-        self._layout = _Layout({slot: domain for slot, domain in text.domains.items() if slot in read})
+        self._layout = _SlotLayout({slot: domain for slot, domain in text.domains.items() if slot in read})
         self._pairs = [
             _Pair(event, plants.events[name], self._layout, effort.inputs) for name, event in text.events.items()
         ]
@@ -210,7 +210,7 @@ class Lockstep:
         self._before = {self._initial: self._initial}
         self._waiting = deque(self._before)
 
-    def run(self) -> Walked:
+    def run(self) -> ComparisonExtent:
         """Compare all states, or as many as the effort allows plus a sample; raise DifferenceError."""
         most = min(self._effort.states, self._effort.bits // self._layout.bits)
         is_sampled = any(pair.is_sampled for pair in self._pairs)
@@ -220,7 +220,7 @@ class Lockstep:
             is_whole = self._explore(most) and not is_sampled
             steps = 0 if is_whole else max(1, self._effort.random // len(self._pairs))
         self._wander(steps)
-        return Walked(len(self._before), len(self._pairs), is_whole, steps)
+        return ComparisonExtent(len(self._before), len(self._pairs), is_whole, steps)
 
     def _explore(self, most: int) -> bool:
         """Explore up to `most` states breadth first; return whether these are all."""
@@ -415,7 +415,7 @@ def _same_event(ours: Event, theirs: Event) -> None:
             raise DifferenceError(f"`{name}` of {said}{place} has {_values(domain)} by the text, {there} in the model")
 
 
-def _unlike(ours: Outcome, theirs: Outcome, held: Mapping[Slot, Value], pair: _Pair) -> str:
+def _unlike(ours: EventOutcome, theirs: EventOutcome, held: Mapping[Slot, Value], pair: _Pair) -> str:
     """Return how two readings of an event in a state differ, as text; empty if they agree."""
     mine, other = _changed(ours, held), _changed(theirs, held)
     if (bool(ours.refused), bool(ours.forbidden), mine) == (bool(theirs.refused), bool(theirs.forbidden), other):
@@ -439,7 +439,7 @@ def _unlike(ours: Outcome, theirs: Outcome, held: Mapping[Slot, Value], pair: _P
     raise AssertionError("they do not differ")
 
 
-def _changed(outcome: Outcome, held: Mapping[Slot, Value]) -> dict[Slot, Value]:
+def _changed(outcome: EventOutcome, held: Mapping[Slot, Value]) -> dict[Slot, Value]:
     """Return the writes that change a value."""
     return {slot: value for slot, value in outcome.writes.items() if held.get(slot, None) != value}
 
@@ -451,7 +451,7 @@ def _becomes(slot: Slot, writes: Mapping[Slot, Value]) -> str:
 
 
 def _holds(claim: Claim, held: Mapping[Slot, Value]) -> bool:
-    return bool(claim.condition.compute(held, {})) is claim.wanted
+    return bool(claim.condition.compute(held, {})) is claim.value
 
 
 def _step(pair: _Pair, inputs: Mapping[str, Value]) -> TraceStep:

@@ -86,7 +86,7 @@ class Names:
         self.observers: dict[tuple[robosc.Requirement, Instance | None], Plant] = {
             stated: Plant("requirement", str(number))
             for number, stated in enumerate(
-                (stated for stated in self.stated(robosc.Requirement) if isinstance(stated[0], OBSERVERS)), start=1
+                (stated for stated in self.definitions(robosc.Requirement) if isinstance(stated[0], OBSERVERS)), start=1
             )
         }
         self._meanings: dict[ex.Expression, Meaning | Data] = {}
@@ -95,7 +95,7 @@ class Names:
     def __iter__(self) -> Iterator[Instance]:
         return iter(self._of.values())
 
-    def stated(self, kind: type[_Definition]) -> list[tuple[_Definition, Instance | None]]:
+    def definitions(self, kind: type[_Definition]) -> list[tuple[_Definition, Instance | None]]:
         """Return definitions outside of components, then those in each component."""
         outside = [(definition, None) for definition in self.robot.definitions if isinstance(definition, kind)]
         return [*outside, *((definition, instance) for instance in self for definition in instance.of(kind))]
@@ -104,9 +104,9 @@ class Names:
         self, reference: robosc.CommunicationReference, within: Instance | None
     ) -> tuple[Instance, robosc.CommunicationType]:
         """Return the instance and the communication that a reference names."""
-        return self._meant(reference.component, Environment(within)), reference.communicationType
+        return self._instance_of(reference.component, Environment(within)), reference.communicationType
 
-    def _meant(self, component: robosc.Component | None, place: Environment) -> Instance:
+    def _instance_of(self, component: robosc.Component | None, place: Environment) -> Instance:
         if component is not None and component in place.at_hand:
             return place.at_hand[component]
         if place.within is not None and (component is None or component is place.within.text):
@@ -137,7 +137,7 @@ class Names:
         """Return the ROS name of the parameter that an expression consists of; None if it is no parameter."""
         if not isinstance(expression, robosc.Access) or not isinstance(expression.item, robosc.Parameter):
             return None
-        owner = f"{self._meant(expression.component, place).name}." if _is_member(expression.item) else ""
+        owner = f"{self._instance_of(expression.component, place).name}." if _is_member(expression.item) else ""
         return f"{owner}{expression.item.name}"
 
     def settings(self, expression: ex.Expression, place: Environment) -> tuple[float, float, float]:
@@ -147,7 +147,7 @@ class Names:
         assert isinstance(parameter, robosc.Parameter)
         inside = Environment()
         if _is_member(parameter):
-            inside = self._inside(parameter, self._meant(expression.component, place))
+            inside = self._inside(parameter, self._instance_of(expression.component, place))
         whole = self.domain(parameter.type, inside)
         first = self.constant(parameter.value, inside)
         if isinstance(whole, range):
@@ -227,7 +227,7 @@ class Names:
                 inside = isinstance(automaton.eContainer(), robosc.LocalComponent)
                 plant = self.observers[automaton, place.within if inside else None]
                 return self.leaf(At(Slot(plant), item.name))
-        instance = self._meant(access.component, place) if access.component or _is_member(item) else None
+        instance = self._instance_of(access.component, place) if access.component or _is_member(item) else None
         match item:
             case robosc.State() if instance is not None:
                 return self.leaf(At(Slot(instance.plant), item.name))
@@ -305,9 +305,9 @@ class Names:
         return isinstance(self._meanings.get(part), Slot | At) or any(inside)
 
     def _words(self, expression: ex.Expression) -> list[str]:
-        return fold(self._said, expression)
+        return fold(self._part_words, expression)
 
-    def _said(self, part: ex.Expression, inside: list[list[str]]) -> list[str]:
+    def _part_words(self, part: ex.Expression, inside: list[list[str]]) -> list[str]:
         meaning = self._meanings.get(part)
         if isinstance(meaning, Data):
             return list(meaning.words)

@@ -10,6 +10,8 @@ from robosc.analysis.verify.model_reading.machine import (
     Claim,
     Condition,
     Event,
+    EventEffect,
+    EventInput,
     EventName,
     Length,
     Literal,
@@ -19,11 +21,9 @@ from robosc.analysis.verify.model_reading.machine import (
     Plant,
     Restriction,
     Slot,
-    Taken,
     Timer,
-    Told,
-    compiled,
-    fitting,
+    compile_condition,
+    saturate,
 )
 from robosc.model import expression as ex
 from robosc.model import sct
@@ -44,10 +44,10 @@ class AmbiguousError(Exception):
 
 def read_plants(model: sct.SupervisoryControlModel) -> Machine:
     """Return the reading of plants and requirements, without the supervisor."""
-    return _Reading(model).run()
+    return _PlantReading(model).run()
 
 
-class _Reading:
+class _PlantReading:
     def __init__(self, model: sct.SupervisoryControlModel) -> None:
         self.model = model
         self.machine = Machine()
@@ -71,7 +71,7 @@ class _Reading:
                 held = Slot(called, variable.name)
                 machine.domains[held] = _domain(variable.type)
                 assert variable.initial is not None
-                machine.initial[held] = compiled(variable.initial, self.meaning).compute({}, {})
+                machine.initial[held] = compile_condition(variable.initial, self.meaning).compute({}, {})
                 machine.sources[held] = variable
             for event in plant.events:
                 machine.events[self.name(event)] = Event(
@@ -113,12 +113,12 @@ class _Reading:
             case sct.VariableReference(variable=variable):
                 return Slot(self.plants[variable.eContainer()], variable.name)
             case sct.InputReference():
-                return Told(reference.input.name)
+                return EventInput(reference.input.name)
         assert isinstance(reference, ex.EnumerationLiteralReference)
         return Literal(reference.literal.name)
 
     def condition(self, expression: ex.Expression) -> Condition:
-        return compiled(expression, self.meaning)
+        return compile_condition(expression, self.meaning)
 
     def edges(self, plant: sct.Plant) -> None:
         """Add a participant for each event of a plant, with the edges of its locations."""
@@ -148,13 +148,13 @@ class _Reading:
             reads.update(*(condition.reads for condition in [guard, *(value for _, value in updates)] if condition))
         domains = self.machine.domains
 
-        def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> Taken | None:
-            found: Taken | None = None
+        def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> EventEffect | None:
+            found: EventEffect | None = None
             for edge in [*leaving.get(str(state[slot]), ()), *everywhere] if leaving else everywhere:
                 guard, updates = read[edge]
                 if guard is None or guard.compute(state, inputs):
-                    given = {held: fitting(value.compute(state, inputs), domains[held]) for held, value in updates}
-                    taken = Taken({slot: edge.target.name, **given}, edge)
+                    given = {held: saturate(value.compute(state, inputs), domains[held]) for held, value in updates}
+                    taken = EventEffect({slot: edge.target.name, **given}, edge)
                     if found is not None and found.writes != taken.writes:
                         raise AmbiguousError(edge)
                     found = taken

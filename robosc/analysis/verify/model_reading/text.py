@@ -13,6 +13,8 @@ from robosc.analysis.verify.model_reading.machine import (
     Claim,
     Condition,
     Event,
+    EventEffect,
+    EventInput,
     EventName,
     Length,
     Machine,
@@ -21,11 +23,9 @@ from robosc.analysis.verify.model_reading.machine import (
     Plant,
     Restriction,
     Slot,
-    Taken,
     Timer,
-    Told,
-    compiled,
-    fitting,
+    compile_condition,
+    saturate,
 )
 from robosc.analysis.verify.model_reading.names import (
     OBSERVERS,
@@ -99,10 +99,10 @@ def read_text(robot: robosc.Base, plants: Machine) -> Machine:
     takes the range of values that the node computes; if such a value is assigned to a variable, the range must be the
     variable's.
     """
-    return _Reading(robot, plants).run()
+    return _TextReading(robot, plants).run()
 
 
-class _Reading:
+class _TextReading:
     def __init__(self, robot: robosc.Base, plants: Machine) -> None:
         self.names = Names(robot)
         self.plants = plants
@@ -190,12 +190,12 @@ class _Reading:
     def first_value(self, variable: robosc.Variable, domain: Domain, instance: Instance) -> Value:
         if variable.initial is not None:
             given = self.names.constant(variable.initial, Environment(instance, instance.arguments))
-            return fitting(given, domain)
+            return saturate(given, domain)
         if isinstance(variable.type, robosc.ComplexDataTypeReference):
             assert isinstance(variable.type.type, robosc.EnumDataType)
             rules = variable.type.type.rules
             return next(rule.value.name for rule in rules if isinstance(rule, robosc.EnumDefaultRule))
-        return fitting(0, domain) if isinstance(domain, range) else False
+        return saturate(0, domain) if isinstance(domain, range) else False
 
     def behaviour(self, instance: Instance) -> None:
         tried: dict[EventName, dict[str, list[robosc.Transition]]] = {}
@@ -254,7 +254,7 @@ class _Reading:
         """
         location = Slot(instance.plant)
         reads = {location}
-        ways: dict[str, list[tuple[Condition | None, Taken, list[tuple[Slot, Condition]]]]] = {}
+        ways: dict[str, list[tuple[Condition | None, EventEffect, list[tuple[Slot, Condition]]]]] = {}
         known: dict[robosc.Transition, Any] = {}
         for state, transitions in tried.items():
             for transition in transitions:
@@ -266,13 +266,13 @@ class _Reading:
                 )
                 ways.setdefault(state, []).append((guard, fixed, assigned))
         domains = self.machine.domains
-        nothing = Taken({}, None)
+        nothing = EventEffect({}, None)
 
-        def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> Taken | None:
+        def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> EventEffect | None:
             for guard, fixed, assigned in ways.get(str(state[location]), ()):
                 if guard is None or guard.compute(state, inputs):
-                    given = {slot: fitting(value.compute(state, inputs), domains[slot]) for slot, value in assigned}
-                    return Taken({**fixed.writes, **given}, fixed.source)
+                    given = {slot: saturate(value.compute(state, inputs), domains[slot]) for slot, value in assigned}
+                    return EventEffect({**fixed.writes, **given}, fixed.source)
             return nothing if ignored else None
 
         source = next(iter(tried.values()))[0]
@@ -280,7 +280,7 @@ class _Reading:
 
     def way(
         self, transition: robosc.Transition, name: EventName, instance: Instance
-    ) -> tuple[Condition | None, Taken, list[tuple[Slot, Condition]]]:
+    ) -> tuple[Condition | None, EventEffect, list[tuple[Slot, Condition]]]:
         guard = transition.guard if isinstance(transition, robosc.GuardedTransition) else None
         asked = None if guard is None else self.condition(guard, instance, name)
         writes = {} if transition.target is None else {Slot(instance.plant): transition.target.name}
@@ -289,7 +289,7 @@ class _Reading:
             slot = Slot(instance.plant, assignment.item.item.name if assignment.item.item else "")
             if slot in self.plants.domains:
                 assigned[slot] = self.condition(assignment.value, instance, name, slot)
-        return asked, Taken(writes, transition), list(assigned.items())
+        return asked, EventEffect(writes, transition), list(assigned.items())
 
     # Expressions
 
@@ -305,7 +305,7 @@ class _Reading:
         written = self.names.written_out(expression, place)
         if name is not None:
             present = None if assigned is None else self.present(written, name)
-            written = walk(lambda part: self.told(part[0], name, part[1]), (written, assigned))
+            written = walk(lambda part: self.replace_inputs(part[0], name, part[1]), (written, assigned))
             if present is not None and assigned is not None:
                 written = ex.Conditional(condition=present, then=written, otherwise=self.names.leaf(assigned))
 
@@ -320,7 +320,7 @@ class _Reading:
                 raise UnlikeError(f"the text reads `{said}`, which no input of the plants tells", expression)
             return found
 
-        return compiled(written, meaning)
+        return compile_condition(written, meaning)
 
     def present(self, value: ex.Expression, name: EventName) -> ex.Expression | None:
         """Return the input that indicates whether a value of an error or a canceled goal is readable.
@@ -332,12 +332,14 @@ class _Reading:
         for carried in event.element.inputs if event is not None and name.name in _ENDS else ():
             if carried.text is not None and words_of(carried.text) == (*words, "=", *words):
                 self.machine.events[name].inputs[carried.name] = BOOLEANS
-                return self.names.leaf(Told(carried.name))
+                return self.names.leaf(EventInput(carried.name))
         if name.name in _ENDS and "[" in words:
             raise UnlikeError(f"no input of the plants tells whether `{''.join(words)}` can be read", value)
         return None
 
-    def told(self, part: ex.Expression, name: EventName, assigned: Slot | None) -> Generator[Any, Any, ex.Expression]:
+    def replace_inputs(
+        self, part: ex.Expression, name: EventName, assigned: Slot | None
+    ) -> Generator[Any, Any, ex.Expression]:
         """Return the expression with its largest parts replaced by inputs of the event."""
         event = self.plants.events.get(name)
         inputs = event.element.inputs if event is not None else []
@@ -354,7 +356,7 @@ class _Reading:
             told = next(iter(alike))
             domain = _REASONS[name.plant.kind] if words == ("error",) else alike[told]
             self.machine.events[name].inputs[told] = domain
-            return self.names.leaf(Told(told))
+            return self.names.leaf(EventInput(told))
         found = self.names.meaning(part) if isinstance(part, robosc.Access) else None
         if isinstance(found, Data) and found.path is not None:
             wanted = "_".join(["i", name.name.removeprefix("u_"), *found.path])
@@ -365,7 +367,7 @@ class _Reading:
             ]
             if len(fitted) == 1:
                 self.machine.events[name].inputs[fitted[0]] = self.carried(name, found.path)
-                return self.names.leaf(Told(fitted[0]))
+                return self.names.leaf(EventInput(fitted[0]))
         inside = operands(part)
         if not inside:
             return part
@@ -399,7 +401,7 @@ class _Reading:
         Statements outside of components replace those inside.
         """
         found: dict[_Port, list[tuple[robosc.ProvideStatement, Instance | None]]] = {}
-        for statement, within in self.names.stated(robosc.ProvideStatement):
+        for statement, within in self.names.definitions(robosc.ProvideStatement):
             found.setdefault(self.names.port(statement.communicationType, within), []).append((statement, within))
         for port, statements in found.items():
             outside = [statement for statement in statements if statement[1] is None]
@@ -428,11 +430,11 @@ class _Reading:
         An action is canceled if one of its requirements does not hold.
         """
         known = (robosc.CommunicationRequirement, robosc.StateInvariant, *OBSERVERS)
-        for requirement, _ in self.names.stated(robosc.Requirement):
+        for requirement, _ in self.names.definitions(robosc.Requirement):
             if not isinstance(requirement, known):
                 raise NotReadError(requirement)
         starting: dict[EventName, list[Restriction]] = {}
-        for stated, within in self.names.stated(robosc.CommunicationRequirement):
+        for stated, within in self.names.definitions(robosc.CommunicationRequirement):
             wanted = not isinstance(stated, robosc.DisablesRequirement)
             condition = self.condition(stated.condition, within)
             for name in dict.fromkeys(
@@ -493,7 +495,7 @@ class _Reading:
         events[anchor].participants.append(_always({slot: given}, stated))
 
     def is_at(self, place: At) -> Condition:
-        return compiled(self.names.leaf(place), lambda _: place)
+        return compile_condition(self.names.leaf(place), lambda _: place)
 
     def automaton(self, stated: robosc.AutomatonRequirement, within: Instance | None, slot: Slot) -> None:
         """Add a requirement automaton: an event without a transition with a true condition is forbidden."""
@@ -524,10 +526,10 @@ class _Reading:
 
     def claims(self) -> None:
         """Read the conditions of `never`, `always`, and of properties."""
-        for stated, within in self.names.stated(robosc.StateInvariant):
+        for stated, within in self.names.definitions(robosc.StateInvariant):
             wanted = stated.kind == robosc.InvariantKind.always
             self.claim("the condition of an invariant", stated.condition, within, wanted, stated)
-        for claimed, within in self.names.stated(robosc.Property):
+        for claimed, within in self.names.definitions(robosc.Property):
             if isinstance(claimed, robosc.InvariantProperty):
                 wanted = claimed.kind == robosc.InvariantKind.always
                 self.claim("the condition of a property", claimed.condition, within, wanted, claimed)
@@ -547,9 +549,9 @@ def _plant(instance: Instance, communication: robosc.CommunicationType) -> Plant
 
 
 def _phases(slot: Slot, step: Mapping[str, str], source: ex.Located) -> Participant:
-    def taken(state: Mapping[Slot, Value], _: Mapping[str, Value]) -> Taken | None:
+    def taken(state: Mapping[Slot, Value], _: Mapping[str, Value]) -> EventEffect | None:
         target = step.get(str(state[slot]))
-        return None if target is None else Taken({slot: target}, source)
+        return None if target is None else EventEffect({slot: target}, source)
 
     return Participant(taken, frozenset({slot}), source)
 
@@ -559,22 +561,22 @@ def _chosen(
 ) -> Participant:
     """Return a choice of data that needs each condition to have its value; a missing condition is true."""
 
-    def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> Taken | None:
+    def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> EventEffect | None:
         holds = (
             (True if condition is None else bool(condition.compute(state, inputs))) is wanted
             for condition, wanted in asked
         )
-        return Taken({slot: location}, source) if all(holds) else None
+        return EventEffect({slot: location}, source) if all(holds) else None
 
     return Participant(step, frozenset().union(*(condition.reads for condition, _ in asked if condition)), source)
 
 
 def _always(writes: Mapping[Slot, Value], source: ex.Located) -> Participant:
-    return Participant(lambda *_: Taken(writes, source), frozenset(), source)
+    return Participant(lambda *_: EventEffect(writes, source), frozenset(), source)
 
 
 def _one_more(slot: Slot, source: ex.Located) -> Participant:
-    return Participant(lambda state, _: Taken({slot: int(state[slot]) + 1}, source), frozenset({slot}), source)
+    return Participant(lambda state, _: EventEffect({slot: int(state[slot]) + 1}, source), frozenset({slot}), source)
 
 
 def _broken(starting: Sequence[Restriction], source: ex.Located) -> Restriction:
@@ -585,7 +587,7 @@ def _broken(starting: Sequence[Restriction], source: ex.Located) -> Restriction:
 
     def compute(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> bool:
         return any(
-            bool(restriction.condition.compute(state, inputs)) is not restriction.wanted for restriction in starting
+            bool(restriction.condition.compute(state, inputs)) is not restriction.value for restriction in starting
         )
 
     reads = frozenset().union(*(restriction.condition.reads for restriction in starting))
@@ -608,8 +610,8 @@ def _first(
 def _following(
     slot: Slot, ways: Mapping[str, Sequence[_Way]], reads: frozenset[Slot], source: ex.Located
 ) -> Participant:
-    def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> Taken:
+    def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> EventEffect:
         way = _first(slot, ways, state, inputs)
-        return Taken({}, source) if way is None else Taken({slot: way[1]}, way[2])
+        return EventEffect({}, source) if way is None else EventEffect({slot: way[1]}, way[2])
 
     return Participant(step, reads, source)

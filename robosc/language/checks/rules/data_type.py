@@ -8,9 +8,9 @@ from robosc.language.checks.definitions import circles, communications, of_kind
 from robosc.language.checks.edits import Choice, Removal, Replacement
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import carried, sent_type
+from robosc.model.semantics.communication import carrying_events, sent_type
 from robosc.model.semantics.failures import FAILURE, is_failure
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.typing import NONE, ArrayType, EnumType, declared_type
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ def data_type(base: rsc.Base) -> Iterator[Finding]:
         yield from _base_of(enum)
     yield from _endless(base)
     for communication in communications(base):
-        for _, declared in carried(communication):
+        for _, declared in carrying_events(communication):
             if _has_failure(declared, set()):
                 yield Finding(
                     declared,
@@ -167,5 +167,5 @@ def _text(declared: rsc.DataType) -> str:
         case rsc.InterfaceTypeReference():
             return f"{declared.package}/{declared.rosType}"
         case rsc.ComplexDataTypeReference() if declared.type is not None:
-            return written(declared.type.name)
+            return escape_keyword(declared.type.name)
     return str(declared_type(declared))

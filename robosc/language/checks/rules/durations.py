@@ -46,10 +46,10 @@ def duration(base: rsc.Base) -> Iterator[Finding]:
         for transition in of_kind(rsc.TimedTransition, [transition for _, transition in transitions(meaning)]):
             access = set_on_robot(transition.duration)
             if access is not None:
-                yield from _set(transition, instances(base).parameter(access, meaning.made), meaning)
+                yield from _set(transition, instances(base).parameter(access, meaning.instance), meaning)
                 continue
             (value,) = meaning.values(transition.duration)
-            found = None if value is None else milliseconds(transition, meaning.made)
+            found = None if value is None else milliseconds(transition, meaning.instance)
             if found is not None and not SHORTEST <= found <= LONGEST:
                 yield meaning.finding(
                     transition.duration or transition,
@@ -68,7 +68,7 @@ def _set(transition: rsc.TimedTransition, owned: InstanceParameter, meaning: Mea
             found = _TOO_SHORT if shortest < SHORTEST else _TOO_LONG
             message = f"`{parameter.name}` may be set to {low}..{high} {unit}, some of it {found}, expected {_EXPECTED}"
             yield meaning.finding(transition.duration or transition, message, f"narrow its range; {_UNITS}")
-    elif meaning.made is None and parameter.lowest is None and declared_type(parameter.type) == DOUBLE:
+    elif meaning.instance is None and parameter.lowest is None and declared_type(parameter.type) == DOUBLE:
         yield Finding(
             transition.duration or transition,
             f"parameter `{parameter.name}` has no range, expected one within {_EXPECTED}",

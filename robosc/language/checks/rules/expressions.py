@@ -21,7 +21,7 @@ from robosc.language.checks.expression_types import CONSTANT, ENUM_RULE, Express
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import is_error, meant
+from robosc.model.semantics.communication import is_error, port_event_of
 from robosc.model.semantics.durations import set_on_robot
 from robosc.model.semantics.typing import (
     BOOLEAN,
@@ -86,7 +86,7 @@ def _requirements(base: rsc.Base) -> Iterator[Finding]:
             yield from _boolean(claimed.premise, "the condition behind `from`", _REQUIREMENT)
     for automaton in statements(rsc.AutomatonRequirement, base):
         for transition in (transition for state in automaton.states for transition in state.transitions):
-            has_reason = transition.event is not None and is_error(meant(transition.event))
+            has_reason = transition.event is not None and is_error(port_event_of(transition.event))
             place = replace(_REQUIREMENT, has_reason=has_reason)
             yield from _boolean(transition.guard, "the condition behind `if`", place)
 

@@ -23,7 +23,7 @@ from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import sent_type
 from robosc.model.semantics.cone_of_influence import ConeOfInfluence, accesses
 from robosc.model.semantics.expansion import CLAMP
-from robosc.model.semantics.inputs import Computed, Data, property_path
+from robosc.model.semantics.inputs import ComputedValue, Data, property_path
 from robosc.model.semantics.instances import MOST
 from robosc.model.semantics.printing import RoboscPrinter
 from robosc.model.semantics.typing import (
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
     from robosc.language.checks.edits import Hint
     from robosc.model import expression as ex
-    from robosc.model.semantics.cone_of_influence import Reading
+    from robosc.model.semantics.cone_of_influence import InputRead
     from robosc.model.semantics.instances import Instances
 
 LEAST, LARGEST = INTEGER_RANGES["int64"]
@@ -132,7 +132,7 @@ def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
             )
     for reading in readings(result):
         access = reading.reason.access
-        if reading.told is not None or not isinstance(access, rsc.Access):
+        if reading.source is not None or not isinstance(access, rsc.Access):
             continue
         types = access_types(access, reading.value)
         is_array = any(isinstance(kind, ArrayType) for kind in types)
@@ -149,7 +149,7 @@ def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
             )
 
 
-def _needed(reading: Reading) -> str:
+def _needed(reading: InputRead) -> str:
     variable = reading.reason.variable
     return "this guard" if variable is None else f"`{variable.variable.name}`, which the supervisor needs,"
 
@@ -188,7 +188,7 @@ def integer_range(base: rsc.Base) -> Iterator[Finding]:
 def _parameters(meaning: Meaning) -> Iterator[Finding]:
     """Report integer parameters without a range and values outside of a parameter's range."""
     for parameter in statements(rsc.Parameter, meaning):
-        if meaning.made is None and declared_type(parameter.type) == INTEGER and _is_unranged(parameter.type):
+        if meaning.instance is None and declared_type(parameter.type) == INTEGER and _is_unranged(parameter.type):
             yield Finding(
                 parameter.type,
                 f"parameter `{parameter.name}` is an integer without range, expected what may be set",
@@ -196,7 +196,7 @@ def _parameters(meaning: Meaning) -> Iterator[Finding]:
                     "write a range, such as `integer(0..100)`", "integer(0..100)", parameter.type, is_choice=True
                 ),
             )
-        elif meaning.made is None and parameter.lowest is not None and declared_type(parameter.type) != DOUBLE:
+        elif meaning.instance is None and parameter.lowest is not None and declared_type(parameter.type) != DOUBLE:
             message = f"parameter `{parameter.name}` is {declared_type(parameter.type)} and has no range"
             yield Finding(parameter.lowest, message, _unranged(parameter))
         low, value, high = meaning.values(parameter.lowest, parameter.value, parameter.highest)
@@ -260,8 +260,8 @@ def _without_range(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
                 ),
             )
     for reading in readings(result):
-        told = reading.told
-        if not isinstance(told, Computed) or told.type != INTEGER or told.bounds is not None:
+        told = reading.source
+        if not isinstance(told, ComputedValue) or told.type != INTEGER or told.bounds is not None:
             continue
         element: ex.Located = reading.part
         hint: Hint = "compare it with a literal, or assign it as it is to a variable, whose range it takes"
@@ -304,7 +304,7 @@ def _has_wrong_bounds(declared: rsc.DataType | None) -> bool:
 def _bounds(declared: rsc.IntegerDataType, meaning: Meaning) -> tuple[int | None, int | None]:
     """Return the bounds of a range; None if they are unknown or the template's own text has them."""
     if declared.lower is None:
-        return (None, None) if meaning.made else (declared.minimum, declared.maximum)
+        return (None, None) if meaning.instance else (declared.minimum, declared.maximum)
     low, high = meaning.values(declared.lower, declared.upper)
     return (low, high) if type(low) is int and type(high) is int else (None, None)
 

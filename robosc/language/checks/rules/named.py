@@ -20,7 +20,7 @@ from robosc.model.semantics.durations import bounds, set_on_robot
 from robosc.model.semantics.expansion import LARGEST, Expansion, constant_value, is_unreadable
 from robosc.model.semantics.failures import is_failure, reasons
 from robosc.model.semantics.instances import bound_arguments
-from robosc.model.semantics.naming import enumeration, written
+from robosc.model.semantics.naming import enumeration, escape_keyword
 from robosc.model.semantics.operators import operator_of
 from robosc.model.semantics.typing import INTEGER, UNKNOWN, declared_type, type_of
 
@@ -89,15 +89,15 @@ def arguments(base: rsc.Base) -> Iterator[Finding]:
                     yield _wrong_number(element, element.function.name, len(element.arguments), names)
                 yield from _called(element)
             case rsc.InstantiatedComponent() | rsc.ImportedComponent() if element.definition is not None:
-                yield from _given(element, element.definition, element.arguments)
+                yield from _argument_findings(element, element.definition, element.arguments)
             case rsc.ComplexDataTypeReference() if isinstance(element.type, rsc.EnumDataType | rsc.ObjectDataType):
                 yield from _of_type(element)
     yield from _defaults(base)
     for meaning in meanings(base):
         yield from _of_enums(meaning, instances(base))
         yield from _unreadable(meaning)
-        if meaning.made is not None:
-            yield from _made(meaning)
+        if meaning.instance is not None:
+            yield from _instance_findings(meaning)
 
 
 def _reason(comparison: ex.Equation | ex.Inequation) -> Iterator[Finding]:
@@ -156,7 +156,7 @@ def _of_type(reference: rsc.ComplexDataTypeReference) -> Iterator[Finding]:
     named = reference.type
     keeps = isinstance(reference.eContainer(), rsc.Variable | rsc.NamedExpression | rsc.FormalParameter)
     if isinstance(named, rsc.EnumDataType) and named.parameters and not keeps:
-        yield from _given(reference, named, reference.arguments)
+        yield from _argument_findings(reference, named, reference.arguments)
     elif reference.arguments:
         what = f"a {type(reference.eContainer()).__name__.lower()}" if keeps else f"`{named.name}`"
         yield Finding(
@@ -166,7 +166,7 @@ def _of_type(reference: rsc.ComplexDataTypeReference) -> Iterator[Finding]:
         )
 
 
-def _given(
+def _argument_findings(
     user: ex.Located, definition: rsc.Component | rsc.EnumDataType, given: Sequence[rsc.Argument]
 ) -> Iterator[Finding]:
     """Report faults in the arguments of a template or an enum; a parameter with a default needs none."""
@@ -211,7 +211,8 @@ def _naming(
     named = {other.parameter for other in given}
     free = [parameter for parameter in parameters if parameter not in found and parameter not in named]
     ways = (
-        Insertion(f"write `{written(other.name)}:` before it", f"{written(other.name)}: ", argument) for other in free
+        Insertion(f"write `{escape_keyword(other.name)}:` before it", f"{escape_keyword(other.name)}: ", argument)
+        for other in free
     )
     return Choice("name its parameter", tuple(ways))
 
@@ -264,21 +265,21 @@ def _of_enum(
         access = set_on_robot(value)
         if access is None:
             (number,) = meaning.values(value)
-            if meaning.made and type(number) is int and not _fits(number, number, parameter):
+            if meaning.instance and type(number) is int and not _fits(number, number, parameter):
                 yield meaning.finding(value, *_out_of_range(str(number), parameter))
             continue
-        owned = made.parameter(access, meaning.made)
+        owned = made.parameter(access, meaning.instance)
         lowest, highest = bounds(owned.parameter, None)
-        if lowest is None and meaning.made:
+        if lowest is None and meaning.instance:
             lowest, highest = bounds(owned.parameter, owned.instance)
-        elif meaning.made:
+        elif meaning.instance:
             continue  # The template's own text has the finding.
         if not _fits(lowest, highest, parameter):
             yield meaning.finding(value, *_out_of_range(f"{lowest} to {highest} on the robot", parameter))
     for row, position, divisor in _divisors(enum):
-        written = Expansion(None).argued(divisor, given)
+        written = Expansion(None).expand_with(divisor, given)
         (number,) = meaning.values(written)
-        told = number is not None if meaning.made or _reads_parameter(written) else _reads_parameter(divisor)
+        told = number is not None if meaning.instance or _reads_parameter(written) else _reads_parameter(divisor)
         if told and not _is_positive(number):
             yield meaning.finding(reference, *_wrong_divisor(row, position))
 
@@ -341,16 +342,16 @@ def _built_in(element: ex.FunctionCall) -> Iterator[Finding]:
             yield Finding(divisor, message, Replacement(hint, "10", divisor, is_choice=True))
 
 
-def _made(meaning: Meaning) -> Iterator[Finding]:
+def _instance_findings(meaning: Meaning) -> Iterator[Finding]:
     """Report divisors and reasons beside `error` that are wrong for the arguments of a template."""
-    assert meaning.made is not None
-    for _, part in tree(meaning.made.local):
+    assert meaning.instance is not None
+    for _, part in tree(meaning.instance.local):
         for other, communication in _beside_reason(part) if isinstance(part, ex.Equation | ex.Inequation) else ():
             (value,) = meaning.values(other) if _reads_parameter(other) else (None,)
             fault = _impossible_reason(value, communication)
             if fault is not None:
                 yield meaning.finding(other, fault, _possible(communication))
-    for row, position, divisor in _divisors(meaning.made.local):
+    for row, position, divisor in _divisors(meaning.instance.local):
         (value,) = meaning.values(divisor)
         if type(value) is int and value < 1:
             yield meaning.finding(divisor, *_wrong_divisor(row, position))
@@ -361,18 +362,22 @@ def _unreadable(meaning: Meaning) -> Iterator[Finding]:
 
     For an instance of a template, only those are reported that its arguments cause.
     """
-    waiting: list[Any] = list(meaning.definitions)[::-1] if meaning.made is None else [meaning.made.local]
+    waiting: list[Any] = list(meaning.definitions)[::-1] if meaning.instance is None else [meaning.instance.local]
     if not any(_may_round(part) for root in waiting for _, part in tree(root)):
         return
     while waiting:
         part = waiting.pop()
         inside = [child for _, child in contents(part)][::-1]
-        unreadable = is_unreadable(part, meaning.made) if isinstance(part, ex.Expression) else None
+        unreadable = is_unreadable(part, meaning.instance) if isinstance(part, ex.Expression) else None
         if unreadable:
-            inside = [child for child in inside if is_unreadable(child, meaning.made)]
+            inside = [child for child in inside if is_unreadable(child, meaning.instance)]
         if unreadable is None or (unreadable and inside):
             waiting += inside
-        elif unreadable and not isinstance(part, rsc.Access) and (meaning.made is None or is_unreadable(part) is None):
+        elif (
+            unreadable
+            and not isinstance(part, rsc.Access)
+            and (meaning.instance is None or is_unreadable(part) is None)
+        ):
             yield meaning.finding(
                 part, "this rounds what is no number, and so has no value", "write another expression"
             )

@@ -17,7 +17,7 @@ from robosc.language.checks.libraries import instances
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
 from robosc.model.semantics.cone_of_influence import accesses
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -96,7 +96,7 @@ def _reading(expression: ex.Expression | None, expanded: ex.Expression | None, w
     items = (access.item for access in accesses(expanded))
     read = next((item for item in items if isinstance(item, rsc.RequirementState)), None)
     if read is not None and expression is not None:
-        name = f"{written(read.eContainer().name)}.{written(read.name)}"
+        name = f"{escape_keyword(read.eContainer().name)}.{escape_keyword(read.name)}"
         yield Finding(
             expression,
             f"{what} reads `{name}`, a state of a requirement, expected states and variables of components: the robot"

@@ -15,7 +15,7 @@ from robosc.model import robosc as rsc
 from robosc.model.semantics.cone_of_influence import accesses, guard_of
 from robosc.model.semantics.evaluation import evaluate
 from robosc.model.semantics.failures import STILL_RUNNING, reasons
-from robosc.model.semantics.naming import enumeration, written
+from robosc.model.semantics.naming import enumeration, escape_keyword
 from robosc.model.semantics.operators import UnreadableError, operator_of
 from robosc.model.semantics.printing import RoboscPrinter
 from robosc.model.semantics.walks import fold, operands
@@ -75,7 +75,7 @@ def _finding(
 
     `misled` maps each reason of the error to the condition and to the state in which the component then rests.
     """
-    name = written(port.communication.name)
+    name = escape_keyword(port.communication.name)
     whether = " or ".join(f"error = {reason}" for reason in misled)
     condition, state = next(iter(misled.values()))
     read = {access.item for access in accesses(condition.condition)}
@@ -179,7 +179,7 @@ def _makes_true(condition: CommandCondition, before: _Situation, after: _Situati
         return True
     for values in product((False, True), repeat=len(parts)):
         given = dict(zip(parts, values, strict=True))
-        if _truth(later, given) is condition.wanted and _truth(earlier, given) is not condition.wanted:
+        if _truth(later, given) is condition.value and _truth(earlier, given) is not condition.value:
             return True
     return False
 

@@ -17,7 +17,7 @@ from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import data_type, event
 from robosc.model.semantics.cone_of_influence import accesses
 from robosc.model.semantics.instances import InstanceVariable
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -60,7 +60,7 @@ def _states_without_end(known: Instances, places: Places) -> Iterator[Finding]:
                 continue
             place = places.new(transition, instance, action)
             if place is not None:
-                name = written(action.name)
+                name = escape_keyword(action.name)
                 onwards = "" if deaf is transition.target else f" and from there to `{instance.name}.{deaf.name}`"
                 yield Finding(
                     place,
@@ -101,12 +101,12 @@ def _forbidden_ends(known: Instances, places: Places) -> Iterator[Finding]:
             missing = [str(end) for end in _END if (port, end) in named and end not in there]
             place = places.new(transition, statement.within, port.communication) if missing else None
             if place is not None:
-                name, state = written(port.communication.name), transition.target.name
+                name, state = escape_keyword(port.communication.name), transition.target.name
                 yield Finding(
                     place,
                     f"`cancel from {name}` leads to `{state}`, which forbids the {missing[0]} of `{name}`: the"
                     " controller has only asked the server to cancel, and the goal ends later",
-                    f"let `{written(state)}` allow `{missing[0]} from {name}`",
+                    f"let `{escape_keyword(state)}` allow `{missing[0]} from {name}`",
                     related=None if place is transition else transition,
                 )
 
@@ -127,7 +127,7 @@ def _variables_read(known: Instances, places: Places) -> Iterator[Finding]:
                 others = [reader for reader, restricted in readers if restricted - {port}]
                 place = places.new(assignment, instance, port.communication) if port is not None and others else None
                 if place is not None and port is not None and variable is not None:
-                    name = written(port.communication.name)
+                    name = escape_keyword(port.communication.name)
                     yield Finding(
                         place,
                         f"`{variable.name}` changes when the controller asks to cancel `{name}`, and a requirement on"
@@ -171,13 +171,13 @@ def answer_unheard(base: rsc.Base) -> Iterator[Finding]:
                 continue
             place = places.new(transition, instance, port.communication)
             if place is not None:
-                name = written(port.communication.name)
+                name = escape_keyword(port.communication.name)
                 yield Finding(
                     place,
                     f"`{instance.name}` goes to `{target.name}` with the request to `{name}`, and nothing waits for the"
                     f" answer of `{name}`: what `{target.name}` allows may begin before `{name}` has ended",
-                    f"go to a state that `on response from {name} goto {written(target.name)}` leaves, and give it"
-                    f" `on error from {name}`, too",
+                    f"go to a state that `on response from {name} goto {escape_keyword(target.name)}` leaves, "
+                    f"and give it `on error from {name}`, too",
                 )
 
 
@@ -266,13 +266,14 @@ def failure_unheard(base: rsc.Base) -> Iterator[Finding]:
             missing = _unheard(state, common, transition.communicationType, port in cancelable)
             place = places.new(transition, instance, port.communication) if missing else None
             if place is not None:
-                name = written(port.communication.name)
+                name = escape_keyword(port.communication.name)
                 ends = " or ".join(f"`{end} from {name}`" for end in missing)
                 yield Finding(
                     place,
                     f"`{instance.name}` leaves `{state.name}` at the response of `{name}`, and does not react to {ends}"
                     f" there: it may wait forever",
-                    f"let `{written(state.name)}` react to {ends}: with `goto` it gives up, without it may try again",
+                    f"let `{escape_keyword(state.name)}` react to {ends}: "
+                    "with `goto` it gives up, without it may try again",
                 )
 
 

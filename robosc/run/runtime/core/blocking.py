@@ -26,7 +26,7 @@ _SAID = {
 
 
 @dataclass(frozen=True)
-class Reason:
+class LoggedReason:
     """Reason on `~/blocked`: a kind, and the texts of that kind."""
 
     kind: str
@@ -45,14 +45,14 @@ class Blocking:
         self._events = {event.name: event for event in engine.executed.events}
         self._conditions: dict[executed.Reason, Callable[[], bool]] = {}
 
-    def reason(self, event: sct.Event) -> Reason:
+    def reason(self, event: sct.Event) -> LoggedReason:
         """Return why the supervisor does not allow an event now."""
         reasons = self._events[event_name(event)].reasons
         for origin, kind in _KINDS.items():
             texts = [self._text(reason) for reason in reasons if reason.kind == origin and self._applies(reason)]
             if texts:
-                return Reason(kind, texts)
-        return Reason(kind, ())
+                return LoggedReason(kind, texts)
+        return LoggedReason(kind, ())
 
     def _applies(self, reason: executed.Reason) -> bool:
         if reason.condition is None:

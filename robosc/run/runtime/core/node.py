@@ -43,7 +43,7 @@ class StartError(Exception):
         self.hint = hint
 
 
-class Node(ControllerPort, ABC):
+class RunningNode(ControllerPort, ABC):
     """Running node for a controller or a layer. Raises StartError for a missing type.
 
     The subclass creates publishers, subscriptions and clients with its middleware.

@@ -66,7 +66,7 @@ class PastEndError(UnreadableError):
         super().__init__(f"there is no element {index} in an array of {length}")
 
 
-class Received(NamedTuple):
+class ReceivedValues(NamedTuple):
     """Data of an event, computed in the state before it: its inputs by name, and the node's new values."""
 
     inputs: dict[str, Any]
@@ -115,15 +115,15 @@ class NodeData:
         plant: sct.Plant = location.eContainer()
         return plant.locations[self._engine.location(plant)] is location
 
-    def received(
+    def receive(
         self, event: sct.Event, inputs: Sequence[rosgraph.InputAssignment] = (), data: Message = None
-    ) -> Received:
+    ) -> ReceivedValues:
         """Return the inputs and new values of an event in the present state; change nothing.
 
         Raises UnreadableError if one of them can't be read: then the event must not happen.
         """
         variables = self._assigned(event, data)
-        return Received({given.input.name: self.input(given, data) for given in inputs}, variables)
+        return ReceivedValues({given.input.name: self.input(given, data) for given in inputs}, variables)
 
     def input(self, assigned: rosgraph.InputAssignment, data: Message) -> Any:
         """Return the value of an input; its first value if it can't be read, as then no taken transition needs it."""
@@ -140,7 +140,7 @@ class NodeData:
                 for needed in reaction.needs:
                     self.value(needed, data)
                 for assignment in reaction.assignments:
-                    assigned[assignment.variable] = bounded(
+                    assigned[assignment.variable] = within_range(
                         self.value(assignment.value, data), assignment.variable.type
                     )
         return assigned
@@ -243,14 +243,14 @@ class NodeData:
         return value
 
 
-def bounded(value: Value, kind: ex.Type) -> Value:
+def within_range(value: Value, kind: ex.Type) -> Value:
     """Return the value as a variable of the type holds it: an integer within its range."""
     if isinstance(kind, ex.IntegerType):
         assert isinstance(value, int)
         return saturate(fit(value), kind.minimum, kind.maximum)
     if isinstance(kind, rosgraph.ArrayType) and kind.element is not None:
         assert isinstance(value, Iterable)
-        return [bounded(element, kind.element) for element in value]
+        return [within_range(element, kind.element) for element in value]
     return value
 
 
@@ -272,7 +272,7 @@ def fill(port: ControllerPort, message: Message, path: Sequence[str], value: Val
     kind = port.wire_types(owner)[path[-1]]
     if isinstance(value, Sequence) and not isinstance(value, str):
         return _fill_array(owner, kind, value, path)
-    held: bool | int | float | str = _held(kind, value, path)
+    held: bool | int | float | str = _finite_value(kind, value, path)
     setattr(owner, path[-1], bytes([held]) if kind == "octet" and isinstance(held, int) else held)
     return held
 
@@ -311,7 +311,7 @@ def _is_finite(port: ControllerPort, data: Any) -> bool:
 def _fill_array(owner: Message, kind: str, values: Sequence[Value], path: Sequence[str]) -> Json:
     """Set the elements of an array; an array of fixed length keeps its further elements."""
     element, length = _array(kind)
-    held = [_held(element, value, path) for value in values[:length]]
+    held = [_finite_value(element, value, path) for value in values[:length]]
     rest = [] if length is None else list(getattr(owner, path[-1]))[len(held) :]
     octets = [bytes([number]) if element == "octet" and isinstance(number, int) else number for number in held]
     setattr(owner, path[-1], [*octets, *rest])
@@ -325,7 +325,7 @@ def _array(kind: str) -> tuple[str, int | None]:
     return bounds[1], int(bounds[2]) if bounds[2] else None
 
 
-def _held(kind: str, value: Value, path: Sequence[str]) -> bool | int | float | str:
+def _finite_value(kind: str, value: Value, path: Sequence[str]) -> bool | int | float | str:
     if isinstance(value, (bool, str)):
         return value
     assert isinstance(value, (int, float))

@@ -15,7 +15,7 @@ from robosc.model import rosgraph
 from robosc.model.semantics.communication import QUEUE_DEPTH, is_sensor_data
 from robosc.model.semantics.naming import below_layer
 from robosc.run.runtime.core.event_loop import EventLoop
-from robosc.run.runtime.core.node import DIAGNOSTICS, FAREWELL, LONGEST_WAIT, Node, StartError
+from robosc.run.runtime.core.node import DIAGNOSTICS, FAREWELL, LONGEST_WAIT, RunningNode, StartError
 from robosc.run.runtime.core.port import CallHandlers, Endpoint, GoalHandlers
 from robosc.run.runtime.core.settings import check
 
@@ -74,7 +74,7 @@ MOST_HEARD = 1000
 MOST_AT_ONCE = 10
 
 
-class Ros2Node(Node):
+class Ros2Node(RunningNode):
     """Node of ROS 2 named `name`; `arguments` are those of ROS, such as `--ros-args`."""
 
     type_hint = (

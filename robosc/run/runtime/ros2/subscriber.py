@@ -48,8 +48,12 @@ class Ros2Subscriber:
 
     def _listen(self, node: str, listener: Listener) -> None:
         kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self._node.create_subscription(String, f"{node}/definition", lambda text: listener.defined(text.data), kept)
-        self._node.create_subscription(String, f"{node}/state", lambda text: listener.told(text.data), WAITING)
+        self._node.create_subscription(
+            String, f"{node}/definition", lambda text: listener.receive_definition(text.data), kept
+        )
+        self._node.create_subscription(
+            String, f"{node}/state", lambda text: listener.receive_report(text.data), WAITING
+        )
 
     def _look(self) -> None:
         for nodes, listener in self._heard:
