@@ -49,11 +49,11 @@ def reason_of_emptiness(system: SynthesizedSystem) -> BlockReason:
 
 
 def _uncontrollable(system: SynthesizedSystem) -> BlockReason:
-    encoding, found = system.encoding, system.solution
+    encoding, solution = system.encoding, system.solution
     # Initial states that reach no marked state at all do not show which event is uncontrollable.
-    start = pick(encoding.initial & found.alive[0], encoding.layout.state)
+    start = pick(encoding.initial & solution.alive[0], encoding.layout.state)
     before = encoding.state(unavoidable(system, start).states[-2])
-    blocked = found.rounds[0] & ~found.alive[0]
+    blocked = solution.rounds[0] & ~solution.alive[0]
     first = _path(system, system.moves, encoding.initial, before)
     last = _path(system, _uncontrollable_moves(system), before, blocked)
     event = last.moves[0][0].event
@@ -88,7 +88,9 @@ def _blocked_from_the_start(system: SynthesizedSystem) -> BlockReason:
         if not system.is_in(codes, relation.requirement):
             reason = _described(system, unmarked, steps[: index + 1], codes)
             at_fault = [
-                requirement for requirement, asked in relation.permissions.items() if not system.is_in(codes, asked)
+                requirement
+                for requirement, permission in relation.permissions.items()
+                if not system.is_in(codes, permission)
             ]
             return replace(reason, event=relation.event, requirements=tuple(at_fault))
         violated = system.violated(after)
@@ -185,8 +187,8 @@ def forbidden_from(system: SynthesizedSystem, codes: Codes) -> list[sct.Requirem
     return [
         requirement
         for relation in system.relations.values()
-        for requirement, asked in relation.permissions.items()
-        if (onwards & relation.enabled & ~asked).satisfiable()
+        for requirement, permission in relation.permissions.items()
+        if (onwards & relation.enabled & ~permission).satisfiable()
     ]
 
 
@@ -196,14 +198,18 @@ def requirements_at_fault(relation: EventRelation, states: Diagram) -> tuple[sct
     These are all requirements that each disable the event in all states. If there is none, it is a minimal set of
     requirements that together disable it.
     """
-    alone = [requirement for requirement, asked in relation.permissions.items() if not (states & asked).satisfiable()]
+    alone = [
+        requirement
+        for requirement, permitting in relation.permissions.items()
+        if not (states & permitting).satisfiable()
+    ]
     if alone:
         return tuple(alone)
     together = dict(relation.permissions)
     for requirement in relation.permissions:
         rest = states
-        for other, asked in together.items():
-            rest = rest if other is requirement else rest & asked
+        for other, permission in together.items():
+            rest = rest if other is requirement else rest & permission
         if not rest.satisfiable():
             del together[requirement]
     return tuple(together)

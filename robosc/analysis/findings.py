@@ -50,8 +50,8 @@ def findings_of(model: sct.SupervisoryControlModel, observations: Observations) 
     words_for = _Findings(model)
     absent: dict[Absent, Diagnostic] = {}
     unused = _unused_of_libraries(model, observations)
-    absent |= {found.event: words_for.never_enabled(found) for found in observations.never_enabled}
-    absent |= {found.location: words_for.unreachable_state(found) for found in observations.unreachable_states}
+    absent |= {observed.event: words_for.never_enabled(observed) for observed in observations.never_enabled}
+    absent |= {observed.location: words_for.unreachable_state(observed) for observed in observations.unreachable_states}
     absent = {element: finding for element, finding in absent.items() if element not in unused}
     return in_order(
         [
@@ -74,19 +74,19 @@ def _unused_of_libraries(model: sct.SupervisoryControlModel, observations: Obser
     supervisor makes it unreachable.
     """
     unreached = {
-        found.location
-        for found in observations.unreachable_states
-        if _of_library(found.location, model)
-        and not any(_is_own_restriction(hindrance, model) for hindrance in found.hindrances)
+        observed.location
+        for observed in observations.unreachable_states
+        if _of_library(observed.location, model)
+        and not any(_is_own_restriction(hindrance, model) for hindrance in observed.hindrances)
     }
     if unreached:
         unreached -= _named_in_own_text(model)
     silent = {
-        found.event
-        for found in observations.never_enabled
-        if found.event.kind == sct.EventKind.tau
-        and _of_library(found.event, model)
-        and not _is_own_restriction(found, model)
+        observed.event
+        for observed in observations.never_enabled
+        if observed.event.kind == sct.EventKind.tau
+        and _of_library(observed.event, model)
+        and not _is_own_restriction(observed, model)
     }
     return {*unreached, *silent}
 
@@ -177,9 +177,9 @@ class _Findings:
 
     def _cancel_held_back(self, observed: SilentRestricted) -> Diagnostic:
         action, trace = name(plant_of(observed.event)), observed.counterexample
-        told = [requirement for requirement in trace.violated if isinstance(requirement, sct.Requirement)]
+        violated = [requirement for requirement in trace.violated if isinstance(requirement, sct.Requirement)]
         hint = way_out(trace)
-        if ends := [requirement for requirement in told if requirement.automaton is not None]:
+        if ends := [requirement for requirement in violated if requirement.automaton is not None]:
             hint = (
                 f"a start can be refused, a cancel can't: take the end of `{action}` out "
                 f"of {quote_requirements(ends)}, or restrict the start of `{action}`"
@@ -232,12 +232,12 @@ class _Findings:
         plant = plant_of(observed.event)
         done = _DONE.get(plant.kind, "sent")
         edges = edges_of(observed.data)
-        read = [element for edge in edges for element in referenced_elements(edge.guard)]
+        elements = [element for edge in edges for element in referenced_elements(edge.guard)]
         return _finding(
             observed.data,
             "provide-gap",
             f"`{name(plant)}` can be {done} where no condition of a `provide` for it holds, without data"
-            + _where(observed.example, [*read, *self._asking(observed.event)]),
+            + _where(observed.example, [*elements, *self._asking(observed.event)]),
             f"add `provide {name(plant)} with ...` without a condition, or a requirement that excludes this",
         )
 
@@ -300,22 +300,22 @@ class _Findings:
 
     @cached_property
     def _required(self) -> dict[sct.Event, list[sct.Requirement]]:
-        found: dict[sct.Event, list[sct.Requirement]] = {}
+        required: dict[sct.Event, list[sct.Requirement]] = {}
         for requirement in self._model.requirements:
             if requirement.event is not None:
-                found.setdefault(requirement.event, []).append(requirement)
-        return found
+                required.setdefault(requirement.event, []).append(requirement)
+        return required
 
     def _requirements(self, event: sct.Event) -> list[sct.Requirement]:
         return self._required.get(event, [])
 
     @cached_property
     def _participants(self) -> dict[sct.Event, dict[sct.Plant, None]]:
-        found: dict[sct.Event, dict[sct.Plant, None]] = {}
+        participants: dict[sct.Event, dict[sct.Plant, None]] = {}
         for plant in self._model.plants:
             for edge in edges_of(plant):
-                found.setdefault(edge.event, {})[plant] = None
-        return found
+                participants.setdefault(edge.event, {})[plant] = None
+        return participants
 
     def _asking(self, event: sct.Event) -> Iterable[Element]:
         """Yield the elements that decide about an event: plants that take part, and data of its requirements."""
@@ -378,10 +378,10 @@ def _entered(event: sct.Event) -> Iterable[tuple[sct.Plant, sct.Location]]:
 def _where(example: Example, relevant: Iterable[Element]) -> str:
     """Return the example as text, restricted to relevant elements with several values."""
     chosen = set(relevant)
-    said = [
+    conditions = [
         (domain, value)
         for domain, value in example.state.items()
         if domain in chosen and not (isinstance(domain, sct.Plant) and len(domain.locations) == 1)
     ]
-    shown = f", for example where `{condition(said)}`" if said else ""
+    shown = f", for example where `{condition(conditions)}`" if conditions else ""
     return shown if example.quiescent else f"{shown}, if only until silent transitions have run"

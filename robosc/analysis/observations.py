@@ -227,10 +227,10 @@ class Observer:
 
         Yields nothing if the count exceeds its effort limit.
         """
-        stated = self._system.group_requirements()
-        if len(stated) * self._system.solution.rounds[0].node_count() > _WEIGHING:
+        groups = self._system.group_requirements()
+        if len(groups) * self._system.solution.rounds[0].node_count() > _WEIGHING:
             return
-        for requirements in stated:
+        for requirements in groups:
             states = self._system.diagrams.any_of(map(self._matters, requirements))
             # Skip range requirements that matter in no state: they follow from types, and no author wrote them.
             stands = not all(isinstance(own, sct.Requirement) and own.ranges for own in requirements)
@@ -262,8 +262,8 @@ class Observer:
                 )
             elif forbidden:
                 requirements = requirements_at_fault(permission.relation, enabled)
-                stated = any(requirement.automaton is not None for requirement in requirements)
-                way = self._way_of_plants(enabled) if stated else None
+                has_automaton = any(requirement.automaton is not None for requirement in requirements)
+                way = self._way_of_plants(enabled) if has_automaton else None
                 trace = self._system.trace(way) if way is not None else None
                 yield NeverEnabled(event, Forbidden.BY_REQUIREMENTS, requirements=requirements, trace=trace)
             else:
@@ -281,26 +281,28 @@ class Observer:
         """Return why an event that the plants allow only outside of the controlled states never happens."""
         system = self._system
         way = self._way_of_plants(goal)
-        found = NeverEnabled(event, Forbidden.BY_PLANTS, plants=plants, kept_away=True)
+        observation = NeverEnabled(event, Forbidden.BY_PLANTS, plants=plants, kept_away=True)
         if way is None:
-            return found
+            return observation
         for number, (relation, _) in enumerate(way.moves):
             permission = self._permissions.get(relation.event)
             if permission is None or system.is_in(way.states[number], permission.allowed):
                 continue
             here = self._held_back(permission) & system.encoding.state(way.states[number])
             if here.satisfiable():
-                return replace(found, counterexample=self._counterexample(permission, here))
-            asked = relation.permissions.items()
+                return replace(observation, counterexample=self._counterexample(permission, here))
+            permissions = relation.permissions.items()
             return replace(
-                found,
+                observation,
                 requirements=tuple(
-                    requirement for requirement, allowing in asked if not system.is_in(way.states[number], allowing)
+                    requirement
+                    for requirement, allowing in permissions
+                    if not system.is_in(way.states[number], allowing)
                 ),
                 trace=system.trace(Path(way.states[: number + 2], way.moves[: number + 1])),
                 needed=relation.event,
             )
-        return found
+        return observation
 
     def _silent_restricted(self) -> Iterator[SilentRestricted]:
         for event, permission in self._permissions.items():
@@ -326,14 +328,14 @@ class Observer:
                 continue
             relation = permission.relation
             due = self._system.controlled & relation.enabled
-            stated = [requirement for requirement in relation.permissions if requirement.automaton is not None]
+            automata = [requirement for requirement in relation.permissions if requirement.automaton is not None]
             for requirement, allowing in relation.permissions.items():
                 if requirement.automaton is None:
                     due &= allowing
-            for requirement in stated:
-                held = due & ~relation.permissions[requirement]
-                if held.satisfiable():
-                    yield ForbiddenCancel(event, requirement, self._system.trace(self._system.path_to(held)))
+            for requirement in automata:
+                forbidden = due & ~relation.permissions[requirement]
+                if forbidden.satisfiable():
+                    yield ForbiddenCancel(event, requirement, self._system.trace(self._system.path_to(forbidden)))
 
     def _shared_servers(self) -> Iterator[SharedServer]:
         servers: dict[tuple[sct.PlantKind, str], list[sct.Plant]] = {}
@@ -452,10 +454,10 @@ class Observer:
             goal = self._held_back(permission)
             known = self._counterexamples.get((event, goal))
             way = None if known or taken > _STEPS else self._system.layers.path_to(goal, _EFFORT)
-            found = known or (way and blocking_counterexample(self._system, event, way))
-            if found:
-                taken += len(found.trace) + len(found.onwards)
-                yield event, found
+            counterexample = known or (way and blocking_counterexample(self._system, event, way))
+            if counterexample:
+                taken += len(counterexample.trace) + len(counterexample.onwards)
+                yield event, counterexample
 
     def _counterexample(self, permission: Permission, where: Diagram | None = None) -> BlockingCounterexample:
         """Return the counterexample that holding back the event prevents in some of these states. Cached."""

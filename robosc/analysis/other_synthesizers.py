@@ -53,8 +53,8 @@ def _check(extension: Extension, model: sct.SupervisoryControlModel, supervisor:
     guards = {guard.event: guard for guard in supervisor.guards}
     if len(supervisor.guards) != len(controllable) or set(guards) != set(controllable):
         missing = next((event_name(event) for event in controllable if event not in guards), None)
-        told = f"it gives none for `{missing}`" if missing else "it gives others"
-        raise extension.fault(f"a supervisor has one guard for each controllable event, and {told}")
+        difference = f"it gives none for `{missing}`" if missing else "it gives others"
+        raise extension.fault(f"a supervisor has one guard for each controllable event, and {difference}")
     supervisor.guards = [guards[event] for event in controllable]
     supervisor.settlingBound = None
     supervisor.controlledStates = supervisor.bddNodes = 0

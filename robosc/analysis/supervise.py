@@ -65,7 +65,7 @@ def _place(model: sct.SupervisoryControlModel, reason: BlockReason) -> tuple[str
     own, _ = place(model)
     elements = [element for element in (reason.event, *reason.violated, *reason.requirements) if element is not None]
     places = [place(element) for element in elements] or [place(model)]
-    return next((found for found in places if found[0] == own), places[0])
+    return next((candidate for candidate in places if candidate[0] == own), places[0])
 
 
 def _condition(model: sct.SupervisoryControlModel, reason: BlockReason) -> str | None:
@@ -107,16 +107,16 @@ def diagnose(
     """
 
     def look(solution: Solution) -> Diagnosis:
-        found = vars(solution.synthesis)
+        attributes = vars(solution.synthesis)
         with solution.synthesis.statistics.during(Phase.OBSERVE if solution.synthesis.supervisor else Phase.GUARDS):
             system = SynthesizedSystem(model, solution.encoding, solution.relations, solution.states)
             if solution.uncontrolled is not None:
                 system.uncontrolled = solution.uncontrolled
             if solution.synthesis.supervisor is None:
-                return Diagnosis(**found, reason=reason_of_emptiness(system))
+                return Diagnosis(**attributes, reason=reason_of_emptiness(system))
             observer = Observer(system, solution.permissions)
             weights = tuple(observer.weights()) if weigh else ()
-            return Diagnosis(**found, observations=observer.observations(), weights=weights)
+            return Diagnosis(**attributes, observations=observer.observations(), weights=weights)
 
     return solve(model, look, memory=memory, statistics=statistics, effort=effort)
 
@@ -139,12 +139,12 @@ def supervise(
     synthesis = diagnose(model, memory=memory, statistics=statistics, weigh=weigh, effort=effort)
     if synthesis.observations is None:
         raise EmptySupervisorError(model, synthesis)
-    found = findings_of(model, synthesis.observations)
+    findings = findings_of(model, synthesis.observations)
     assert synthesis.supervisor is not None
     for guard in synthesis.supervisor.guards:
         counterexample = synthesis.observations.counterexamples.get(guard.event)
         if counterexample is not None:
             guard.explanation = counterexample_in_words(counterexample, model)
-    if not has_errors(found) and not synthesis.unwritten:
+    if not has_errors(findings) and not synthesis.unwritten:
         model.supervisor = synthesis.supervisor
-    return Supervision(synthesis, found)
+    return Supervision(synthesis, findings)

@@ -163,7 +163,7 @@ class SynthesizedSystem(SupervisedSystem):
         model: sct.SupervisoryControlModel,
         encoding: Encoding,
         relations: Sequence[EventRelation] | None = None,
-        found: SupervisedStates | None = None,
+        solution: SupervisedStates | None = None,
     ) -> None:
         """Compute `relations` and `solution` unless they are given."""
         relations = event_relations(model, encoding) if relations is None else relations
@@ -171,7 +171,7 @@ class SynthesizedSystem(SupervisedSystem):
             model, encoding, {relation.event: relation for relation in relations}, required_moves(relations)
         )
         self.required = {relation.event: relation.requirement for relation in relations}
-        self.solution = supervise(encoding, self.moves, self.violating) if found is None else found
+        self.solution = supervise(encoding, self.moves, self.violating) if solution is None else solution
         self.controlled = self.solution.controlled
 
     def without(self, requirements: AbstractSet[sct.StatedRequirement]) -> SynthesizedSystem:
@@ -211,8 +211,8 @@ class SynthesizedSystem(SupervisedSystem):
 
         Requirements that define when an action is canceled are left out.
         """
-        asked = (requirement for requirement in self.model.requirements if self.start_of(requirement.event) is None)
-        own: list[sct.StatedRequirement] = [*asked, *self.model.invariants]
+        enforced = (requirement for requirement in self.model.requirements if self.start_of(requirement.event) is None)
+        own: list[sct.StatedRequirement] = [*enforced, *self.model.invariants]
         by_place: dict[object, list[sct.StatedRequirement]] = {}
         for requirement in dict.fromkeys([*(requirement for requirement in first if requirement in own), *own]):
             by_place.setdefault(requirement.source or requirement, []).append(requirement)
@@ -236,15 +236,17 @@ class SynthesizedSystem(SupervisedSystem):
 
         Orders and counts are ignored: they restrict only another start.
         """
-        asked = self.relations[trigger].permissions.items()
+        permissions = self.relations[trigger].permissions.items()
         return self.diagrams.all_of(
-            holds for requirement, holds in asked if requirement.automaton is None and requirement not in left_out
+            holds for requirement, holds in permissions if requirement.automaton is None and requirement not in left_out
         )
 
     def _permitted(self, relation: EventRelation, left_out: AbstractSet[sct.StatedRequirement]) -> Diagram:
         """Return the states in which the requirements on an event hold, except those left out."""
-        kept = [asked for requirement, asked in relation.permissions.items() if requirement not in left_out]
-        return self.diagrams.all_of(kept)
+        remaining = [
+            permission for requirement, permission in relation.permissions.items() if requirement not in left_out
+        ]
+        return self.diagrams.all_of(remaining)
 
 
 class GuardedSystem(SupervisedSystem):

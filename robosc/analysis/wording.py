@@ -48,16 +48,16 @@ def words(event: sct.Event) -> str:
     owner = f"`{name(plant_of(event))}`"
     if event.kind == sct.EventKind.data:
         number = provide_number(event)
-        said = f"choice of `provide` {number} for {owner}" if number else f"choice of no data for {owner}"
+        phrase = f"choice of `provide` {number} for {owner}" if number else f"choice of no data for {owner}"
         where = _where(event) if number else ""
     elif event.kind in (sct.EventKind.plain, sct.EventKind.input):
-        said = f"{'change of ' * (event.kind == sct.EventKind.input)}`{event_name(event)}`"
+        phrase = f"{'change of ' * (event.kind == sct.EventKind.input)}`{event_name(event)}`"
         where = ""
     else:
-        said = _EVENTS[event.kind].format(owner)
-        said += f" after {timer_text(event.timer)}" if event.timer else ""
+        phrase = _EVENTS[event.kind].format(owner)
+        phrase += f" after {timer_text(event.timer)}" if event.timer else ""
         where = _where(event) if event.kind in _OWN else ""
-    return f"{said} in {where}" if where else said
+    return f"{phrase} in {where}" if where else phrase
 
 
 def describe_event(event: sct.Event) -> str:
@@ -93,10 +93,10 @@ def change(event: sct.Event) -> str:
 
 def quote_requirements(requirements: Sequence[sct.StatedRequirement]) -> str:
     """Return requirements with their text and line: "`requirement move needs Lidar.free` (line 12)"."""
-    told = list(dict.fromkeys(map(_called, requirements)))
-    named = told[:NAMED]
-    if len(told) > NAMED:
-        named.append(f"{len(told) - NAMED} more")
+    texts = list(dict.fromkeys(map(_called, requirements)))
+    named = texts[:NAMED]
+    if len(texts) > NAMED:
+        named.append(f"{len(texts) - NAMED} more")
     return join_with_and(named)
 
 
@@ -130,12 +130,12 @@ def _forbid(requirements: Sequence[sct.StatedRequirement]) -> str:
 def in_words(steps: Sequence[TraceStep], model: sct.SupervisoryControlModel) -> str:
     """Return the events of a trace with the data that matters; repetitions in a row appear once."""
     events = {event_name(event): event for plant in model.plants for event in plant.events}
-    said = []
+    phrases = []
     for step in steps:
         event = events[step.event]
         data = ", ".join(_data(parameter, chosen, event) for parameter, chosen in step.inputs.items())
-        said.append(f"{words(event)} ({data})" if data else words(event))
-    runs = [(phrase, len(list(run))) for phrase, run in groupby(said)]
+        phrases.append(f"{words(event)} ({data})" if data else words(event))
+    runs = [(phrase, len(list(run))) for phrase, run in groupby(phrases)]
     return ", then ".join(phrase if times == 1 else f"{times:,} times {phrase}" for phrase, times in runs)
 
 
@@ -143,8 +143,8 @@ def _data(input_name: str, chosen: Value, event: sct.Event) -> str:
     """Return a piece of an event's data, or the node's computation on it, as the model writes it."""
     computed = next((carried.text for carried in event.inputs if carried.name == input_name), None)
     if computed is None:
-        said = input_name.removeprefix(f"i_{event.kind.name}").removeprefix("_") or "value"
-        return f"{said} = {text(chosen)}"
+        name = input_name.removeprefix(f"i_{event.kind.name}").removeprefix("_") or "value"
+        return f"{name} = {text(chosen)}"
     return computed if chosen is True else f"!({computed})" if chosen is False else f"{computed} = {text(chosen)}"
 
 

@@ -91,8 +91,8 @@ class Extension:
 @cache
 def extensions(group: Group) -> Mapping[str, Extension]:
     """Return the installed extensions of a group by name; of equal names, the first by package counts."""
-    found: dict[str, Extension] = {}
+    by_name: dict[str, Extension] = {}
     entries = [(entry.name, entry.dist.name if entry.dist else "", entry) for entry in entry_points(group=group)]
     for name, _, entry in sorted(entries, key=lambda triple: triple[:2]):
-        found.setdefault(name, Extension(entry))
-    return found
+        by_name.setdefault(name, Extension(entry))
+    return by_name

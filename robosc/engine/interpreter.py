@@ -104,13 +104,13 @@ class Engine:
 
     def reads(self, event: str) -> frozenset[sct.Plant | sct.DiscreteVariable]:
         """Return the parts of the state that determine whether the event is enabled, and the reasons that block it."""
-        asked = self._by_name[event]
-        conditions = [term.condition for term in asked.guard.terms]
-        parts = [asked.guard.plants, asked.guard.requirement, asked.guard.synthesis]
-        parts += [reason.condition for reason in asked.reasons]
+        executed = self._by_name[event]
+        conditions = [term.condition for term in executed.guard.terms]
+        parts = [executed.guard.plants, executed.guard.requirement, executed.guard.synthesis]
+        parts += [reason.condition for reason in executed.reasons]
         conditions += [part for part in parts if part is not None]
-        read = {part.variable for part in all_inside(conditions) if isinstance(part, engine.VariableReference)}
-        return frozenset(variable.variable or variable.plant for variable in read)
+        variables = {part.variable for part in all_inside(conditions) if isinstance(part, engine.VariableReference)}
+        return frozenset(variable.variable or variable.plant for variable in variables)
 
     def blocked_by(self, event: str) -> Blocked | None:
         """Return the cause that blocks the event in this state. None if it is enabled."""
@@ -213,8 +213,8 @@ class Engine:
                 return plant.locations[self.location(plant)] is location
             case sct.VariableReference(variable=variable):
                 return _object(variable.type, self._cells[self._layout.cells[variable]])
-            case sct.InputReference(input=given):
-                return _object(given.type, self._inputs[self._positions[given]])
+            case sct.InputReference(input=input_element):
+                return _object(input_element.type, self._inputs[self._positions[input_element]])
         assert isinstance(reference, ex.EnumerationLiteralReference)
         return reference.literal
 

@@ -95,7 +95,7 @@ def following() -> Mapping[str, frozenset[str]]:
 
     The next item of a list does not count.
     """
-    facts, found = _facts(), dict[str, set[str]]()
+    facts, followers = _facts(), dict[str, set[str]]()
     for node in _nodes().values():
         in_order = isinstance(node, arpeggio.Sequence) and not isinstance(node, arpeggio.OrderedChoice)
         if not in_order and not isinstance(node, arpeggio.UnorderedGroup):
@@ -103,10 +103,10 @@ def following() -> Mapping[str, frozenset[str]]:
         for index, part in enumerate(node.nodes):
             for other in node.nodes[index + 1 :] if in_order else node.nodes:
                 for word in facts[id(part)].last if other is not part else ():
-                    found.setdefault(word, set()).update(facts[id(other)].first)
+                    followers.setdefault(word, set()).update(facts[id(other)].first)
                 if in_order and not facts[id(other)].nullable:
                     break
-    return {word: frozenset(others) for word, others in found.items()}
+    return {word: frozenset(others) for word, others in followers.items()}
 
 
 @cache
@@ -131,14 +131,14 @@ def _peg(rule: str) -> Any:
 @cache
 def _nodes(rule: str = "Base") -> Mapping[int, Any]:
     """Return the parser nodes of a rule of the grammar by their identity."""
-    found: dict[int, Any] = {}
+    nodes_by_identity: dict[int, Any] = {}
     pending = [_peg(rule)]
     while pending:
         node = pending.pop()
-        if id(node) not in found:
-            found[id(node)] = node
+        if id(node) not in nodes_by_identity:
+            nodes_by_identity[id(node)] = node
             pending += node.nodes
-    return found
+    return nodes_by_identity
 
 
 @cache
@@ -169,16 +169,16 @@ def _fact(node: Any, facts: Mapping[int, _Facts]) -> _Facts:
         return _Facts(
             nullable, set().union(*(part.first for part in parts)), set().union(*(part.last for part in parts))
         )
-    found = _Facts(nullable or isinstance(node, arpeggio.Optional | arpeggio.ZeroOrMore))
+    result = _Facts(nullable or isinstance(node, arpeggio.Optional | arpeggio.ZeroOrMore))
     for part in parts:
-        found.first |= part.first
+        result.first |= part.first
         if not part.nullable:
             break
     for part in reversed(parts):
-        found.last |= part.last
+        result.last |= part.last
         if not part.nullable:
             break
-    return found
+    return result
 
 
 def pattern(rule: str) -> str:

@@ -214,9 +214,9 @@ def _state(reading: Reading, file: File, state: rsc.State) -> Iterator[str]:
 
 def _flags(state: Any, owner: str) -> str:
     words = [word for word, is_set in (("initial", state.initial), ("marked", state.marked)) if is_set]
-    told = f"{' and '.join(words).capitalize()} state" if words else "State"
+    phrase = f"{' and '.join(words).capitalize()} state" if words else "State"
     marked = ": the supervisor makes sure that such a state can always be reached" if state.marked else ""
-    return f"{told} {owner}{marked}."
+    return f"{phrase} {owner}{marked}."
 
 
 def _communication(file: File, communication: rsc.CommunicationType) -> Iterator[str]:
@@ -242,7 +242,7 @@ def _communication(file: File, communication: rsc.CommunicationType) -> Iterator
 
 def _restricted(reading: Reading, communication: rsc.CommunicationType) -> Iterator[str]:
     """List the requirements that mention a communication."""
-    found: dict[Any, str] = {}
+    texts: dict[Any, str] = {}
     for file, name in _uses(reading, communication):
         around = name.user
         while around is not None and not isinstance(around, rsc.Requirement):
@@ -251,9 +251,9 @@ def _restricted(reading: Reading, communication: rsc.CommunicationType) -> Itera
             where = f"line {file.text.span(name.start, name.end).line}"
             if file is not reading.file and file.base is not None:
                 where += f" of `{file.base.name}`"
-            found.setdefault(around, f"- `{_source(file, around)}`, {where}")
-    if found:
-        yield "Restricted by:\n" + "\n".join(found.values())
+            texts.setdefault(around, f"- `{_source(file, around)}`, {where}")
+    if texts:
+        yield "Restricted by:\n" + "\n".join(texts.values())
 
 
 def _statements(file: File, element: Any) -> str:

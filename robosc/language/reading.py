@@ -161,11 +161,11 @@ class _Reader:
         return self._files[identity] if identity in self._files else self._open(path, str(path))
 
     def _library(self, file: File, path: Path, name: Name) -> File | None:
-        found = self._path.find(name.text, path)
-        if len(found) != 1:
-            self._report(file, name, *(self._several(name, found) if found else self._none(name, path)))
+        files = self._path.find(name.text, path)
+        if len(files) != 1:
+            self._report(file, name, *(self._several(name, files) if files else self._none(name, path)))
             return None
-        identity = found[0].resolve()
+        identity = files[0].resolve()
         if identity in self._reading:
             reading = list(self._reading)
             cycle = [self._files[imported] for imported in reading[reading.index(identity) :]]
@@ -173,10 +173,10 @@ class _Reader:
             message = f"libraries import each other in a circle: {' -> '.join([*names, name.text])}"
             self._report(file, name, message, "move what both need to a library of its own", "import-cycle")
             return None
-        return self._files[identity] if identity in self._files else self._open(found[0], str(found[0]))
+        return self._files[identity] if identity in self._files else self._open(files[0], str(files[0]))
 
-    def _several(self, name: Name, found: list[Path]) -> tuple[str, str]:
-        paths = " and ".join(f"`{path}`" for path in found)
+    def _several(self, name: Name, files: list[Path]) -> tuple[str, str]:
+        paths = " and ".join(f"`{path}`" for path in files)
         return f"library `{name.text}` is declared by several files of one folder: {paths}", "keep one of them"
 
     def _none(self, name: Name, path: Path) -> tuple[str, Repair | str]:

@@ -190,15 +190,17 @@ class _Recovery:
         if named < index:
             index, failure = named, replace(failure, expected=("UnreservedName",))
             token = tokens[index]
-        wanted = f"expected {enumerate_expected(failure.expected, block.level)}"
-        message = f"found {quote_token(token)}, {wanted}"
+        expectation = f"expected {enumerate_expected(failure.expected, block.level)}"
+        message = f"found {quote_token(token)}, {expectation}"
         repair = hint(tokens, index, failure.expected, block)
         if index >= block.after and token.is_first:
             # The missing words belong at the end of the item, not at the next one.
             end = tokens[index - 1].end
-            message = f"found {quote_token(token)} in line {self._text.span(token.start, token.end).line}, {wanted}"
-            said = repair._replace(text=None, choices=()) if isinstance(repair, Repair) else repair
-            self._findings.append(self._text.error("syntax", end, end, message, said))
+            message = (
+                f"found {quote_token(token)} in line {self._text.span(token.start, token.end).line}, {expectation}"
+            )
+            hint_text = repair._replace(text=None, choices=()) if isinstance(repair, Repair) else repair
+            self._findings.append(self._text.error("syntax", end, end, message, hint_text))
         else:
             self._report(index, message, repair)
 
@@ -298,17 +300,17 @@ class _Recovery:
 
 def _by_cause(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Merge the findings of each keyword used as a name into the first one, with the edits of all."""
-    found: list[Diagnostic] = []
+    merged: list[Diagnostic] = []
     firsts: dict[str, int] = {}
     for finding in findings:
         word = finding.edits[0].text if finding.edits else ""
-        if word.startswith("^") and firsts.setdefault(word, len(found)) < len(found):
-            first = found[firsts[word]]
+        if word.startswith("^") and firsts.setdefault(word, len(merged)) < len(merged):
+            first = merged[firsts[word]]
             other = Related(finding.file, finding.span, f"here `{word}` is missing, too")
-            found[firsts[word]] = replace(first, edits=first.edits + finding.edits, related=(*first.related, other))
+            merged[firsts[word]] = replace(first, edits=first.edits + finding.edits, related=(*first.related, other))
         else:
-            found.append(finding)
-    return found
+            merged.append(finding)
+    return merged
 
 
 def _without_consequences(findings: Sequence[Diagnostic]) -> list[Diagnostic]:

@@ -32,11 +32,11 @@ def units(file: File, ros_types: RosTypes) -> Iterator[tuple[int, str]]:
     objects = _objects(file)
     for element in own_elements(file):
         if isinstance(element, rsc.Access) and element.value:
-            found = _read(element, objects)
+            measured = _read(element, objects)
             for segment in element.segments:
                 if isinstance(segment, rsc.PropertySegment):
-                    found = _field(found, segment.property, ros_types)
-            yield from _unit_notes(file, element, found)
+                    measured = _field(measured, segment.property, ros_types)
+            yield from _unit_notes(file, element, measured)
         elif isinstance(element, rsc.ProvideStatement):
             reference = element.communicationType
             communication = reference.communicationType if reference is not None else None
@@ -44,24 +44,24 @@ def units(file: File, ros_types: RosTypes) -> Iterator[tuple[int, str]]:
             yield from _provided(file, element.data, data, ros_types)
 
 
-def _provided(file: File, value: Any, found: _Measured | None, ros_types: RosTypes) -> Iterator[tuple[int, str]]:
+def _provided(file: File, value: Any, measured: _Measured | None, ros_types: RosTypes) -> Iterator[tuple[int, str]]:
     if not isinstance(value, rsc.ObjectValue):
-        yield from _unit_notes(file, value, found)
+        yield from _unit_notes(file, value, measured)
         return
-    for given in value.properties:
-        yield from _provided(file, given.value, _field(found, given.property, ros_types), ros_types)
+    for field in value.properties:
+        yield from _provided(file, field.value, _field(measured, field.property, ros_types), ros_types)
 
 
-def _unit_notes(file: File, element: Any, found: _Measured | None) -> Iterator[tuple[int, str]]:
+def _unit_notes(file: File, element: Any, measured: _Measured | None) -> Iterator[tuple[int, str]]:
     """Yield the unit of a number."""
-    is_number = found is not None and isinstance(found.wire, Basic) and found.wire.name in PRIMITIVES
-    if found is not None and is_number and found.unit is not None and element is not None:
-        yield span(file, element)[1], found.unit
+    is_number = measured is not None and isinstance(measured.wire, Basic) and measured.wire.name in PRIMITIVES
+    if measured is not None and is_number and measured.unit is not None and element is not None:
+        yield span(file, element)[1], measured.unit
 
 
 def _objects(file: File) -> Mapping[Any, _Measured]:
     """Return the ROS types of the objects that a text declares, from the interfaces of its communications."""
-    found: dict[Any, _Measured] = {}
+    measured_objects: dict[Any, _Measured] = {}
     for communication in own_elements(file):
         if isinstance(communication, rsc.CommunicationType):
             for row, declared in carrying_events(communication):
@@ -70,8 +70,8 @@ def _objects(file: File) -> Mapping[Any, _Measured]:
                 if isinstance(named, rsc.EnumDataType) and isinstance(named.type, rsc.ComplexDataTypeReference):
                     named = named.type.type
                 if data is not None and isinstance(named, rsc.ObjectDataType):
-                    found.setdefault(named, data)
-    return found
+                    measured_objects.setdefault(named, data)
+    return measured_objects
 
 
 def _data(communication: rsc.CommunicationType | None, row: PortEvent | None) -> _Measured | None:
@@ -97,18 +97,18 @@ def _read(access: rsc.Access, objects: Mapping[Any, _Measured]) -> _Measured | N
     return None
 
 
-def _field(found: _Measured | None, field: rsc.ObjectProperty | None, ros_types: RosTypes) -> _Measured | None:
-    if found is None or field is None or not isinstance(found.wire, NestedType):
+def _field(measured: _Measured | None, field: rsc.ObjectProperty | None, ros_types: RosTypes) -> _Measured | None:
+    if measured is None or field is None or not isinstance(measured.wire, NestedType):
         return None
-    package, name = found.wire.package, found.wire.name
+    package, name = measured.wire.package, measured.wire.name
     for distribution in ros_types.distributions:
         try:
-            wire = (distribution.fields(package, name, found.section) or {}).get(field.name)
+            wire = (distribution.fields(package, name, measured.section) or {}).get(field.name)
         except DefinitionError:
             continue
         while isinstance(wire, Sequence):
             wire = wire.element
         if wire is not None:
-            unit = UNITS.get((package, name), {}).get(field.name, found.unit)
+            unit = UNITS.get((package, name), {}).get(field.name, measured.unit)
             return _Measured(wire, Section.MESSAGE, unit)
     return None

@@ -97,19 +97,19 @@ class RequirementAutomaton:
         most = constant_value(count.bound, self._within)
         if type(most) is not int or not 1 <= most <= MOST:
             raise ModelError([_no_bound(count)])
-        made = sct.DiscreteVariable(
+        counter = sct.DiscreteVariable(
             name="count", type=ex.IntegerType(minimum=0, maximum=most), initial=ex.IntegerLiteral(value=0)
         )
-        self.plant.variables.append(made)
-        so_far = sct.VariableReference(variable=made)
+        self.plant.variables.append(counter)
+        so_far = sct.VariableReference(variable=counter)
         for event in dict.fromkeys([*restricted, anchor]):
-            one_more = ex.Addition(left=sct.VariableReference(variable=made), right=ex.IntegerLiteral(value=1))
+            one_more = ex.Addition(left=sct.VariableReference(variable=counter), right=ex.IntegerLiteral(value=1))
             value = ex.IntegerLiteral(value=0) if event is anchor else one_more
             edge = sct.Edge(event=event, target=counting)
-            edge.updates.append(sct.Update(variable=made, value=value))
+            edge.updates.append(sct.Update(variable=counter, value=value))
             counting.edges.append(edge)
         for event in restricted:
-            so_far = sct.VariableReference(variable=made)
+            so_far = sct.VariableReference(variable=counter)
             self.allowed[event] = ex.LessThan(left=so_far, right=ex.IntegerLiteral(value=most))
 
     def _automaton(self, automaton: robosc.AutomatonRequirement, expressions: SctExpressions) -> None:

@@ -160,12 +160,12 @@ class _RoboscToRosgraph:
         client.interface = self.interface(port.communication)
         client.source = port.communication.source
         for event in events(port.communication):
-            made: rosgraph.Sending | rosgraph.Reception | sct.Event = self.trace.event(port, event.kind)
+            handler: rosgraph.Sending | rosgraph.Reception | sct.Event = self.trace.event(port, event.kind)
             if event.is_sent:
-                made = self.sending(port, event)
+                handler = self.sending(port, event)
             elif event.kind not in CONTROLLABLE:
-                made = self.reception(port, event)
-            setattr(client, event.name or event.kind.name, made)
+                handler = self.reception(port, event)
+            setattr(client, event.name or event.kind.name, handler)
         clients: list[ex.Located] = self.graph.actionClients if is_action else self.graph.serviceClients  # type: ignore[assignment]
         clients.append(client)
 
@@ -193,11 +193,11 @@ class _RoboscToRosgraph:
         sent = data_type(port.communication, event)
         assert sent is not None
         for statement in self.instances.provide_statements(port):
-            given = statement.element
-            alternative = rosgraph.ProvidedData(location=self.trace.provided[statement], source=given.source)
+            provided = statement.element
+            alternative = rosgraph.ProvidedData(location=self.trace.provided[statement], source=provided.source)
             is_object = isinstance(declared_type(port.instance.data_type(sent)), ObjectType)
             lone = () if is_object else (self.field(port, event),)
-            for field in self.fields(given.data, statement.within, lone, port.instance.data_type(sent)):
+            for field in self.fields(provided.data, statement.within, lone, port.instance.data_type(sent)):
                 alternative.fields.append(field)
             sending.alternatives.append(alternative)
         return sending
@@ -214,8 +214,10 @@ class _RoboscToRosgraph:
         if isinstance(data, robosc.ObjectValue):
             return [
                 field
-                for given in data.properties
-                for field in self.fields(given.value, within, (*path, given.property.name), given.property.type)
+                for assignment in data.properties
+                for field in self.fields(
+                    assignment.value, within, (*path, assignment.property.name), assignment.property.type
+                )
             ]
         return [
             rosgraph.FieldAssignment(
@@ -227,8 +229,8 @@ class _RoboscToRosgraph:
         ]
 
     def converted(self, value: ex.Expression, within: Instance | None, declared: robosc.DataType) -> ex.Expression:
-        made = self.expressions(value, within)
-        return self.expressions.as_double(made) if isinstance(declared, robosc.DoubleDataType) else made
+        expression = self.expressions(value, within)
+        return self.expressions.as_double(expression) if isinstance(declared, robosc.DoubleDataType) else expression
 
     # Incoming data
 
@@ -243,16 +245,16 @@ class _RoboscToRosgraph:
             value = self.value_of(port, event)
             self.carriers[reception] = self.interface(port.communication), event.section
         for carried, declared in self.inputs.get((port, event), ()):
-            read: ex.Expression
+            access: ex.Expression
             if isinstance(carried, Data):
-                read = robosc.Access(
+                access = robosc.Access(
                     value=True, segments=[robosc.PropertySegment(property=part) for part in carried.path]
                 )
             elif isinstance(carried, FailureReason):
-                read = robosc.ErrorReason(enumeration=carried.enum)
+                access = robosc.ErrorReason(enumeration=carried.enum)
             else:
-                read = carried.expression
-            assigned = self.expressions(read, port.instance, value)
+                access = carried.expression
+            assigned = self.expressions(access, port.instance, value)
             reception.inputs.append(rosgraph.InputAssignment(input=declared, value=assigned))
         return reception
 
@@ -284,8 +286,8 @@ class _RoboscToRosgraph:
         if isinstance(enum, robosc.EnumDataType):
             argument = rosgraph.WireAccess(steps=steps, type=self.wire_type(enum.type))
             assert isinstance(reached, robosc.ComplexDataTypeReference)
-            given = bound_arguments(enum.parameters, reached.arguments)
-            arguments = {name: self.argument(value, within) for name, value in given.items()}
+            bound = bound_arguments(enum.parameters, reached.arguments)
+            arguments = {name: self.argument(value, within) for name, value in bound.items()}
             call = rosgraph.ConversionCall(conversion=self.conversion(enum, arguments), argument=argument)
             return call, reached
         return rosgraph.WireAccess(steps=steps, type=self.wire_type(reached)), reached
@@ -359,8 +361,8 @@ class _RoboscToRosgraph:
                     variable = self.variables[owned]
                     if happens_anyway(event) and reads_elements(value):
                         # The assignment does not happen if its value cannot be read.
-                        kept = rosgraph.NodeVariableReference(variable=variable)
-                        value = rosgraph.IfReadable(value=value, otherwise=kept)
+                        unchanged = rosgraph.NodeVariableReference(variable=variable)
+                        value = rosgraph.IfReadable(value=value, otherwise=unchanged)
                     reaction.assignments.append(
                         rosgraph.NodeAssignment(variable=variable, value=value, source=assignment.source)
                     )
@@ -380,8 +382,8 @@ class _RoboscToRosgraph:
         if not isinstance(transition, robosc.ResultTransition):
             return None
         data = self.data(transition, instance)
-        found = [guard for guard in map(guard_of, [*others, transition]) if guard is not None]
-        guards = [self.expressions(guard, instance, data) for guard in found]
+        earlier = [guard for guard in map(guard_of, [*others, transition]) if guard is not None]
+        guards = [self.expressions(guard, instance, data) for guard in earlier]
         if happens_anyway(self.trace.event_of(transition, instance)):
             guards = [_false_if_missing(guard) for guard in guards]
         own = [] if transition.guard is None else [guards.pop()]

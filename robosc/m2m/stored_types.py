@@ -70,15 +70,15 @@ class StoredTypes:
         self, declared: robosc.DataType, interface: rosgraph.Interface, section: Section, path: Several[str]
     ) -> ex.Type:
         """Return the type of a variable of a data type that holds the value at `path` of a ROS message."""
-        found = [
+        definitions = [
             _Defined(distribution, *reached)
             for distribution in self._distributions
             if (reached := distribution.type_at(interface.package, interface.type, section, path)) is not None
         ]
         self._left = MOST_VALUES
-        made = self._type(declared, found)
-        if self._left >= 0 and made is not None:
-            return made
+        result = self._type(declared, definitions)
+        if self._left >= 0 and result is not None:
+            return result
         return rosgraph.ArrayType() if isinstance(declared, robosc.Array) else rosgraph.ObjectType()
 
     def _type(self, declared: robosc.DataType | None, defined: Several[_Defined]) -> ex.Type | None:
@@ -100,14 +100,16 @@ class StoredTypes:
 
     def _object(self, declared: robosc.DataType | None, defined: Several[_Defined]) -> rosgraph.ObjectType:
         self._left -= 1
-        made = rosgraph.ObjectType()
+        result = rosgraph.ObjectType()
         named = {}
         if isinstance(declared, robosc.ComplexDataTypeReference) and isinstance(declared.type, robosc.ObjectDataType):
-            named = {given.name: given.type for given in declared.type.properties}
-        found = [(definition, fields) for definition in defined if (fields := definition.fields()) is not None]
+            named = {field.name: field.type for field in declared.type.properties}
+        known_fields = [(definition, fields) for definition in defined if (fields := definition.fields()) is not None]
         # Only the seconds of times have the same meaning in ROS 1 and ROS 2, and rospy has another name for them.
         known = [
-            (definition, fields) for definition, fields in found if str(definition.wire).partition("/")[0] != _TIMES
+            (definition, fields)
+            for definition, fields in known_fields
+            if str(definition.wire).partition("/")[0] != _TIMES
         ]
         agreed = [name for name in (known[0][1] if known else ()) if all(name in fields for _, fields in known)]
         for name in dict.fromkeys([*agreed, *named]):
@@ -120,5 +122,5 @@ class StoredTypes:
             ]
             kind = self._type(named.get(name), wires)
             if kind is not None:
-                made.fields.append(rosgraph.ObjectField(name=name, type=kind))
-        return made
+                result.fields.append(rosgraph.ObjectField(name=name, type=kind))
+        return result

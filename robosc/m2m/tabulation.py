@@ -96,9 +96,9 @@ def _condition(table: _Table, references: list[ex.Expression], ranges: list[rang
     for low, high, rest in table.runs:
         inside = _between(references[table.depth], low, high, ranges[table.depth])
         alternatives.append(_all(inside if rest is True else [*inside, _condition(rest, references, ranges)]))
-    found = disjunction(alternatives)
-    assert found is not None
-    return found
+    condition = disjunction(alternatives)
+    assert condition is not None
+    return condition
 
 
 def _between(reference: ex.Expression, low: int, high: int, whole: range) -> list[ex.Expression]:
@@ -120,9 +120,9 @@ def _is_condition(reference: ex.Expression) -> bool:
 
 
 def _all(conditions: list[ex.Expression]) -> ex.Expression:
-    found = conjunction(conditions)
-    assert found is not None
-    return found
+    condition = conjunction(conditions)
+    assert condition is not None
+    return condition
 
 
 def _declaration(reference: ex.Expression) -> sct.DiscreteVariable | sct.Input | None:

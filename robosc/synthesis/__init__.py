@@ -150,10 +150,10 @@ def count(model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistic
     For the arguments and errors see `synthesize`.
     """
 
-    def counted(found: _Solution) -> Counts:
-        encoding, controlled = found.encoding, found.states.controlled
+    def counted(solution: _Solution) -> Counts:
+        encoding, controlled = solution.encoding, solution.states.controlled
         states = encoding.count(controlled) if controlled.satisfiable() else 0
-        return Counts(_uncontrolled_states(found), states, controlled.node_count())
+        return Counts(_uncontrolled_states(solution), states, controlled.node_count())
 
     return _with_states(model, counted, memory, statistics or Statistics(), supervise_only)
 
@@ -174,7 +174,9 @@ def solve(
     arguments and the errors see `synthesize`.
     """
     statistics = statistics or Statistics()
-    return _with_states(model, lambda found: look(_solved(found, statistics, effort)), memory, statistics, supervise)
+    return _with_states(
+        model, lambda all_states: look(_solved(all_states, statistics, effort)), memory, statistics, supervise
+    )
 
 
 def use_encoding(model: sct.SupervisoryControlModel, look: Callable[[Encoding], T], memory: int = MEMORY) -> T:
@@ -263,33 +265,33 @@ def _solve(
         return _Solution(encoding, relations, supervising(encoding, moves, violating), uncontrolled)
 
 
-def _uncontrolled_states(found: _Solution) -> int | None:
-    return None if found.uncontrolled is None else found.encoding.count_plants(found.uncontrolled)
+def _uncontrolled_states(solution: _Solution) -> int | None:
+    return None if solution.uncontrolled is None else solution.encoding.count_plants(solution.uncontrolled)
 
 
 def _solved(all_found: _Solution, statistics: Statistics, effort: int | None) -> Solution:
-    encoding, relations, found = all_found.encoding, all_found.relations, all_found.states
+    encoding, relations, fixpoint = all_found.encoding, all_found.relations, all_found.states
     uncontrolled, all_states = all_found.uncontrolled, _uncontrolled_states(all_found)
-    diagrams, nodes = encoding.diagrams, found.controlled.node_count()
-    if not found.controlled.satisfiable():
+    diagrams, nodes = encoding.diagrams, fixpoint.controlled.node_count()
+    if not fixpoint.controlled.satisfiable():
         empty = Synthesis(None, all_states, 0, nodes, statistics)
-        return Solution(empty, encoding, relations, (), found, uncontrolled)
+        return Solution(empty, encoding, relations, (), fixpoint, uncontrolled)
     with statistics.during(Phase.GUARDS):
-        controlled = Projection(found.controlled, encoding)
+        controlled = Projection(fixpoint.controlled, encoding)
         permissions = [
-            permission(relation, controlled, encoding, restricts=len(found.rounds) > 1, effort=effort)
+            permission(relation, controlled, encoding, restricts=len(fixpoint.rounds) > 1, effort=effort)
             for relation in relations
             if relation.event.controllable
         ]
         supervisor = sct.Supervisor(
             uncontrolledStates=all_states,
-            controlledStates=encoding.count(found.controlled),
+            controlledStates=encoding.count(fixpoint.controlled),
             bddNodes=nodes + sum(permission.where.node_count() for permission in permissions),
             guards=[permission.guard for permission in permissions],
         )
-        left_out = encoding.initial & ~found.controlled
+        left_out = encoding.initial & ~fixpoint.controlled
         if left_out.satisfiable():
-            started = encoding.initial & found.controlled
+            started = encoding.initial & fixpoint.controlled
             supervisor.initial = separating_expression(encoding, started, left_out, encoding.layout.state)
         # From a controlled state, an event leads to a controlled state exactly if its guard allows it.
         supervised = [(relation, relation.enabled & relation.requirement, relation.step) for relation in relations]
@@ -300,7 +302,7 @@ def _solved(all_found: _Solution, statistics: Statistics, effort: int | None) ->
         }
         if not unwritten:
             internal = internal_events(supervised, supervisor.guards)
-            supervisor.settlingBound = completion(diagrams, internal, found.controlled, COMPLETION_EFFORT).bound
+            supervisor.settlingBound = completion(diagrams, internal, fixpoint.controlled, COMPLETION_EFFORT).bound
         permitted = {permission.relation.event: permission.where for permission in permissions}
         possible = [
             relation.event
@@ -314,4 +316,4 @@ def _solved(all_found: _Solution, statistics: Statistics, effort: int | None) ->
     synthesis = Synthesis(
         supervisor, all_states, supervisor.controlledStates, supervisor.bddNodes, statistics, tuple(possible), unwritten
     )
-    return Solution(synthesis, encoding, relations, permissions, found, uncontrolled)
+    return Solution(synthesis, encoding, relations, permissions, fixpoint, uncontrolled)

@@ -61,10 +61,10 @@ class Acceleration:
         for bundle in bundles:
             yield from self._accelerated(near, bundle, within)
         if hops > 1:
-            found: list[SymbolicStep] = []
+            closures: list[SymbolicStep] = []
             for bundle in list(accumulate(bundles))[1:]:
-                found = list(self._accelerated([*near, *found], bundle, within))
-                yield from found
+                closures = list(self._accelerated([*near, *closures], bundle, within))
+                yield from closures
 
     def _accelerated(
         self, near: Sequence[SymbolicStep], bundle: Sequence[Element], within: Diagram

@@ -125,10 +125,10 @@ def split(diagram: Diagram, level: int) -> tuple[Diagram, Diagram]:
 
 def _refuse_where_addresses_lack(capacity: int) -> None:
     """Raise TooFewAddressesError if the address space is too small: the library would end the process."""
-    wanted, left = _LIBRARY + capacity * _BYTES_PER_NODE, address_space()
-    if left is not None and left < wanted:
+    needed, left = _LIBRARY + capacity * _BYTES_PER_NODE, address_space()
+    if left is not None and left < needed:
         raise TooFewAddressesError(
-            f"decision diagrams need {wanted >> 20} MiB of addresses, and `ulimit -v` leaves {max(left, 0) >> 20}"
+            f"decision diagrams need {needed >> 20} MiB of addresses, and `ulimit -v` leaves {max(left, 0) >> 20}"
         )
 
 

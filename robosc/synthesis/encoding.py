@@ -217,8 +217,8 @@ class Encoding:
     def _same(self, bits: Sequence[Diagram], code: Vector) -> Diagram:
         result = self.diagrams.true
         padded = (*code, *(code[-1] for _ in bits))
-        for bit, wanted in zip(bits, padded, strict=False):
-            result = bit.equiv(wanted) & result
+        for bit, other_bit in zip(bits, padded, strict=False):
+            result = bit.equiv(other_bit) & result
         return result
 
     def location(self, location: sct.Location) -> Diagram:
@@ -426,8 +426,8 @@ def pick(diagram: Diagram, domains: Iterable[Domain]) -> dict[Element, int]:
 
 
 def _plant(element: Element) -> sct.Plant:
-    found: sct.Plant = element if isinstance(element, sct.Plant) else element.eContainer()
-    return found
+    plant: sct.Plant = element if isinstance(element, sct.Plant) else element.eContainer()
+    return plant
 
 
 def _elements(plant: sct.Plant) -> Iterator[Element]:

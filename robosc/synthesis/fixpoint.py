@@ -194,14 +194,14 @@ def _merged(steps: Sequence[SymbolicStep]) -> list[SymbolicStep]:
     Steps that leave it unchanged can mostly happen side by side. It is best to follow each of them from the result of
     the last.
     """
-    found: list[SymbolicStep] = []
+    merged_steps: list[SymbolicStep] = []
     by_level: dict[tuple[int, bool], list[SymbolicStep]] = {}
     for step in _merged_alike(steps):
         by_level.setdefault((step.level, step.present.node_level() == step.level), []).append(step)
     for (_, at_level), group in by_level.items():
         # Wide integers are accelerated by single events.
-        found += _joined_where_it_pays(group) if at_level and not group[0].encoding.layout.wide else group
-    return found
+        merged_steps += _joined_where_it_pays(group) if at_level and not group[0].encoding.layout.wide else group
+    return merged_steps
 
 
 def _joined_where_it_pays(steps: Sequence[SymbolicStep]) -> Sequence[SymbolicStep]:
@@ -243,14 +243,14 @@ def _merged_alike(steps: Sequence[SymbolicStep]) -> list[SymbolicStep]:
     alike: dict[tuple[int, frozenset[Element]], list[SymbolicStep]] = {}
     for step in steps:
         alike.setdefault((step.level, frozenset(step.changed)), []).append(step)
-    found = []
+    merged_steps = []
     for group in alike.values():
         merged = group[0]
         if len(group) > 1:
             merged = replace(merged, relation=merged.encoding.diagrams.any_of(step.relation for step in group))
         pays = len(group) != _PAIR or merged.apart is not None or merged.relation.node_count() <= _SMALL
-        found += [merged] if pays else group
-    return found
+        merged_steps += [merged] if pays else group
+    return merged_steps
 
 
 def reachable(diagrams: Diagrams, steps: Sequence[SymbolicStep], states: Diagram, within: Diagram) -> Diagram:
@@ -278,9 +278,9 @@ def supervise(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> 
     while True:
         statistics.rounds += 1
         statistics.states = encoding.count(good)
-        kept = good & ~violating
+        allowed = good & ~violating
         # If all remaining states were alive, they still are: none needs a removed state to reach a marked one.
-        alive.append(good if alive and good == alive[-1] else coreachable(diagrams, steps, marked & kept, kept))
+        alive.append(good if alive and good == alive[-1] else coreachable(diagrams, steps, marked & allowed, allowed))
         blocked = good & ~alive[-1]
         if not blocked.satisfiable():
             break

@@ -62,9 +62,9 @@ def permission(
     allowed = required if step is None else required & step.preimage(states)
     guard = sct.EventGuard(event=relation.event, everEnabled=allowed.satisfiable())
     if enabled != required:
-        asked = conjunction(_condition(requirement) for requirement in relation.requirements)
-        assert asked is not None
-        guard.requirement = simplify(asked, enabled, encoding)
+        condition = conjunction(_condition(requirement) for requirement in relation.requirements)
+        assert condition is not None
+        guard.requirement = simplify(condition, enabled, encoding)
         guard.requirements.extend(
             requirement for requirement, holds in relation.permissions.items() if (enabled & ~holds).satisfiable()
         )

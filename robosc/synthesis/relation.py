@@ -73,8 +73,8 @@ def join_steps(first: SymbolicStep, second: SymbolicStep) -> SymbolicStep:
 
     def framed(step: SymbolicStep) -> Diagram:
         # From the bottom: each conjunction rebuilds the diagram above it.
-        kept = sorted(set(changed) - set(step.changed), key=lambda element: domains[element].levels, reverse=True)
-        return all_of(map(encoding.keeps, kept)) & step.relation
+        unchanged = sorted(set(changed) - set(step.changed), key=lambda element: domains[element].levels, reverse=True)
+        return all_of(map(encoding.keeps, unchanged)) & step.relation
 
     encoding = first.encoding
     all_of, domains = encoding.diagrams.all_of, encoding.layout.domains
@@ -231,7 +231,7 @@ class EventRelation:
 
     def overlapping_edges(self) -> list[sct.Edge]:
         """Return the edges that overlap with an earlier edge of the same plant."""
-        found = []
+        overlaps = []
         for edges in self._edges:
             if len(edges) > len({edge.eContainer() for edge in edges}):
                 before = self._encoding.diagrams.false
@@ -239,9 +239,9 @@ class EventRelation:
                     taken = self._encoding.source(edge) & self._encoding.holds(edge.guard)
                     taken &= self._encoding.whole(referenced_elements(edge.guard))
                     if (taken & before & self.enabled).satisfiable():
-                        found.append(edge)
+                        overlaps.append(edge)
                     before |= taken
-        return found
+        return overlaps
 
     def _moves(self, edges: Sequence[sct.Edge]) -> Diagram:
         """Return the part of one plant in the relation."""
@@ -281,23 +281,24 @@ def violations(
     These are the states in which an invariant does not hold, and those in which a forbidden uncontrollable event can
     happen.
     """
-    found: dict[sct.StatedRequirement, Diagram] = {
+    violating: dict[sct.StatedRequirement, Diagram] = {
         invariant: ~encoding.holds(invariant.condition) for invariant in model.invariants
     }
     for relation in relations:
         if not relation.event.controllable:
-            found.update(
-                (requirement, relation.enabled & ~asked) for requirement, asked in relation.permissions.items()
+            violating.update(
+                (requirement, relation.enabled & ~permission)
+                for requirement, permission in relation.permissions.items()
             )
-    return found
+    return violating
 
 
 def requirements_by_event(requirements: Iterable[sct.Requirement]) -> dict[sct.Event, list[sct.Requirement]]:
     """Return the requirements of each event that has any."""
-    found: dict[sct.Event, list[sct.Requirement]] = {}
+    by_event: dict[sct.Event, list[sct.Requirement]] = {}
     for requirement in requirements:
-        found.setdefault(requirement.event, []).append(requirement)
-    return found
+        by_event.setdefault(requirement.event, []).append(requirement)
+    return by_event
 
 
 def plant_moves(relations: Iterable[EventRelation]) -> list[Move]:

@@ -44,14 +44,14 @@ def internal_events(
 ) -> list[InternalEvent]:
     """Return the internal events; each of `events` comes with its allowed states and its step."""
     guard_of = {guard.event: guard for guard in guards}
-    found = []
+    internal = []
     for relation, allowed, step in events:
         if relation.event.kind in SILENT:
             guard = guard_of.get(relation.event)
             parts = (guard.requirement, guard.synthesis) if guard else ()
-            read = {element for part in parts for element in referenced_elements(part)}
-            found.append(InternalEvent(relation, allowed, step, relation.touched | read))
-    return found
+            elements = {element for part in parts for element in referenced_elements(part)}
+            internal.append(InternalEvent(relation, allowed, step, relation.touched | elements))
+    return internal
 
 
 @dataclass(frozen=True)
@@ -130,8 +130,8 @@ def independent_groups(events: Sequence[InternalEvent]) -> list[list[InternalEve
         shared = [first(element) for element in event.touched & changed]
         for element in shared:
             known[first(element)] = first(shared[0])
-    found: dict[object, list[InternalEvent]] = {}
+    groups: dict[object, list[InternalEvent]] = {}
     for event in events:
         shared = [first(element) for element in event.touched & changed]
-        found.setdefault(shared[0] if shared else event, []).append(event)
-    return list(found.values())
+        groups.setdefault(shared[0] if shared else event, []).append(event)
+    return list(groups.values())

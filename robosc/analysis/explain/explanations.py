@@ -56,21 +56,21 @@ def explore(model: sct.SupervisoryControlModel, look: Callable[[SynthesizedSyste
 # An event in a state
 
 
-def explain(system: SynthesizedSystem, event: sct.Event, given: Codes) -> Explanation:
+def explain(system: SynthesizedSystem, event: sct.Event, partial: Codes) -> Explanation:
     """Explain whether an event can happen in the nearest state with these codes; the supervisor is not empty.
 
     If the supervisor lets the robot reach no such state, the answer is about the nearest state that the plants reach.
     If they reach none either, it is about the initial state with these codes.
     """
     encoding = system.encoding
-    goal = encoding.diagrams.all_of(encoding.has_code(element, code) for element, code in given.items())
+    goal = encoding.diagrams.all_of(encoding.has_code(element, code) for element, code in partial.items())
     way = system.layers.path_to(goal & system.controlled)
     if way is not None:
         return explain_after(system, event, way)
     way = shortest_path(encoding, system.plant_moves, encoding.initial, goal & system.uncontrolled, system.uncontrolled)
     if way is not None:
         return explain_beyond(system, event, way)
-    return _explained(system, event, _situation(system, {**encoding.initial_codes, **given}, Reach.NEVER))
+    return _explained(system, event, _situation(system, {**encoding.initial_codes, **partial}, Reach.NEVER))
 
 
 def explain_after(system: SynthesizedSystem, event: sct.Event, way: Path) -> Explanation:
@@ -193,9 +193,9 @@ def _conflict(system: SynthesizedSystem, relation: EventRelation) -> tuple[Note,
     return tuple(Note(requirement, requirement.text or "a requirement") for requirement in at_fault)
 
 
-def _beyond(system: SynthesizedSystem, event: sct.Event, wanted: Diagram) -> Explanation | None:
-    """Return the nearest state that enables the event and satisfies `wanted`, unreachable under the supervisor."""
-    goal = system.uncontrolled & system.relations[event].enabled & wanted
+def _beyond(system: SynthesizedSystem, event: sct.Event, condition: Diagram) -> Explanation | None:
+    """Return the nearest state that enables the event and satisfies `condition`, unreachable under the supervisor."""
+    goal = system.uncontrolled & system.relations[event].enabled & condition
     way = shortest_path(system.encoding, system.plant_moves, system.encoding.initial, goal, system.uncontrolled)
     return None if way is None else explain_beyond(system, event, way)
 
@@ -241,9 +241,9 @@ def emptiness(system: SynthesizedSystem) -> Emptiness | None:
     if system.controlled.satisfiable():
         return None
     reason = reason_of_emptiness(system)
-    found = find_culprits(system, reason.codes)
-    helpful = loosenings(system, lambda other: other.controlled.satisfiable(), [note.element for note in found])
-    return Emptiness(reason, tuple(_stuck(reason)), tuple(found), helpful)
+    culprits = find_culprits(system, reason.codes)
+    helpful = loosenings(system, lambda other: other.controlled.satisfiable(), [note.element for note in culprits])
+    return Emptiness(reason, tuple(_stuck(reason)), tuple(culprits), helpful)
 
 
 def _stuck(reason: BlockReason) -> list[Note]:
@@ -275,9 +275,9 @@ def loosenings(
     texts = system.group_requirements(first)
     if not helps(system.without(frozenset(requirement for text in texts for requirement in text))):
         return None
-    found = []
+    helpful = []
     for text in texts[:_TRIED]:
         other = system.without(frozenset(text))
         if helps(other):
-            found.append(Loosening(text, system.encoding.count(other.controlled)))
-    return tuple(sorted(found, key=lambda loosening: -loosening.states))
+            helpful.append(Loosening(text, system.encoding.count(other.controlled)))
+    return tuple(sorted(helpful, key=lambda loosening: -loosening.states))

@@ -82,13 +82,13 @@ class Obstacles:
         """
         encoding = self._system.encoding
         here = encoding.state(self._codes)
-        found: list[Note] = []
+        notes: list[Note] = []
         for move in self._system.supervised_moves:
             possible = move[1].image(here) & allowed
             if possible.satisfiable():
                 after = pick(possible, encoding.layout.state)
-                found += self._changing(move, after)
-        return found
+                notes += self._changing(move, after)
+        return notes
 
     # Plants
 
@@ -107,11 +107,11 @@ class Obstacles:
         here = self._here(plant)
         guard = self._guard(plant)
         if guard is not None:
-            parts = tuple(dict.fromkeys(map(self._describe, self._failing(guard, wanted=True))))
-            asked = f"{self._transition(plant)} asks for `{self._print(guard)}`"
+            parts = tuple(dict.fromkeys(map(self._describe, self._failing(guard, value=True))))
+            condition_text = f"{self._transition(plant)} asks for `{self._print(guard)}`"
             if plant.kind == sct.PlantKind.data:
-                return Note(self._event, asked, parts)
-            return Note(self._edges(plant)[0], f"`{name(plant)}` is in `{here.name}`, where {asked}", parts)
+                return Note(self._event, condition_text, parts)
+            return Note(self._edges(plant)[0], f"`{name(plant)}` is in `{here.name}`, where {condition_text}", parts)
         if plant.kind in _CALLS and here.name in _PHASES:
             return Note(plant, f"`{name(plant)}` is in `{here.name}`: it {_PHASES[here.name]}")
         others = [
@@ -139,12 +139,12 @@ class Obstacles:
     # Conditions
 
     def _parts(self, requirement: sct.Requirement) -> list[tuple[ex.Expression, bool]]:
-        return self._failing(requirement.condition, wanted=requirement.kind == sct.RequirementKind.needs)
+        return self._failing(requirement.condition, value=requirement.kind == sct.RequirementKind.needs)
 
-    def _failing(self, condition: ex.Expression | None, *, wanted: bool) -> list[tuple[ex.Expression, bool]]:
+    def _failing(self, condition: ex.Expression | None, *, value: bool) -> list[tuple[ex.Expression, bool]]:
         """Return the smallest parts of a condition that would all have to change, each with its required value."""
         failing = []
-        pending = [] if condition is None else [(condition, wanted)]
+        pending = [] if condition is None else [(condition, value)]
         while pending:
             part, value_wanted = pending.pop()
             if self._system.holds(part, self._codes) == value_wanted:
@@ -159,14 +159,14 @@ class Obstacles:
         return failing
 
     def _describe(self, part: tuple[ex.Expression, bool]) -> str:
-        condition, wanted = part
-        held = f"`{self._print(condition)}` {'does not hold' if wanted else 'holds'}"
-        told = not (isinstance(condition, sct.LocationReference) and not wanted)
+        condition, required = part
+        sentence = f"`{self._print(condition)}` {'does not hold' if required else 'holds'}"
+        has_values = not (isinstance(condition, sct.LocationReference) and not required)
         values = [
             what_is(element, value(element, self._codes[element]))
             for element in dict.fromkeys(referenced_elements(condition))
         ]
-        return f"{held}: {join_with_and(values)}" if values and told else held
+        return f"{sentence}: {join_with_and(values)}" if values and has_values else sentence
 
     # Changes
 
@@ -175,27 +175,29 @@ class Obstacles:
         relation = move[0]
         steps = trace(self._system.encoding, Path([dict(self._codes), dict(after)], [move]))
         by = in_words(steps, self._system.model)
-        found = []
+        changes = []
         for plant in relation.enabled_by:
             possible = edges_from(self._here(plant), relation.event)
             reached = plant.locations[after[plant]]
             edge = next((edge for edge in possible if edge.target is reached), possible[0])
             changed = [element for element in (plant, *plant.variables) if self._codes[element] != after[element]]
-            found += [(element, _change(element, edge, self._here(plant), after, by)) for element in changed]
-        return [note for element, note in found if element in self._in_the_way] or [note for _, note in found]
+            changes += [(element, _change(element, edge, self._here(plant), after, by)) for element in changed]
+        return [note for element, note in changes if element in self._in_the_way] or [note for _, note in changes]
 
     @cached_property
     def _in_the_way(self) -> set[Element]:
         """Plants that cannot take part, and the elements that the false guards and requirements read."""
-        found: set[Element] = set()
+        elements: set[Element] = set()
         relation = self._system.relations[self._event]
         for plant, where in relation.enabled_by.items():
             if not self._system.is_in(self._codes, where):
-                found.update(referenced_elements(self._guard(plant)) if self._edges(plant) else [plant])
+                elements.update(referenced_elements(self._guard(plant)) if self._edges(plant) else [plant])
         for requirement, where in relation.permissions.items():
             if not self._system.is_in(self._codes, where):
-                found.update(element for part, _ in self._parts(requirement) for element in referenced_elements(part))
-        return found
+                elements.update(
+                    element for part, _ in self._parts(requirement) for element in referenced_elements(part)
+                )
+        return elements
 
 
 def _change(element: Element, edge: sct.Edge, here: sct.Location, after: Codes, by: str) -> Note:

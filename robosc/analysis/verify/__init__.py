@@ -65,13 +65,13 @@ def verify(
     4 GB.
     """
     begin(model_reading.PROPERTY)
-    read = measure(validate_model, models.robosc, models.sct)
+    reading = measure(validate_model, models.robosc, models.sct)
     begin(controller_reading.PROPERTY)
     controllers = [] if is_from_cif(models.sct) else [measure(validate_controller, models)]
     begin("properties")
     system = verify_system(models.sct)
     begin("generated C and CIF")
-    return [*system, read, *controllers, *validate(models, configuration)]
+    return [*system, reading, *controllers, *validate(models, configuration)]
 
 
 def verify_system(model: sct.SupervisoryControlModel, *, memory: int = MEMORY) -> list[Verdict]:

@@ -120,9 +120,9 @@ class _Trial:
 
     def _difference(self, system: GuardedSystem, numbers: Sequence[int]) -> Verdict:
         event, (possible, enabled, performed) = self._events[numbers[0]], numbers[1:4]
-        told = iter(numbers[4:])
+        codes = iter(numbers[4:])
         before, inputs, after, expected = (
-            dict(zip(elements, told, strict=False))
+            dict(zip(elements, codes, strict=False))
             for elements in (self._cells, self._inputs, self._cells, self._cells)
         )
         state = {domain.element: before.get(domain.element, 0) for domain in self._layout.state}

@@ -125,11 +125,11 @@ class CProgram:
         """Return the part of `explorer.c` that depends on the model; `explorer.c` documents each macro."""
 
         def for_all(elements: Sequence[Element]) -> str:
-            told = (
+            expressions = (
                 f"DO({number}, {names.member(element)}, {smallest(element) % 2**64})"
                 for number, element in enumerate(elements)
             )
-            return " ".join(told)
+            return " ".join(expressions)
 
         durations = (f"DO({number}, {names.setting(duration)})" for number, duration in enumerate(self.model.durations))
         events = " ".join(f"{string_literal(event_name(event))}," for event in self.events)

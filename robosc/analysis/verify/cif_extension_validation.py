@@ -92,8 +92,8 @@ class _Comparison:
                 some, element=plant, size=1, levels=(), halfway_levels=(), next_levels=()
             )
         self._edges = edges_by_event(specification.plants)
-        stated = [requirement for requirement in specification.requirements if not requirement.ranges]
-        self._requirements = requirements_by_event(stated)
+        requirements = [requirement for requirement in specification.requirements if not requirement.ranges]
+        self._requirements = requirements_by_event(requirements)
 
     def _pair(self, what: str, ours: Sequence[ex.NamedElement], theirs: Sequence[ex.NamedElement]) -> None:
         if [_kind(element) for element in ours] != [_kind(element) for element in theirs]:
@@ -115,8 +115,8 @@ class _Comparison:
         path = system.path_to(anywhere)
         codes = path.states[-1]
         event = next(event for event, states in differences.items() if system.is_in(codes, states))
-        said = self._describe(system, theirs, event, relations[event], encoding.state(codes))
-        return refute(PROPERTY, f"{said}{where(system, event, codes)}", system.trace(path))
+        difference = self._describe(system, theirs, event, relations[event], encoding.state(codes))
+        return refute(PROPERTY, f"{difference}{where(system, event, codes)}", system.trace(path))
 
     def _relation(self, event: sct.Event, theirs: Encoding) -> EventRelation:
         counterpart = self._theirs[event]

@@ -134,10 +134,10 @@ class _Comparison:
             for layout in (self._layout, self._their_layout)
         )
         system = GuardedSystem(self._model, encoding, guards=self._supervised)
-        held = ((domain.element, self._correspondence.holding(domain.element)) for domain in self._layout.state)
+        counterparts = ((domain.element, self._correspondence.holding(domain.element)) for domain in self._layout.state)
         initial = {
             element: self._initial(counterpart, theirs)
-            for element, counterpart in held
+            for element, counterpart in counterparts
             if isinstance(counterpart, sct.DiscreteVariable)
         }
         if any(code != encoding.initial_codes[element] for element, code in initial.items()):
@@ -145,14 +145,14 @@ class _Comparison:
         fault = None if self._supervised else self._invariants_differ(system, theirs)
         if fault is not None:
             return fault
-        found = list(self._differences(system, theirs))
-        if not found:
+        differences = list(self._differences(system, theirs))
+        if not differences:
             evidence = f"{format_count(len(system.relations), 'event')} in both files, each in every state"
             return Verdict(PROPERTY, Outcome.PROVED, evidence)
-        reached = [difference for difference in found if (difference.where & system.controlled).satisfiable()]
+        reached = [difference for difference in differences if (difference.where & system.controlled).satisfiable()]
         if not reached:
-            codes = pick(found[0].where, self._layout.domains.values())
-            return refute(PROPERTY, f"{self._describe(system, found[0], codes)}, though nothing leads there")
+            codes = pick(differences[0].where, self._layout.domains.values())
+            return refute(PROPERTY, f"{self._describe(system, differences[0], codes)}, though nothing leads there")
         inputs = encoding.diagrams.cube(level for domain in self._inputs for level in domain.levels)
         path = system.path_to(reached[0].where.exists(inputs) & system.controlled)
         codes = path.states[-1] | pick(reached[0].where & encoding.state(path.states[-1]), self._inputs)
@@ -162,15 +162,15 @@ class _Comparison:
         """Return a refutation if the invariants allow other states in CIF; None if they agree."""
         encoding = system.encoding
         valid = encoding.diagrams.all_of(encoding.in_domain(domain.element) for domain in self._layout.state)
-        ours, asked = (
+        ours, cif_states = (
             view.diagrams.any_of(~view.holds(invariant.condition) for invariant in invariants)
             for view, invariants in ((encoding, self._model.invariants), (theirs, self._their_invariants))
         )
-        differ = (ours ^ asked) & valid
+        differ = (ours ^ cif_states) & valid
         if not differ.satisfiable():
             return None
         codes = pick(differ, self._layout.state)
-        allowed = "forbids" if system.is_in(codes, asked) else "allows"
+        allowed = "forbids" if system.is_in(codes, cif_states) else "allows"
         elements = (
             element for invariant in self._model.invariants for element in referenced_elements(invariant.condition)
         )
@@ -191,9 +191,11 @@ class _Comparison:
         for event, transition in of_system(system).items():
             if not self._supervised:
                 ours = _allowed(self._requirements.get(event, []), encoding)
-                asked = _allowed(self._invariants.get(self._correspondence.event(event) or event, []), theirs)
-                if ((ours ^ asked) & valid).satisfiable():
-                    yield _Difference(event, None, (ours,), (asked,), (ours ^ asked) & valid, by_requirement=True)
+                permitted = _allowed(self._invariants.get(self._correspondence.event(event) or event, []), theirs)
+                if ((ours ^ permitted) & valid).satisfiable():
+                    yield _Difference(
+                        event, None, (ours,), (permitted,), (ours ^ permitted) & valid, by_requirement=True
+                    )
             counterpart = self._their_transition(event, theirs)
             compared: list[_Bits] = [(None, (transition.enabled,), (counterpart.enabled,), encoding.diagrams.true)]
             both = transition.enabled & counterpart.enabled
@@ -239,8 +241,12 @@ class _Comparison:
             what = on_one_side(step, self._text, translated=bool(theirs))
         else:
             what = f"after {step}, {different({element: theirs}, {element: ours}, self._text)}"
-        asked = self._requirements.get(event, []) if difference.by_requirement else []
-        return ("by the requirements " if difference.by_requirement else "") + what + where(system, event, codes, asked)
+        requirements = self._requirements.get(event, []) if difference.by_requirement else []
+        return (
+            ("by the requirements " if difference.by_requirement else "")
+            + what
+            + where(system, event, codes, requirements)
+        )
 
 
 def _allowed(requirements: Iterable[sct.Requirement], encoding: Encoding) -> Diagram:

@@ -41,7 +41,7 @@ def different(theirs: Mapping[Element, int], ours: Mapping[Element, int], transl
 
 
 def where(
-    system: GuardedSystem, event: sct.Event, state: Mapping[Element, int], asked: Iterable[sct.Requirement] = ()
+    system: GuardedSystem, event: sct.Event, state: Mapping[Element, int], requirements: Iterable[sct.Requirement] = ()
 ) -> str:
     """Return the part of a state that an event and its requirements depend on, as text."""
     touched = set(system.relations[event].touched)
@@ -49,11 +49,11 @@ def where(
         touched.update(
             referenced_elements(system.guards[event].requirement), referenced_elements(system.guards[event].synthesis)
         )
-    for requirement in asked:
+    for requirement in requirements:
         touched.update(referenced_elements(requirement.condition))
     elements = [element for plant in system.model.plants for element in (plant, *plant.variables) if element in touched]
-    said = system.where(state, elements)
-    return f" where `{said}`" if said else ""
+    condition = system.where(state, elements)
+    return f" where `{condition}`" if condition else ""
 
 
 def refute(question: str, explanation: str, way: tuple[TraceStep, ...] = ()) -> Verdict:

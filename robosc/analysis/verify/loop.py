@@ -209,12 +209,12 @@ class LoopModel:
 
     def _closure(self, states: Diagram, fire: Fire, close: Close, acceleration: _LoopAcceleration) -> Diagram:
         for turn in count(1):
-            found = states = close(self._free, states)
+            closed = states = close(self._free, states)
             for batch, near in self._waiting:
                 more = states | fire(batch, states)
                 # Without this, the states in which others are quiescent again would be added one by one.
                 states = states if more == states else close(near, more)
-            if states == found:
+            if states == closed:
                 break
             states = acceleration.taken(states, turn)
         return states

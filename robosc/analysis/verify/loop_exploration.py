@@ -127,7 +127,7 @@ def _breadth_first(lockstep: Lockstep, seen: _Seen, operations: int) -> None:
     """Explore the states from the current one; a node is the start of a batch, which has the least history."""
     tried = _operations(lockstep)
     lockstep.keep()
-    pending = deque(_SearchNode(kept) for kept in lockstep.compare())
+    pending = deque(_SearchNode(start) for start in lockstep.compare())
     reached = {_key(node.saved) for node in pending}
     while pending:
         node = pending.popleft()
@@ -143,24 +143,24 @@ def _breadth_first(lockstep: Lockstep, seen: _Seen, operations: int) -> None:
                 lockstep.operate("b")
                 lockstep.keep()
         try:
-            found = lockstep.compare()
+            successors = lockstep.compare()
         except DifferenceError as error:
             error.seen = [*node.way(), *error.seen]
             raise
         if spent:
             seen.complete = False
             return
-        for kept in found:
-            if (key := _key(kept)) not in reached:
+        for saved in successors:
+            if (key := _key(saved)) not in reached:
                 reached.add(key)
-                pending.append(_SearchNode(kept, node))
+                pending.append(_SearchNode(saved, node))
 
 
-def _key(kept: SavedLoops) -> tuple[Any, ...]:
+def _key(saved: SavedLoops) -> tuple[Any, ...]:
     """Return a key that is equal for equivalent states: times are relative to the current time."""
-    now, up = kept.saved.timers
+    now, up = saved.saved.timers
     times = tuple((number, until - now) for number, until in sorted(up.items()))
-    return kept.saved.cells, kept.saved.rest, times, kept.first
+    return saved.saved.cells, saved.saved.rest, times, saved.first
 
 
 def _operations(lockstep: Lockstep) -> list[Operation]:

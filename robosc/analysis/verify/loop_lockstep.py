@@ -174,10 +174,10 @@ class Lockstep:
         timers.at(timers.now + milliseconds)
         self._script.append(f"c {timers.now % 2**32}")
 
-    def go_back(self, kept: SavedLoops) -> None:
+    def go_back(self, saved: SavedLoops) -> None:
         """Restore both loops to a saved state."""
-        self.loop.restore(kept.saved)
-        self._script.append(f"g {kept.number}")
+        self.loop.restore(saved.saved)
+        self._script.append(f"g {saved.number}")
 
     def keep(self) -> None:
         """Save the state of both loops for `go_back`."""
@@ -188,10 +188,10 @@ class Lockstep:
     def compare(self) -> list[SavedLoops]:
         """Run the generated loop, compare it with the Python loop, and return the states saved since the last time."""
         noted, self._noted = self._noted, []
-        kept: list[SavedLoops] = []
-        while len(kept) < len(noted):
-            kept += self._compared(noted[len(kept) :])
-        return kept
+        states: list[SavedLoops] = []
+        while len(states) < len(noted):
+            states += self._compared(noted[len(states) :])
+        return states
 
     def _compared(self, noted: Sequence[_Noted]) -> list[SavedLoops]:
         """Compare as many of the first operations as fit into the pipe.
@@ -208,7 +208,7 @@ class Lockstep:
             pipe.flush()
         except BrokenPipeError:
             pass  # Its output shows the last operation that it completed.
-        kept = []
+        states = []
         for operations in portion:
             answer = answers.readline()
             if not answer:
@@ -218,8 +218,8 @@ class Lockstep:
                 if our_answer != their_answer:
                     raise DifferenceError(self._difference(our_answer, their_answer), operations.seen)
             number, first = map(int, numbers.split())
-            kept.append(SavedLoops(operations.saved, number, first, operations.seen))
-        return kept
+            states.append(SavedLoops(operations.saved, number, first, operations.seen))
+        return states
 
     def _say(self, operation: str, result: bool) -> None:
         state = self.loop.state
@@ -227,11 +227,11 @@ class Lockstep:
         if codes is None:
             values = zip(state.cells, state.layout.domains, strict=True)
             codes = self._codes[state.cells] = "".join(f" {value - domain.low}" for value, domain in values)
-        said = [operation, *self._happened, "= 1" if result else "= 0"]
+        words = [operation, *self._happened, "= 1" if result else "= 0"]
         if self.loop.timers.exist:
             wait = self.loop.timers.wait
-            said.append(str(_NEVER if wait is None else wait))
-        self._output.append(" ".join(said) + codes)
+            words.append(str(_NEVER if wait is None else wait))
+        self._output.append(" ".join(words) + codes)
         self._happened.clear()
 
     def _difference(self, ours: str, theirs: str) -> str:
@@ -249,9 +249,9 @@ class Lockstep:
             for word, is_event in zip(words, known, strict=True)
         ]
 
-    def _end(self, said: Sequence[str]) -> str:
+    def _end(self, lines: Sequence[str]) -> str:
         status = self._follower.wait()
         endless = sys.platform != "win32" and status == -signal.SIGALRM
         how = "does not come to an end" if endless else f"ends with status {status}"
-        where = ", ".join(OPERATIONS[line[0]] for line in said) or "the start"
+        where = ", ".join(OPERATIONS[line[0]] for line in lines) or "the start"
         return f"the control loop of {TEXT} {how}, at one of these: {where}"

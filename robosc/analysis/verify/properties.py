@@ -59,10 +59,10 @@ def properties(system: GuardedSystem) -> list[Callable[[], Verdict]]:
         partial(non_blocking, system),
         partial(controllability, system),
         *([] if stepwise else [partial(input_enabledness, system)]),
-        *(partial(_examine_statement, requirement_holds, system, stated) for stated in written),
+        *(partial(_examine_statement, requirement_holds, system, statement) for statement in written),
         *([partial(ranges, system)] if len(written) < len(system.model.requirements) else []),
-        *(partial(_examine_statement, invariant_holds, system, stated) for stated in system.model.invariants),
-        *(partial(_examine_statement, claim_holds, system, stated) for stated in system.model.properties),
+        *(partial(_examine_statement, invariant_holds, system, statement) for statement in system.model.invariants),
+        *(partial(_examine_statement, claim_holds, system, statement) for statement in system.model.properties),
         *([] if stepwise else [partial(no_dead_events, system)]),
         *([] if stepwise or not _cancelable(system) else [partial(cancel_when_due, system)]),
         partial(maximal_permissiveness, system),
@@ -137,9 +137,11 @@ def input_enabledness(system: GuardedSystem) -> Verdict:
     return _nowhere("input-enabledness", system, evidence, blocking, explanation)
 
 
-def _examine_statement(examine: Callable[[GuardedSystem, Any], Verdict], system: GuardedSystem, stated: Any) -> Verdict:
+def _examine_statement(
+    examine: Callable[[GuardedSystem, Any], Verdict], system: GuardedSystem, statement: Any
+) -> Verdict:
     """Return the verdict on a statement of the robot model, with its identifier."""
-    return replace(examine(system, stated), requirement=requirement_identifier(stated))
+    return replace(examine(system, statement), requirement=requirement_identifier(statement))
 
 
 def requirement_identifier(requirement: sct.StatedRequirement) -> str:
@@ -152,10 +154,10 @@ def requirement_identifier(requirement: sct.StatedRequirement) -> str:
 
 def requirement_name(requirement: sct.StatedRequirement) -> str:
     """Return the text of the requirement in the robot model, with its line."""
-    said = requirement.text or "requirement"
+    name = requirement.text or "requirement"
     if isinstance(requirement, sct.Requirement) and not requirement.text:
-        said = f"requirement on {event_name(requirement.event)}"
-    return f"{said} (line {requirement.source.span.line})" if requirement.source else said
+        name = f"requirement on {event_name(requirement.event)}"
+    return f"{name} (line {requirement.source.span.line})" if requirement.source else name
 
 
 def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Verdict:
@@ -165,8 +167,8 @@ def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Ve
     """
     relation = system.relations[requirement.event]
     condition = copy_tree(requirement.condition)
-    wanted = requirement.kind == sct.RequirementKind.needs
-    asked = RobotPrinter()(condition if wanted else ex.Negation(operand=condition))
+    is_needed = requirement.kind == sct.RequirementKind.needs
+    condition_text = RobotPrinter()(condition if is_needed else ex.Negation(operand=condition))
     happens = system.controlled & system.allowed[requirement.event]
     states = format_count(system.encoding.count(happens), "state")
 
@@ -174,7 +176,7 @@ def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Ve
         where = system.where(path.states[-1], referenced_elements(requirement.condition))
         return f"{words(requirement.event)} can happen" + (f" where `{where}`" if where else "")
 
-    evidence = f"happens in {states}, asks for `{asked}`"
+    evidence = f"happens in {states}, asks for `{condition_text}`"
     broken = {relation: happens & ~relation.permissions[requirement]}
     return _nowhere(
         requirement_name(requirement), system, evidence, broken, explanation, last=lambda relation: relation.event
@@ -183,10 +185,10 @@ def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Ve
 
 def ranges(system: GuardedSystem) -> Verdict:
     """Check that no event in a reachable state can move a variable out of its range."""
-    kept = [requirement for requirement in system.model.requirements if requirement.ranges]
+    requirements = [requirement for requirement in system.model.requirements if requirement.ranges]
     leaving = {
         requirement: system.controlled & system.allowed[requirement.event] & ~system.encoding.permits(requirement)
-        for requirement in kept
+        for requirement in requirements
     }
 
     def explanation(requirement: sct.Requirement, path: Path) -> str:
@@ -194,7 +196,7 @@ def ranges(system: GuardedSystem) -> Verdict:
         variables = join_with_and([f"`{own.name}`" for own in requirement.ranges])
         return f"{words(requirement.event)} brings {variables} out of range" + (f" where `{at}`" if at else "")
 
-    evidence = f"{system.size}, {format_count(len(kept), 'edge')} that could leave a range"
+    evidence = f"{system.size}, {format_count(len(requirements), 'edge')} that could leave a range"
     return _nowhere("ranges", system, evidence, leaving, explanation, last=lambda requirement: requirement.event)
 
 
@@ -217,14 +219,14 @@ def claim_holds(system: GuardedSystem, claimed: sct.Property) -> Verdict:
     states = system.controlled
     start, goal = states & system.encoding.holds(claimed.premise), states & system.encoding.holds(claimed.condition)
     stuck = {claimed: start & ~coreachable(system.diagrams, steps(system.moves), goal, states)}
-    asked = RobotPrinter()(claimed.condition)
+    condition_text = RobotPrinter()(claimed.condition)
 
     def explanation(_: object, path: Path) -> str:
-        read = [*referenced_elements(claimed.premise), *referenced_elements(claimed.condition)]
-        return f"from `{system.where(path.states[-1], read)}` no state with `{asked}` can be reached"
+        elements = [*referenced_elements(claimed.premise), *referenced_elements(claimed.condition)]
+        return f"from `{system.where(path.states[-1], elements)}` no state with `{condition_text}` can be reached"
 
     origin = format_count(system.encoding.count(start), "state")
-    return _nowhere(requirement_name(claimed), system, f"from {origin} to `{asked}`", stuck, explanation)
+    return _nowhere(requirement_name(claimed), system, f"from {origin} to `{condition_text}`", stuck, explanation)
 
 
 def no_dead_events(system: GuardedSystem) -> Verdict:
@@ -243,14 +245,14 @@ def _cancelable(system: GuardedSystem) -> dict[sct.Event, sct.Event]:
 
     An order, a count or an automaton refuses a start, but never cancels.
     """
-    found = {}
+    start_by_cancel = {}
     for event in system.relations:
         if event.kind == sct.EventKind.cancel:
             starts = (start for start in plant_of(event).events if start.kind == sct.EventKind.trigger)
             for start in starts:
                 if any(requirement.automaton is None for requirement in system.relations[start].requirements):
-                    found[event] = start
-    return found
+                    start_by_cancel[event] = start
+    return start_by_cancel
 
 
 def cancel_when_due(system: GuardedSystem) -> Verdict:

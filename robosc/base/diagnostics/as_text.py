@@ -35,19 +35,19 @@ def render(findings: Iterable[Diagnostic], texts: Mapping[str, str], paint: Call
     output. The text is empty for no findings, else it ends with a line break. At most `MOST` findings are shown, errors
     before warnings, followed by the number of the others.
     """
-    found = in_order(findings)
-    shown = in_order(sorted(found, key=lambda finding: finding.severity is not Severity.ERROR)[:MOST])
+    ordered = in_order(findings)
+    shown = in_order(sorted(ordered, key=lambda finding: finding.severity is not Severity.ERROR)[:MOST])
     lines = {file: texts[file].split("\n") for file in {finding.file for finding in shown} if file in texts}
     parts = [_render(finding, lines.get(finding.file, []), paint) for finding in shown]
-    if len(found) > len(shown):
-        parts.append(f"{len(found) - len(shown)} more are not shown: `robosc check --format json` tells all\n")
+    if len(ordered) > len(shown):
+        parts.append(f"{len(ordered) - len(shown)} more are not shown: `robosc check --format json` tells all\n")
     return "".join(parts)
 
 
 def summary(findings: Iterable[Diagnostic]) -> str:
     """Return the number of errors and warnings, such as `2 errors, 1 warning`; empty for none."""
-    found = in_order(findings)
-    counts = [(sum(finding.severity is severity for finding in found), severity.value) for severity in Severity]
+    ordered = in_order(findings)
+    counts = [(sum(finding.severity is severity for finding in ordered), severity.value) for severity in Severity]
     return ", ".join(f"{count} {word}{'s' if count > 1 else ''}" for count, word in counts if count)
 
 

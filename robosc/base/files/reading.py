@@ -52,11 +52,11 @@ def open_file(path: str | os.PathLike[str], *, is_input: bool = True, buffering:
     except ValueError as error:  # The path contains a null character.
         raise OSError(errno.EINVAL, str(error), name) from None
     with os.fdopen(descriptor, "rb", buffering=buffering) as file:
-        found = os.fstat(descriptor)
-        _require_regular(found, name)
+        status = os.fstat(descriptor)
+        _require_regular(status, name)
         noted = _noted.get()
         if is_input and noted is not None:
-            noted[_identity(found)] = name
+            noted[_identity(status)] = name
         yield file
 
 
@@ -78,12 +78,12 @@ def record_inputs() -> Iterator[None]:
         _noted.reset(token)
 
 
-def input_name(found: os.stat_result) -> str | None:
+def input_name(status: os.stat_result) -> str | None:
     """Return the name by which this file was read within `record_inputs`, or None if it was not.
 
     The file is identified by its device and inode, so that links do not hide it.
     """
-    return (_noted.get() or {}).get(_identity(found))
+    return (_noted.get() or {}).get(_identity(status))
 
 
 def inputs() -> list[str]:
@@ -96,15 +96,15 @@ def kind(mode: int) -> str:
     return _KINDS.get(stat.S_IFMT(mode), "something else")
 
 
-def _identity(found: os.stat_result) -> _Identity:
-    return found.st_dev, found.st_ino
+def _identity(status: os.stat_result) -> _Identity:
+    return status.st_dev, status.st_ino
 
 
-def _require_regular(found: os.stat_result, name: str) -> None:
-    if stat.S_ISDIR(found.st_mode):
+def _require_regular(status: os.stat_result, name: str) -> None:
+    if stat.S_ISDIR(status.st_mode):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), name)
-    if not stat.S_ISREG(found.st_mode):
-        raise OSError(errno.EINVAL, f"this is {kind(found.st_mode)}; only regular files are read", name)
+    if not stat.S_ISREG(status.st_mode):
+        raise OSError(errno.EINVAL, f"this is {kind(status.st_mode)}; only regular files are read", name)
 
 
 def _bounded(file: IO[bytes], name: str) -> bytes:

@@ -82,9 +82,9 @@ def decompress(data: bytes, compression: str) -> bytes:
     with _open(BytesIO(data), compression) as file:
         if budget is None:
             return file.read()
-        found = file.read(min(budget[0], MOST_BYTES) + 1)
-    _take(len(found), min(budget[0], MOST_BYTES))
-    return found
+        content = file.read(min(budget[0], MOST_BYTES) + 1)
+    _take(len(content), min(budget[0], MOST_BYTES))
+    return content
 
 
 def _take(size: int, most: int) -> None:
@@ -112,18 +112,18 @@ class _Counted:
         self._file.close()
 
     def read(self, size: int = -1) -> bytes:
-        found = self._file.read(size)
+        content = self._file.read(size)
         budget = _budget.get()
-        _take(len(found), budget[0] if budget is not None else len(found))
-        return found
+        _take(len(content), budget[0] if budget is not None else len(content))
+        return content
 
 
 def _open(file: IO[bytes], compression: str) -> IO[bytes]:
     lz4_frame = import_module("lz4.frame")  # has no types
     zstd = vars(import_module("rosbags.rosbag2.storage_mcap"))["zstd"]  # in the Python library from 3.14 on
     readers: dict[str, Any] = {"zstd": zstd.open, "lz4": lz4_frame.open, "bz2": bz2.open}
-    found: IO[bytes] = readers[compression](file, "rb")
-    return found
+    reader: IO[bytes] = readers[compression](file, "rb")
+    return reader
 
 
 def _install() -> None:

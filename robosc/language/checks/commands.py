@@ -49,9 +49,9 @@ def command_conditions(known: Instances) -> Iterator[CommandCondition]:
     """Yield the conditions of requirements on starting commands, including those of requirement automata."""
     for required in known.statements(rsc.CommunicationRequirement):
         if required.element.condition is not None:
-            wanted = not isinstance(required.element, rsc.DisablesRequirement)
+            value = not isinstance(required.element, rsc.DisablesRequirement)
             restricted = commands_of(required, known)
-            yield CommandCondition(required.element, restricted, required.element.condition, required.within, wanted)
+            yield CommandCondition(required.element, restricted, required.element.condition, required.within, value)
     for automaton in known.statements(rsc.AutomatonRequirement):
         events = events_of(automaton.element)
         requests = [reference for reference in events if kind_of(reference) == rsc.ResultType.request]

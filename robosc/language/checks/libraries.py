@@ -120,7 +120,7 @@ def reachable(base: rsc.Base, holds: Holds = anything) -> list[rsc.Library]:
     """
     known = _memory().reachable
     chain: list[tuple[rsc.Base, rsc.Library]] = []
-    found: Cell | None = None
+    cell: Cell | None = None
     current, passed = base, {base}
     while (current, holds) not in known:
         direct = list(dict.fromkeys(library for _, library in imports(current)))
@@ -130,12 +130,12 @@ def reachable(base: rsc.Base, holds: Holds = anything) -> list[rsc.Library]:
             passed.add(current)
             continue
         for library in reversed(libraries(current, imports)):
-            found = Cell(library, found) if fact(holds, library) else found
-        known[current, holds] = found
-    found = known[current, holds]
+            cell = Cell(library, cell) if fact(holds, library) else cell
+        known[current, holds] = cell
+    cell = known[current, holds]
     for importing, library in reversed(chain):
-        found = known[importing, holds] = Cell(library, found) if fact(holds, library) else found
-    return [library for library in dict.fromkeys(_each(found)) if library is not base]
+        cell = known[importing, holds] = Cell(library, cell) if fact(holds, library) else cell
+    return [library for library in dict.fromkeys(_each(cell)) if library is not base]
 
 
 def _each(cell: Cell | None) -> Iterable[rsc.Library]:

@@ -39,19 +39,19 @@ class Finding:
     def fixes(self) -> tuple[str, tuple[Edit, ...], tuple[Alternative, ...]]:
         """Return the hint, and its edits in the file of the element or the alternatives to choose from."""
         match self.hint:
-            case Repair(said, None) | str(said):
-                return said, (), ()
-            case Repair(said, text):
-                return said, Replacement(said, str(text), self.element).edits(), ()
-            case Choice(said, ways):
-                return said, (), self._alternatives(ways)
+            case Repair(text_of_hint, None) | str(text_of_hint):
+                return text_of_hint, (), ()
+            case Repair(text_of_hint, text):
+                return text_of_hint, Replacement(text_of_hint, str(text), self.element).edits(), ()
+            case Choice(text_of_hint, ways):
+                return text_of_hint, (), self._alternatives(ways)
         if self.hint.is_choice:
             return self.hint.hint, (), self._alternatives((self.hint,))
         return self.hint.hint, self._edits(self.hint), ()
 
     def _alternatives(self, ways: Iterable[Way]) -> tuple[Alternative, ...]:
-        found = (Alternative(way.hint, self._edits(way)) for way in ways)
-        return tuple(way for way in found if way.edits)
+        alternatives = (Alternative(way.hint, self._edits(way)) for way in ways)
+        return tuple(way for way in alternatives if way.edits)
 
     def _edits(self, way: Way) -> tuple[Edit, ...]:
         """Return the edits of a way in the file of the element; none if it changes another file."""
@@ -92,9 +92,9 @@ def _goes_on(expression: Span, skipped: Span) -> bool:
 
 def _innermost(element: ex.Located, span: Span) -> ex.Located:
     """Return the smallest part of an element that contains a place in the text."""
-    *_, found = (part for _, part in tree(element) if place(part)[1].contains(span))
-    assert isinstance(found, ex.Located)
-    return found
+    *_, innermost = (part for _, part in tree(element) if place(part)[1].contains(span))
+    assert isinstance(innermost, ex.Located)
+    return innermost
 
 
 Check: TypeAlias = "Callable[[rsc.Base], Iterator[Finding]]"

@@ -79,8 +79,8 @@ def supervised_faults(base: rsc.Base, search: Search) -> Iterator[Finding]:
         place = fault.element if unit is base else _reference(base, fault.reason, result)
         if (place, fault.element) not in reported:
             reported.add((place, fault.element))
-            said = fault.hint if isinstance(fault.hint, str) else fault.hint.hint
-            hint = fault.hint if unit is base else f"in library `{unit.name}`, {said}"
+            hint_text = fault.hint if isinstance(fault.hint, str) else fault.hint.hint
+            hint = fault.hint if unit is base else f"in library `{unit.name}`, {hint_text}"
             yield Finding(place, fault.message, hint)
 
 
@@ -97,8 +97,8 @@ def _unit(fault: Fault, base: rsc.Base) -> rsc.Base:
 
 def can_be_needed(variable: rsc.Variable) -> bool:
     """Return whether the supervisor can hold values of the variable's type, or the type is unknown."""
-    found = declared_type(variable.type)
-    return found in {BOOLEAN, INTEGER, UNKNOWN} or isinstance(found, EnumType)
+    kind = declared_type(variable.type)
+    return kind in {BOOLEAN, INTEGER, UNKNOWN} or isinstance(kind, EnumType)
 
 
 def readings(result: ConeOfInfluence) -> Iterator[InputRead]:
@@ -116,10 +116,10 @@ def readings(result: ConeOfInfluence) -> Iterator[InputRead]:
 
 def _fits(assigned: AssignmentPlace) -> bool:
     assert assigned.variable is not None
-    wanted = declared_type(assigned.variable.type)
+    expected = declared_type(assigned.variable.type)
     value = assigned.assignment.value
-    found = UNKNOWN if value is None else type_of(value)
-    return UNKNOWN in {wanted, found} or found == wanted
+    actual = UNKNOWN if value is None else type_of(value)
+    return UNKNOWN in {expected, actual} or actual == expected
 
 
 def _faults(base: rsc.Base, search: Search) -> Iterator[Fault]:
@@ -188,19 +188,19 @@ def function_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[F
         types, cases = Types(value_type(expression)), dict[ex.Expression | None, int]()
         fold(_cases, expression, memo=cases)
         for part in _supervised_parts(expression, where):
-            read = next(accesses(part), None) if isinstance(part, ex.FunctionCall) else None
+            first_access = next(accesses(part), None) if isinstance(part, ex.FunctionCall) else None
             if (
-                read is None
+                first_access is None
                 or not isinstance(part, ex.FunctionCall)
                 or FUNCTIONS[part.function].rule is TypeRule.INTEGER
             ):
                 continue
-            reason = NeedReason(read, where.within, where.variable)
+            reason = NeedReason(first_access, where.within, where.variable)
             kinds = {types(access) for access in accesses(part)}
             if not kinds <= {BOOLEAN, INTEGER} and not any(isinstance(kind, EnumType) for kind in kinds):
                 continue
-            given = {types(part), *map(types, part.arguments)}
-            foreign = "doubles" if DOUBLE in given else "strings" if STRING in given else ""
+            types_used = {types(part), *map(types, part.arguments)}
+            foreign = "doubles" if DOUBLE in types_used else "strings" if STRING in types_used else ""
             if foreign:
                 message = f"`{part.function}` of {foreign} is nothing that the supervisor computes, expected integers"
                 yield Fault(part, reason, message, "compute it of `value` in an enum's rule, and compare the enum")

@@ -62,11 +62,11 @@ def faults(data: CommunicationData, interfaces: RosTypes, uses: Uses) -> list[Fa
     """Return the mismatches of some data with its ROS type, in the ROS version in which the used data fits best."""
     answers = []
     try:
-        for _, found in _by_distribution(data, interfaces):
-            if found == []:
+        for _, mismatches in _by_distribution(data, interfaces):
+            if mismatches == []:
                 return []
-            if found is not None:
-                answers.append(found)
+            if mismatches is not None:
+                answers.append(mismatches)
     except DefinitionError:
         answers = []
     if not answers:
@@ -79,7 +79,7 @@ def misfits(data: CommunicationData, interfaces: RosTypes, uses: Uses) -> dict[s
 
     If nothing is known of the type's package, the data may fit.
     """
-    found = {}
+    misfit_reasons = {}
     try:
         for distribution, answer in _by_distribution(data, interfaces):
             if answer is not None:
@@ -89,10 +89,10 @@ def misfits(data: CommunicationData, interfaces: RosTypes, uses: Uses) -> dict[s
             else:
                 reasons = []
             if reasons:
-                found[distribution.name] = reasons[0]
+                misfit_reasons[distribution.name] = reasons[0]
     except DefinitionError:
         return {}
-    return found
+    return misfit_reasons
 
 
 def _by_distribution(

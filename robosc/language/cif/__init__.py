@@ -90,12 +90,12 @@ class _Files:
         self._known = {path.resolve()}
         self._imports: list[tuple[Path, Any]] = []
         self._parse(path, documents.read(path))
-        for file, asked in self._imports:  # `_parse` extends the list during the loop.
+        for file, importing in self._imports:  # `_parse` extends the list during the loop.
             try:
                 content = documents.read(file)
             except OSError as error:
                 reason = error.strerror or str(error)
-                fault = CifFaultError(asked, "unresolved-reference", f"the file `{file}` can't be read: {reason}")
+                fault = CifFaultError(importing, "unresolved-reference", f"the file `{file}` can't be read: {reason}")
                 self.findings.append(fault.finding())
             else:
                 self._parse(file, content)

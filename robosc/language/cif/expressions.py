@@ -56,7 +56,7 @@ class ExpressionReader:
     """Reads one expression from its tokens, operators without recursion (Dijkstra's shunting yard)."""
 
     def __init__(
-        self, read: Any, value_of: Callable[[Any, sct.Plant | None], TypedNode], grow: Callable[[Any, int], None]
+        self, node: Any, value_of: Callable[[Any, sct.Plant | None], TypedNode], grow: Callable[[Any, int], None]
     ) -> None:
         """Read the expression.
 
@@ -68,14 +68,14 @@ class ExpressionReader:
         self._grow = grow
         self._done: list[TypedNode] = []
         self._open: list[_Open] = []
-        for word, token in _tokens(read):
+        for word, token in _tokens(node):
             if word is None:
                 self._done.append(value_of(token, self._switched()))
             else:
                 self._take(word, token)
         self._reduce(0)
         if self._open:
-            raise CifFaultError(read, "syntax", f"`{self._open[-1].node.token}` is not closed", "end it with `end`")
+            raise CifFaultError(node, "syntax", f"`{self._open[-1].node.token}` is not closed", "end it with `end`")
         [self.result] = self._done
 
     def _switched(self) -> sct.Plant | None:
@@ -156,8 +156,8 @@ class ExpressionReader:
         if top.word == "mod":
             arguments = [left.expression, right.expression]
             return TypedNode(top.node, ex.FunctionCall(function="mod", arguments=arguments), kind)
-        made = OPERATORS[top.word][1](left=left.expression, right=right.expression)
-        return TypedNode(top.node, made, kind)
+        expression = OPERATORS[top.word][1](left=left.expression, right=right.expression)
+        return TypedNode(top.node, expression, kind)
 
     def _unary(self, top: _Open, operand: TypedNode) -> TypedNode:
         if top.word == "not":
@@ -188,16 +188,16 @@ class ExpressionReader:
 
     @staticmethod
     def _choice(top: _Open, otherwise: TypedNode) -> TypedNode:
-        made, kind = otherwise.expression, otherwise.type
+        expression, kind = otherwise.expression, otherwise.type
         for condition, value in reversed(list(zip(top.conditions, top.values, strict=True))):
             kind = _checked(top.node, join_types, value.type, kind)
-            made = ex.Conditional(condition=condition.expression, then=value.expression, otherwise=made)
-        return TypedNode(top.node, made, kind)
+            expression = ex.Conditional(condition=condition.expression, then=value.expression, otherwise=expression)
+        return TypedNode(top.node, expression, kind)
 
 
-def _tokens(read: Any) -> Iterator[tuple[str | None, Any]]:
+def _tokens(node: Any) -> Iterator[tuple[str | None, Any]]:
     """Yield the tokens of an expression with their words; operands have None. Signs are marked as unary."""
-    further = [(None, read.first), *((other.operator, other.operand) for other in read.others)]
+    further = [(None, node.first), *((other.operator, other.operand) for other in node.others)]
     for operator, operand in further:
         if operator is not None:
             yield operator.token, operator
@@ -207,9 +207,9 @@ def _tokens(read: Any) -> Iterator[tuple[str | None, Any]]:
         yield from ((closing.token, closing) for closing in operand.closings)
 
 
-def referenced_names(read: Any) -> Iterator[Any]:
+def referenced_names(node: Any) -> Iterator[Any]:
     """Yield the names in an expression, except those that are keys of a `switch` by themselves."""
-    pending = [read]
+    pending = [node]
     while pending:
         here = pending.pop()
         for operand in (here.first, *(other.operand for other in here.others)):
@@ -223,9 +223,9 @@ def referenced_names(read: Any) -> Iterator[Any]:
                     yield value.name
 
 
-def _checked(read: Any, rule: Callable[..., Any], *given: Any) -> Any:
+def _checked(node: Any, rule: Callable[..., Any], *operands: Any) -> Any:
     """Return the type by a rule; a TypeError becomes a fault of this place."""
     try:
-        return rule(*given)
+        return rule(*operands)
     except TypeError as fault:
-        raise CifFaultError(read, "type", str(fault)) from None
+        raise CifFaultError(node, "type", str(fault)) from None

@@ -49,28 +49,28 @@ def spaces(text: str, words: Iterable[Node]) -> dict[int, Space]:
     The layout moves a comma or an opening brace to the end of the previous line. Comments before it that end a line or
     fill their own line therefore count as standing behind it.
     """
-    found: dict[int, Space] = {}
+    by_position: dict[int, Space] = {}
     end, moved = 0, Space()
     for word in words:
         space = moved.join(_space(text, end, word.position))
         moved = Space()
         if word.value in {",", "{"}:
             space, moved = space.split()
-        found[word.position] = space
+        by_position[word.position] = space
         end = word.position_end
-    found[len(text)] = moved.join(_space(text, end, len(text)))
-    return found
+    by_position[len(text)] = moved.join(_space(text, end, len(text)))
+    return by_position
 
 
 def _space(text: str, start: int, end: int) -> Space:
     """Return the space between two offsets. The start and the end of the text count as line breaks."""
     comments: list[Comment] = []
     breaks: list[int] = []
-    for found in _COMMENT.finditer(text, start, end):
-        breaks.append(text.count("\n", start, found.start()) or int(start == 0))
-        line = text.rfind("\n", 0, found.start()) + 1
-        column = len(text[line : found.start()].expandtabs(INDENTATION))
-        comments.append(Comment(found.group(), column))
-        start = found.end()
+    for match in _COMMENT.finditer(text, start, end):
+        breaks.append(text.count("\n", start, match.start()) or int(start == 0))
+        line = text.rfind("\n", 0, match.start()) + 1
+        column = len(text[line : match.start()].expandtabs(INDENTATION))
+        comments.append(Comment(match.group(), column))
+        start = match.end()
     breaks.append(text.count("\n", start, end) or int(end == len(text)))
     return Space(comments, breaks)

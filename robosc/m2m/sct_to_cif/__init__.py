@@ -62,9 +62,9 @@ class _SctToCif:
     def run(self) -> LoweredModel:
         self._copies[self._model] = model = sct.SupervisoryControlModel(name=self._model.name)
         for enumeration in self._model.enumerations:
-            self._copies[enumeration] = made = copy_tree(enumeration)
-            self._copies |= zip(enumeration.literals, made.literals, strict=True)
-            model.enumerations.append(made)
+            self._copies[enumeration] = clone = copy_tree(enumeration)
+            self._copies |= zip(enumeration.literals, clone.literals, strict=True)
+            model.enumerations.append(clone)
         model.plants.extend(map(self._plant, self._model.plants))
         self._refuse()  # Values computed from numbers that are too large would be reported again.
         for plant in self._model.plants:
@@ -78,7 +78,7 @@ class _SctToCif:
         if self._model.supervisor is not None:
             model.supervisor = self._supervisor(self._model.supervisor)
         self._refuse()
-        return LoweredModel(model, {made: original for original, made in self._copies.items()})
+        return LoweredModel(model, {lowered: original for original, lowered in self._copies.items()})
 
     def _refuse(self) -> None:
         if self._faults:
@@ -97,9 +97,9 @@ class _SctToCif:
 
     def _plant(self, plant: sct.Plant) -> sct.Plant:
         """Lower a plant without its edges."""
-        self._copies[plant] = made = sct.Plant(name=plant.name, kind=plant.kind, origin=plant.origin)
-        made.inputs.extend(map(self._cell, plant.inputs))
-        made.variables.extend(map(self._cell, plant.variables))
+        self._copies[plant] = lowered = sct.Plant(name=plant.name, kind=plant.kind, origin=plant.origin)
+        lowered.inputs.extend(map(self._cell, plant.inputs))
+        lowered.variables.extend(map(self._cell, plant.variables))
         for event in plant.events:
             if event not in self._impossible:
                 self._copies[event] = sct.Event(
@@ -108,33 +108,33 @@ class _SctToCif:
                     kind=event.kind,
                     inputs=[self._copies[carried] for carried in event.inputs],
                 )
-                made.events.append(self._copies[event])
+                lowered.events.append(self._copies[event])
         if _is_numbered(plant):
-            self._number_locations(plant, made)
-            return made
+            self._number_locations(plant, lowered)
+            return lowered
         nameless = plant.kind == sct.PlantKind.message and len(plant.locations) == 1
         for location in plant.locations:
             name = "" if nameless and location not in self._referred else location.name
             self._copies[location] = sct.Location(name=name, initial=location.initial, marked=location.marked)
-            made.locations.append(self._copies[location])
-        return made
+            lowered.locations.append(self._copies[location])
+        return lowered
 
     def _cell(self, cell: Any) -> Any:
         """Lower an input or variable. A negative range is shifted to start at 0."""
-        self._copies[cell] = made = type(cell)(name=cell.name, type=copy_tree(cell.type, self._copies))
-        if isinstance(made.type, ex.EnumerationType):
-            made.type.first = made.type.last = None
-        if isinstance(made.type, ex.IntegerType):
+        self._copies[cell] = lowered = type(cell)(name=cell.name, type=copy_tree(cell.type, self._copies))
+        if isinstance(lowered.type, ex.EnumerationType):
+            lowered.type.first = lowered.type.last = None
+        if isinstance(lowered.type, ex.IntegerType):
             low, high = (bound + shift(cell) for bound in bounds(cell))
-            made.type.minimum, made.type.maximum = low, high
+            lowered.type.minimum, lowered.type.maximum = low, high
             if high > LARGEST:
                 self._faults[cell] = "its range does not fit 32 bits"
         if isinstance(cell, sct.DiscreteVariable) and cell not in self._faults:
             assert cell.initial is not None
-            made.initial = self._lowering.lower_assignment(cell, cell.initial)
-        return made
+            lowered.initial = self._lowering.lower_assignment(cell, cell.initial)
+        return lowered
 
-    def _number_locations(self, plant: sct.Plant, made: sct.Plant) -> None:
+    def _number_locations(self, plant: sct.Plant, lowered: sct.Plant) -> None:
         """Replace the locations of a plant by one location without a name and a variable that holds a number."""
         start = next(number for number, location in enumerate(plant.locations) if location.initial)
         variable = sct.DiscreteVariable(
@@ -143,8 +143,8 @@ class _SctToCif:
             initial=ex.IntegerLiteral(value=start),
         )
         only = sct.Location(name="", initial=True, marked=plant.locations[0].marked)
-        made.variables.append(variable)
-        made.locations.append(only)
+        lowered.variables.append(variable)
+        lowered.locations.append(only)
         for number, location in enumerate(plant.locations):
             self._copies[location] = only
             self._numbered[location] = variable, number
@@ -154,14 +154,14 @@ class _SctToCif:
 
     def _edge(self, edge: sct.Edge) -> sct.Edge:
         guard = conjunction(filter(None, [*self._possible(edge), self._condition(edge.guard)]))
-        made = sct.Edge(event=self._copies[edge.event], guard=guard, target=self._copies[edge.target])
+        lowered = sct.Edge(event=self._copies[edge.event], guard=guard, target=self._copies[edge.target])
         for update in edge.updates:
             value = self._lowered(None, self._lowering.lower_assignment, update.variable, update.value)
-            made.updates.append(sct.Update(variable=self._copies[update.variable], value=value))
+            lowered.updates.append(sct.Update(variable=self._copies[update.variable], value=value))
         if edge.target in self._numbered:
             variable, number = self._numbered[edge.target]
-            made.updates.append(sct.Update(variable=variable, value=ex.IntegerLiteral(value=number)))
-        return made
+            lowered.updates.append(sct.Update(variable=variable, value=ex.IntegerLiteral(value=number)))
+        return lowered
 
     def _possible(self, edge: sct.Edge) -> Iterator[ex.Expression]:
         """Return conditions on the inputs of an event that exclude impossible literals.
@@ -176,9 +176,9 @@ class _SctToCif:
                 low, high = domain(carried.type)
                 for place, literal in enumerate(carried.type.enumeration.literals):
                     if not low <= place <= high:
-                        read = sct.InputReference(input=self._copies[carried])
+                        reference = sct.InputReference(input=self._copies[carried])
                         other = ex.EnumerationLiteralReference(literal=self._copies[literal])
-                        yield ex.Inequation(left=read, right=other)
+                        yield ex.Inequation(left=reference, right=other)
 
     def _requirement(self, requirement: sct.Requirement) -> sct.Requirement:
         return sct.Requirement(
@@ -191,7 +191,7 @@ class _SctToCif:
 
     def _supervisor(self, supervisor: sct.Supervisor) -> sct.Supervisor:
         """Lower the conditions of the supervisor and its state counts."""
-        made = sct.Supervisor(
+        lowered = sct.Supervisor(
             uncontrolledStates=supervisor.uncontrolledStates, controlledStates=supervisor.controlledStates
         )
         for guard in supervisor.guards:
@@ -201,16 +201,16 @@ class _SctToCif:
                     self._condition(part, guard.event) for part in (guard.requirement, guard.synthesis)
                 )
                 event = self._copies[guard.event]
-                made.guards.append(sct.EventGuard(event=event, requirement=requirement, synthesis=synthesis))
-        return made
+                lowered.guards.append(sct.EventGuard(event=event, requirement=requirement, synthesis=synthesis))
+        return lowered
 
     def _condition(self, expression: ex.Expression | None, culprit: Any = None) -> ex.Expression | None:
         return None if expression is None else self._lowered(culprit, self._lowering.condition, expression)
 
-    def _lowered(self, culprit: Any, lower: Callable[..., ex.Expression], *given: Any) -> ex.Expression | None:
+    def _lowered(self, culprit: Any, lower: Callable[..., ex.Expression], *arguments: Any) -> ex.Expression | None:
         """Call a method of the lowering. If CIF cannot express the result, record a fault and return None."""
         try:
-            return lower(*given)
+            return lower(*arguments)
         except Unsupported as fault:
             self._faults.setdefault(fault.expression if culprit is None else culprit, fault.reason)
             return None
@@ -237,11 +237,11 @@ def _impossible(model: sct.SupervisoryControlModel) -> set[sct.Event]:
     All their edges have the guard `false`. An example is `c_none` if a provide statement has no condition. CIF warns of
     events that can never happen.
     """
-    found = {event for plant in model.plants for event in plant.events}
-    found -= {requirement.event for requirement in model.requirements}
+    events = {event for plant in model.plants for event in plant.events}
+    events -= {requirement.event for requirement in model.requirements}
     for plant in model.plants:
         for edge in edges_of(plant):
             never = isinstance(edge.guard, ex.BooleanLiteral) and not edge.guard.value
             if not never or edge.event.eContainer() is not plant:
-                found.discard(edge.event)
-    return found
+                events.discard(edge.event)
+    return events

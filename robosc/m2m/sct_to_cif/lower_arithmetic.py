@@ -41,20 +41,20 @@ _Part = tuple[ex.Expression, bool]
 class Lowering:
     """Lowers expressions. Raises Unsupported for an expression that CIF cannot express.
 
-    `made` maps each referenced element to its lowered element. `numbered` maps each location that a variable replaces
+    `copies` maps each referenced element to its lowered element. `numbered` maps each location that a variable replaces
     to this variable and a number.
     """
 
     def __init__(
-        self, made: Mapping[Any, Any], numbered: Mapping[sct.Location, tuple[sct.DiscreteVariable, int]]
+        self, copies: Mapping[Any, Any], numbered: Mapping[sct.Location, tuple[sct.DiscreteVariable, int]]
     ) -> None:
-        self._copies = made
+        self._copies = copies
         self._numbered = numbered
 
     def condition(self, expression: ex.Expression) -> ex.Expression:
         """Lower a boolean or enumeration-valued expression to a new tree. Raises Unsupported."""
-        made: ex.Expression = walk(self._lowered, (expression, False))
-        return made
+        lowered: ex.Expression = walk(self._lowered, (expression, False))
+        return lowered
 
     def _lowered(self, part: _Part) -> Generator[_Part, Any, Any]:
         """Lower an expression. The result for a number is its pieces."""
@@ -75,12 +75,14 @@ class Lowering:
             return copy_tree(expression, self._copies)
         if not isinstance(expression, (ex.Conditional, ex.Negation, ex.BinaryExpression)):
             raise Unsupported(expression, f"CIF has no {type(expression).__name__}")
-        made = []
+        operands_lowered = []
         for operand in operands(expression):
-            made.append((yield operand, False))  # noqa: PERF401 - no comprehension yields
+            operands_lowered.append((yield operand, False))  # noqa: PERF401 - no comprehension yields
         if isinstance(expression, ex.Conditional):
-            return ex.Conditional(condition=made[0], then=made[1], otherwise=made[2])
-        return with_operands(expression, made)
+            return ex.Conditional(
+                condition=operands_lowered[0], then=operands_lowered[1], otherwise=operands_lowered[2]
+            )
+        return with_operands(expression, operands_lowered)
 
     def lower_assignment(self, variable: sct.DiscreteVariable, value: ex.Expression) -> ex.Expression:
         """Lower the value that is assigned to a variable, limited to its range. Raises Unsupported."""
@@ -94,7 +96,7 @@ class Lowering:
                 return copy_tree(value, self._copies)
         guards = [guard for guard, _ in pieces]
         parts = [_saturated(piece + Linear(shift(variable)), low, high, value) for _, piece in pieces]
-        minuend = _first(zip(guards, (kept for kept, _ in parts), strict=True))
+        minuend = _first(zip(guards, (positive for positive, _ in parts), strict=True))
         subtrahends = [subtracted for _, subtracted in parts]
         if not any(subtrahend.factors or subtrahend.constant for subtrahend in subtrahends):
             return minuend
@@ -195,8 +197,8 @@ def _saturated(value: Linear, low: int, high: int, origin: ex.Expression) -> tup
     least, greatest = value.range()
     if least >= high or greatest <= low:
         return ex.IntegerLiteral(value=high if least >= high else low), Linear(0)
-    kept, subtracted = value.sides()
-    result = _expression_of(kept, origin)
+    positive, subtracted = value.sides()
+    result = _expression_of(positive, origin)
     # The first term is limited to the bounds, each increased by the subtracted terms.
     for outside, operator, bound in ((least < low, ex.LessThan, low), (greatest > high, ex.GreaterThan, high)):
         if outside:
@@ -211,11 +213,11 @@ def _saturated(value: Linear, low: int, high: int, origin: ex.Expression) -> tup
 def _first(alternatives: Iterable[tuple[ex.Expression | None, ex.Expression]]) -> ex.Expression:
     """Return the expression of the first alternative whose condition holds."""
     result: ex.Expression | None = None
-    for guard, made in reversed(list(alternatives)):
+    for guard, value in reversed(list(alternatives)):
         if guard is None or result is None:
-            result = made
+            result = value
         else:
-            result = ex.Conditional(condition=copy_tree(guard), then=made, otherwise=result)
+            result = ex.Conditional(condition=copy_tree(guard), then=value, otherwise=result)
     assert result is not None
     return result
 
@@ -235,11 +237,11 @@ def _product(expression: ex.Multiplication, left: _Pieces, right: _Pieces) -> _P
     _limit(expression, _values(split) * len(others))
     low = min(piece.range()[0] for _, piece in split)
     high = max(piece.range()[1] for _, piece in split)
-    made: _Pieces = []
+    pieces: _Pieces = []
     for value in range(low, high + 1):
         guard = _compared(ex.Equation, split, Linear(-value), expression) if value < high else None
-        made += [(_both(guard, other), piece.times(value)) for other, piece in others]
-    return made
+        pieces += [(_both(guard, other), piece.times(value)) for other, piece in others]
+    return pieces
 
 
 def _called(call: ex.FunctionCall, first: _Pieces, last: _Pieces) -> _Pieces:
@@ -262,15 +264,15 @@ def _choice(origin: ex.Expression, condition: ex.Expression, then: _Pieces, othe
 
 def _modulo(expression: ex.FunctionCall, values: _Pieces, divisor: int) -> _Pieces:
     """Split a remainder by the quotient."""
-    made: _Pieces = []
+    pieces: _Pieces = []
     for guard, value in values:
         low, high = (bound // divisor for bound in value.range())
-        _limit(expression, len(made) + high - low + 1)
+        _limit(expression, len(pieces) + high - low + 1)
         for times in range(low, high + 1):
             rest = value + Linear(-times * divisor)
             below = _against_zero(ex.LessThan, rest + Linear(-divisor), expression) if times < high else None
-            made.append((_both(guard, below), rest))
-    return made
+            pieces.append((_both(guard, below), rest))
+    return pieces
 
 
 def _values(pieces: _Pieces) -> int:

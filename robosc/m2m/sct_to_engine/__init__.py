@@ -59,7 +59,7 @@ def _transform(model: sct.SupervisoryControlModel, polled: int) -> engine.Engine
     guards = combine_guards(model, edges, lower)
     shared = share_conditions(guards, events, lower.terms, incremental=incremental)
     effects = {event: merge_effects(edges[event], lower) for event in events}
-    made = engine.EngineModel(
+    engine_model = engine.EngineModel(
         name=model.name,
         model=model,
         variables=list(variables.values()),
@@ -72,7 +72,7 @@ def _transform(model: sct.SupervisoryControlModel, polled: int) -> engine.Engine
         settlingBound=Roles(model).settling_bound,
         incremental=incremental,
     )
-    lower_timers(made, edges, lower)
+    lower_timers(engine_model, edges, lower)
     for term, condition in shared.conditions.items():
         condition.value = build_expression(term, shared, body=True)
     for event, element in events.items():
@@ -80,8 +80,8 @@ def _transform(model: sct.SupervisoryControlModel, polled: int) -> engine.Engine
         element.effect = _effect(effects[event])
     name_reasons(model, events, guards, lower)
     if incremental:
-        find_readers(made, guards, effects, shared)
-    return made
+        find_readers(engine_model, guards, effects, shared)
+    return engine_model
 
 
 def _check(model: sct.SupervisoryControlModel) -> None:

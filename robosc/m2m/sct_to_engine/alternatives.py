@@ -38,8 +38,8 @@ class Alternatives:
             guard = terms.junction(engine.And, [self._lower(edge.guard), *self._ruled_out[location]])
             left.setdefault(location, []).append(remaining_guard(guard, self._denied[location], terms))
         guards = {
-            location: terms.junction(engine.Or, found) if self._untried[location] else terms.true
-            for location, found in left.items()
+            location: terms.junction(engine.Or, conditions) if self._untried[location] else terms.true
+            for location, conditions in left.items()
         }
         return self._lower.where(self._plant, guards, list(self._untried))
 

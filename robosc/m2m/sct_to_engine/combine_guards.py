@@ -77,7 +77,7 @@ def _one_of(edges: Sequence[sct.Edge], lower: Lowering) -> Term:
         return lower.terms.true
     denied: set[Term] = set()
     whole = lower.terms.junction(engine.Or, [remaining_guard(guard, denied, lower.terms) for guard in guards])
-    if any(isinstance(read, engine.Input) for read in whole.reads()):
+    if any(isinstance(declaration, engine.Input) for declaration in whole.reads()):
         name = event_name(edges[0].event)
         message = f"whether `{name}` can happen depends on its data, which a controller learns when it happens"
         hint = "leave it out of plant invariants, or add an edge for all other data"
@@ -104,8 +104,8 @@ def _all_covered(edges: Sequence[sct.Edge], lower: Lowering) -> bool:
 
 def _conjuncts(condition: ex.Expression | None) -> list[ex.Expression | None]:
     """Return the parts of a left-nested conjunction, the last first. Right operands are not split."""
-    found = []
+    parts = []
     while isinstance(condition, ex.Conjunction):
-        found.append(condition.right)
+        parts.append(condition.right)
         condition = condition.left
-    return [*found, condition]
+    return [*parts, condition]

@@ -25,8 +25,10 @@ def place_state(model: sct.SupervisoryControlModel) -> dict[sct.Plant | sct.Disc
     for plant in model.plants:
         for element, name, kind in _state(plant):
             variable = element if isinstance(element, sct.DiscreteVariable) else None
-            made = engine.StateVariable(plant=plant, variable=variable, name=names.fresh(name), initial=start[element])
-            placed[element] = _keep(made, kind)
+            placed_variable = engine.StateVariable(
+                plant=plant, variable=variable, name=names.fresh(name), initial=start[element]
+            )
+            placed[element] = _keep(placed_variable, kind)
     return placed
 
 

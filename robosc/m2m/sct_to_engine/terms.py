@@ -52,14 +52,14 @@ class Term:
         self.leaf = leaf
         self.sort = sort
         self.values = values
-        found: dict[engine.Declaration, None] = {}
+        cells: dict[engine.Declaration, None] = {}
         if isinstance(leaf, engine.Declaration):
-            found[leaf] = None
+            cells[leaf] = None
         for operand in operands:
-            found |= operand.cells
-            if len(found) > 1:
+            cells |= operand.cells
+            if len(cells) > 1:
                 break
-        self.cells = found
+        self.cells = cells
 
     @property
     def constant(self) -> int | None:

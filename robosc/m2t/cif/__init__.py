@@ -40,7 +40,7 @@ def preconditions(models: Models, _configuration: Configuration) -> list[Diagnos
         hint = "give it a component with a message, a service, an action or a behaviour"
         return [_finding(models.sct, reason, hint)]
     named = (element for _, element in tree(models.sct) if isinstance(element, ex.NamedElement))
-    found = [
+    findings = [
         _finding(element, f"'{element.name}' is no identifier", "give it a name of letters, digits and `_`")
         for element in named
         if not _NAME.fullmatch(element.name)
@@ -48,8 +48,8 @@ def preconditions(models: Models, _configuration: Configuration) -> list[Diagnos
     try:
         transform(models.sct)
     except ModelError as error:
-        found += error.diagnostics
-    return found
+        findings += error.diagnostics
+    return findings
 
 
 def generate(models: Models, _configuration: Configuration) -> dict[str, str]:

@@ -42,7 +42,7 @@ class Writer:
     def write_supervisor(self, supervisor: sct.Supervisor) -> str:
         """Return the plants with their supervisor: its requirements, and an automaton of its additions."""
         events = [self._names.used(guard.event, None) for guard in supervisor.guards]
-        kept = [
+        requirements = [
             f"supervisor invariant {event}{BREAK}needs {self._outside(guard.requirement)};"
             for event, guard in zip(events, supervisor.guards, strict=True)
             if guard.requirement is not None
@@ -52,8 +52,8 @@ class Writer:
             [
                 *document(self._counted(supervisor), sign="@@"),
                 *self._plants("supervisor automaton"),
-                *([""] if kept else []),
-                *kept,
+                *([""] if requirements else []),
+                *requirements,
                 "",
                 *document(["What synthesis added." if added else "Synthesis added nothing to the requirements."]),
                 f"supervisor automaton {self._names.supervisor}:",
@@ -88,20 +88,20 @@ class Writer:
         """Return the requirements of the model. Equal conditions on an event appear once."""
         texts: dict[str, list[str]] = {}
         for requirement in self._model.requirements:
-            event, asked = self._names.used(requirement.event, None), self._outside(requirement.condition)
+            event, condition = self._names.used(requirement.event, None), self._outside(requirement.condition)
             needs = requirement.kind == sct.RequirementKind.needs
-            parts = (event, f"needs {asked}") if needs else (asked, f"disables {event}")
-            said = f"requirement {BREAK.join(parts)};"
-            texts.setdefault(said, []).append(requirement.text or "")
+            parts = (event, f"needs {condition}") if needs else (condition, f"disables {event}")
+            statement = f"requirement {BREAK.join(parts)};"
+            texts.setdefault(statement, []).append(requirement.text or "")
         for invariant in self._model.invariants:
             name = self._names.invariants.get(invariant)
             named = "" if name is None else f" {name}:"
-            said = f"requirement invariant{named} {self._outside(invariant.condition)};"
-            texts.setdefault(said, []).append(invariant.text or "")
+            statement = f"requirement invariant{named} {self._outside(invariant.condition)};"
+            texts.setdefault(statement, []).append(invariant.text or "")
         if texts:
             yield ""
-        for text, found in texts.items():
-            yield from [*document(dict.fromkeys(filter(None, found))), text]
+        for text, descriptions in texts.items():
+            yield from [*document(dict.fromkeys(filter(None, descriptions))), text]
 
     def _plant(self, plant: sct.Plant) -> Iterator[str]:
         """Return the contents of a plant."""
@@ -160,13 +160,13 @@ class Writer:
         """Return the state counts of the supervised plants, as RoboSC and as CIF count them."""
         inputs = input_values(self._model)
         left, all_of = supervisor.controlledStates, supervisor.uncontrolledStates
-        told = f"The plants of {self._model.name} under their supervisor"
+        subject = f"The plants of {self._model.name} under their supervisor"
         if left is None or all_of is None:  # The supervisor of a saved model may have no counts.
-            return [f"{told}."]
+            return [f"{subject}."]
         # Python prints numbers of thousands of digits only as decimals.
         here, there = (f"{Decimal(left * times)} of {Decimal(all_of * times)}" for times in (1, inputs))
         counts = f"CIF counts {there}: each of them with the {Decimal(inputs)} values of the inputs."
-        return [f"{told}, which leaves them {here} states.", *([counts] if inputs > 1 else [])]
+        return [f"{subject}, which leaves them {here} states.", *([counts] if inputs > 1 else [])]
 
 
 def document(texts: Iterable[str], indent: str = "", sign: str = "@") -> list[str]:
@@ -202,15 +202,15 @@ def _folded(line: str) -> str:
     if len(line) <= _WIDTH:
         return f"{line.replace(BREAK, ' ')}\n"
     indent = " " * (len(line) - len(line.lstrip(" ")))
-    made, length = "", 0
+    text, length = "", 0
     for part in line.split(BREAK):
-        if made and length + 1 + len(part) > _WIDTH:
-            made += f"\n{indent}  {part}"
+        if text and length + 1 + len(part) > _WIDTH:
+            text += f"\n{indent}  {part}"
             length = len(indent) + 2 + len(part)
         else:
-            made += f" {part}" if made else part
+            text += f" {part}" if text else part
             length += 1 + len(part)
-    return f"{made}\n"
+    return f"{text}\n"
 
 
 def _transitions(model: sct.SupervisoryControlModel) -> dict[sct.Event, str]:

@@ -85,12 +85,12 @@ class _Printer(CPrinter):
         super().__init__(names.c)
         self._places = names
 
-    def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
+    def write(self, expression: ex.Expression, printed: Sequence[Printed]) -> Printed:
         """Print an expression. A conversion becomes a C++ cast."""
         if isinstance(expression, engine.Conversion) and not (expression.widens and expression.bits == 16):
             kind = integer_type(expression.bits, signed=expression.signed)
-            return Printed(f"static_cast<std::{kind}>({given[0].text})")
-        return super().write(expression, given)
+            return Printed(f"static_cast<std::{kind}>({printed[0].text})")
+        return super().write(expression, printed)
 
     def reason(self, reason: engine.Reason) -> GateReason:
         text = string_literal(reason.text)

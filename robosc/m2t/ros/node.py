@@ -330,24 +330,24 @@ class GeneratedNode:
         """Whether the node sends received objects unchanged."""
         messages = [message for publisher in self.publishers for message in publisher.messages]
         messages += [client.request for client in self.clients]
-        fields = [field for message in messages for given in message.alternatives for field in given.fields]
+        fields = [field for message in messages for alternative in message.alternatives for field in alternative.fields]
         return any(method == _HAND_ON for method, _, _ in fields)
 
     @property
     def reason(self) -> Reasons | None:
         """Literals for the reasons of errors. None if the node reads no reasons."""
-        read = next((part for _, part in tree(self._graph) if isinstance(part, rosgraph.ErrorReason)), None)
-        if read is None:
+        error_reason = next((part for _, part in tree(self._graph) if isinstance(part, rosgraph.ErrorReason)), None)
+        if error_reason is None:
             return None
-        literals = [(literal.name, self._names.literal(literal)) for literal in read.enumeration.literals]
-        return Reasons(self._type(ex.EnumerationType(enumeration=read.enumeration)), literals)
+        literals = [(literal.name, self._names.literal(literal)) for literal in error_reason.enumeration.literals]
+        return Reasons(self._type(ex.EnumerationType(enumeration=error_reason.enumeration)), literals)
 
     @property
     def interfaces(self) -> list[rosgraph.Interface]:
         """Types in use, each once, by package and name."""
         used: list[Subscription | Publisher | Client] = [*self.subscriptions, *self.publishers, *self.clients]
-        found = {(kind.package, kind.type, kind.kind.name): kind for kind in (end.interface for end in used)}
-        return [found[key] for key in sorted(found)]
+        by_name = {(kind.package, kind.type, kind.kind.name): kind for kind in (end.interface for end in used)}
+        return [by_name[key] for key in sorted(by_name)]
 
     # Types
 
@@ -428,7 +428,7 @@ class GeneratedNode:
         """Return all values that are computed from incoming data."""
         reactions = self._reactions.get(reception.event, ())
         assigned = (assignment.value for reaction in reactions for assignment in reaction.assignments)
-        return [*(given.value for given in reception.inputs), *assigned]
+        return [*(assignment.value for assignment in reception.inputs), *assigned]
 
     def _input(self, assignment: rosgraph.InputAssignment) -> Assignment:
         kind = assignment.input.type
@@ -511,8 +511,8 @@ class GeneratedNode:
         printer = CppPrinter(self._names, node=node)
         if is_structured(kind) and isinstance(value, rosgraph.IfReadable):
             printer = CppPrinter(self._names, node=node, reader="element")
-            read = f"[&](ArrayReader& element) {{ return {printer(value.value)}; }}"
-            return Assignment(target, read, "store_if_readable")
+            lambda_text = f"[&](ArrayReader& element) {{ return {printer(value.value)}; }}"
+            return Assignment(target, lambda_text, "store_if_readable")
         text = printer.integer(value, kind) if isinstance(kind, ex.IntegerType) else printer(value)
         return Assignment(target, text, "store" if is_structured(kind) else "")
 
@@ -564,7 +564,8 @@ class GeneratedNode:
             self._names.c.enumerator(sending.event),
             self._events[sending.event].remarks,
             [self._alternative(provided) for provided in sending.alternatives],
-            reads or any(_may_be_infinite(field) for given in sending.alternatives for field in given.fields),
+            reads
+            or any(_may_be_infinite(field) for alternative in sending.alternatives for field in alternative.fields),
             reads,
             [".".join(path) for path in paths_set(sending)] if sending.onChange else None,
             self._handler(sending.event) if sending.event in self._reactions else None,

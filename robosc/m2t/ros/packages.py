@@ -176,8 +176,8 @@ class RosTarget:
         kind, ros = self.kind, self.ros
         commands = gates(graph, node, executed) if configuration.diagnostics_ms or kind == "layer" else {}
         layer = LayerNode(graph, node, commands.values(), executed) if kind == "layer" else None
-        told = statuses(graph, node, commands) if configuration.diagnostics_ms else []
-        included = self._included(node, layer, told, configuration)
+        reported_statuses = statuses(graph, node, commands) if configuration.diagnostics_ms else []
+        included = self._included(node, layer, reported_statuses, configuration)
         source, definition = f"src/{name}_node.cpp", f"include/{name}/definition.hpp"
         # Users rarely set a layer's parameters, except for the model's own.
         has_file = kind == "controller" or bool(node.parameters)
@@ -196,7 +196,7 @@ class RosTarget:
         )
         reports = [
             *([_TEXT] if texts_told else []),
-            *([_STATUSES] if told else []),
+            *([_STATUSES] if reported_statuses else []),
             *([kind_of_state] if configuration.typed_state else []),
         ]
         types = {interface.package for interface in [*node.interfaces, *reports]}
@@ -227,10 +227,10 @@ class RosTarget:
                 if kind == "controller" or parameter.name != "event_log" or configuration.write_events_to_log
             ),
             "publishes_state": configuration.publish_state_information,
-            "statuses": told,
+            "statuses": reported_statuses,
             "typed_fields": typed,
             "typed": kind_of_state if configuration.typed_state else None,
-            "remembers": bool(node.may_withhold and (told or node.instead)),
+            "remembers": bool(node.may_withhold and (reported_statuses or node.instead)),
             "gates": list(commands.values()),
             "writes_log": configuration.write_events_to_log,
             "definition": definition_text(graph),
@@ -257,7 +257,11 @@ class RosTarget:
         return texts | ({f"test/{path}": text for path, text in tests.files.items()} if tests else {})
 
     def _included(
-        self, node: GeneratedNode, layer: LayerNode | None, told: Sequence[Status], configuration: Configuration
+        self,
+        node: GeneratedNode,
+        layer: LayerNode | None,
+        reported_statuses: Sequence[Status],
+        configuration: Configuration,
     ) -> list[str]:
         """Return the headers in `include` that the node includes, without suffix."""
         if self.kind == "controller":
@@ -273,14 +277,14 @@ class RosTarget:
             "awaits": _awaited(node, configuration),
             "composes": composes,
             "defaults": defaults,
-            "gates": (layer and layer.gates) or any(status.commands for status in told),
+            "gates": (layer and layer.gates) or any(status.commands for status in reported_statuses),
             "hands_on": node.hands_on,
             "managed": configuration.lifecycle,
             "quaternions": (composes and defaults) or _turned(node),
-            "reports": configuration.publish_state_information or told or (layer and layer.gates),
+            "reports": configuration.publish_state_information or reported_statuses or (layer and layer.gates),
             "services": node.services,
             "state": configuration.publish_state_information,
-            "statuses": told,
+            "statuses": reported_statuses,
             "subscriptions": node.subscriptions,
             "timed": node.at,
             "topics": node.subscriptions or node.publishers,
@@ -321,23 +325,23 @@ def _player(name: str, into: str | None) -> str:
 
 def _groups(declared: Iterable[Parameter]) -> dict[str, dict[str, Parameter]]:
     """Group parameters by the part of their names before the last point, "" first."""
-    found: dict[str, dict[str, Parameter]] = {"": {}}
+    groups: dict[str, dict[str, Parameter]] = {"": {}}
     for parameter in declared:
         group, _, name = parameter.name.rpartition(".")
-        found.setdefault(group, {})[name] = parameter
-    return found
+        groups.setdefault(group, {})[name] = parameter
+    return groups
 
 
 def shipped_headers(headers: Iterable[str]) -> dict[str, str]:
     """Return headers in `include` by name, such as `robosc/json`, with all that they include: text by name."""
-    found: dict[str, str] = {}
+    texts: dict[str, str] = {}
     waiting = list(headers)
     while waiting:
         name = waiting.pop().removesuffix(".hpp")
-        if name not in found:
-            found[name] = (locate("m2t/ros/include") / f"{name}.hpp").read_text(encoding="utf-8")
-            waiting += _INCLUDED.findall(found[name])
-    return dict(sorted(found.items()))
+        if name not in texts:
+            texts[name] = (locate("m2t/ros/include") / f"{name}.hpp").read_text(encoding="utf-8")
+            waiting += _INCLUDED.findall(texts[name])
+    return dict(sorted(texts.items()))
 
 
 def has_defaults(interface: rosgraph.Interface) -> bool:

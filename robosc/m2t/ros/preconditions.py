@@ -58,16 +58,16 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
     if graph is None:
         message = "there is no ROS graph beside this model: generate from the .rscd or the .rosgraph.xmi"
         return [Diagnostic(models.sct.name, START, Severity.ERROR, RULE, message)]
-    found = [*engine_preconditions(models.sct), *_names(graph), *_types(graph)]
-    found += _parameters(graph, configuration, kind, ros)
+    findings = [*engine_preconditions(models.sct), *_names(graph), *_types(graph)]
+    findings += _parameters(graph, configuration, kind, ros)
     if configuration.typed_state and not configuration.publish_state_information:
         hint = 'leave out "publishStateInformation": false'
-        found.append(configuration.error(("typedState",), '"typedState" needs "publishStateInformation"', hint))
+        findings.append(configuration.error(("typedState",), '"typedState" needs "publishStateInformation"', hint))
     if kind == "controller":
         name = configuration.package_name(graph)
-        return [*found, *_package(graph, configuration, name), *_settings(graph, configuration)]
+        return [*findings, *_package(graph, configuration, name), *_settings(graph, configuration)]
     return [
-        *found,
+        *findings,
         *_package(graph, configuration, configuration.layer_name(graph)),
         *_shared_topics(graph),
         *_unsendable(graph, configuration, "onBlocked", configuration.on_blocked),
@@ -240,15 +240,15 @@ def _nothing_safe(graph: rosgraph.RosGraph, configuration: Configuration) -> Ite
         outside = _from_outside(graph)
         for sending in (sending for publisher in graph.publishers for sending in publisher.sendings):
             fields = [field for provided in sending.alternatives for field in provided.fields]
-            found = next((field for field in fields if _may_be_withheld(field, outside)), None)
-            if found is not None:
-                what = "is no" if infer(found.value) == DOUBLE else "holds what is no"
+            withheld = next((field for field in fields if _may_be_withheld(field, outside)), None)
+            if withheld is not None:
+                what = "is no" if infer(withheld.value) == DOUBLE else "holds what is no"
                 message = (
-                    f"{sending.name} is not sent where its {'.'.join(found.path) or 'data'} {what} finite number, nor"
-                    " is anything else: the robot goes on as it was told last"
+                    f"{sending.name} is not sent where its {'.'.join(withheld.path) or 'data'} {what} finite number, "
+                    "nor is anything else: the robot goes on as it was told last"
                 )
                 hint = 'name what is sent then in controller-config.json, as in "onWithheld": ["halt"]; or write []'
-                yield replace(_error(found, message, hint), severity=Severity.WARNING)
+                yield replace(_error(withheld, message, hint), severity=Severity.WARNING)
 
 
 def _may_be_withheld(field: rosgraph.FieldAssignment, outside: set[rosgraph.NodeVariable]) -> bool:
@@ -267,13 +267,13 @@ def _from_outside(graph: rosgraph.RosGraph) -> set[rosgraph.NodeVariable]:
         for assignment in reaction.assignments
         if infer(assignment.value) == DOUBLE
     ]
-    found: set[rosgraph.NodeVariable] = set()
+    variables: set[rosgraph.NodeVariable] = set()
     more = True
     while more:
-        reached = {assignment.variable for assignment in assignments if _reads(assignment.value, found)}
-        more = not reached <= found
-        found |= reached
-    return found
+        reached = {assignment.variable for assignment in assignments if _reads(assignment.value, variables)}
+        more = not reached <= variables
+        variables |= reached
+    return variables
 
 
 def _reads(value: ex.Expression, outside: set[rosgraph.NodeVariable]) -> bool:
@@ -288,11 +288,11 @@ def _reads(value: ex.Expression, outside: set[rosgraph.NodeVariable]) -> bool:
 def _shared_topics(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
     """Return errors on topics with several messages: a layer cannot determine which one it passes."""
     named: dict[str, str] = {}
-    found: list[tuple[str, Sequence[rosgraph.Reception | rosgraph.Sending]]] = [
+    by_topic: list[tuple[str, Sequence[rosgraph.Reception | rosgraph.Sending]]] = [
         *((subscription.topic, subscription.receptions) for subscription in graph.subscriptions),
         *((publisher.topic, publisher.sendings) for publisher in graph.publishers),
     ]
-    for topic, message in ((topic, message) for topic, messages in found for message in messages):
+    for topic, message in ((topic, message) for topic, messages in by_topic for message in messages):
         first = named.get(topic.removeprefix("/"))
         if first is None:
             named[topic.removeprefix("/")] = message.name

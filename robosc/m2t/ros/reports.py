@@ -53,13 +53,13 @@ class Component:
 def received_parts(values: Sequence[ex.Expression], names: CppNames) -> EventData | None:
     """Return the parts of a message that the node reads, in the message's structure. Basic data is the value itself."""
     printer = CppPrinter(names, reader="element")
-    found = logged_data(values)
-    if not found:
+    parts = logged_data(values)
+    if not parts:
         return None
-    texts = {path: _value(path, part, printer, names) for path, part in found.items()}
+    texts = {path: _value(path, part, printer, names) for path, part in parts.items()}
     if list(texts) == [("data",)]:
         texts = {(): texts["data",]}
-    reading = {path for path, part in found.items() if _reads_elements(path, part)}
+    reading = {path for path, part in parts.items() if _reads_elements(path, part)}
     if not reading:
         return EventData(_nested(texts), [])
     return EventData("", [Member(_dotted(path), texts[path], path in reading) for path in _grouped(texts)])
@@ -138,8 +138,8 @@ def _grouped(paths: Iterable[Path]) -> list[Path]:
         heads.setdefault(path[:1], []).append(path)
     return [
         head + rest
-        for head, found in heads.items()
-        for rest in ([()] if found == [head] else _grouped(path[1:] for path in found))
+        for head, group in heads.items()
+        for rest in ([()] if group == [head] else _grouped(path[1:] for path in group))
     ]
 
 

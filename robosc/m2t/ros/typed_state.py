@@ -104,13 +104,13 @@ class _Scope:
 
     def fresh(self, name: str) -> str:
         """Return the name, or a similar one that is free."""
-        ascii_only = re.sub(r"[^a-z0-9_]", lambda found: f"u{ord(found[0]):04x}", name)
+        ascii_only = re.sub(r"[^a-z0-9_]", lambda match: f"u{ord(match[0]):04x}", name)
         word = re.sub("_+", "_", ascii_only).strip("_")
         word = word if word[:1].isalpha() else f"x{word}"
-        found = next(
+        match = next(
             candidate
             for candidate in chain([word], (f"{word}_{number}" for number in count(2)))
             if candidate not in self._taken
         )
-        self._taken.add(found)
-        return found
+        self._taken.add(match)
+        return match

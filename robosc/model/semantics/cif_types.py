@@ -80,20 +80,20 @@ def combine_types(operator: str, left: Type, right: Type) -> Type:
         return _divided(operator, left, right)
     low, high = right.start, right.stop - 1
     if operator == "+":
-        made = range(left.start + low, left.stop + high)
+        values = range(left.start + low, left.stop + high)
     elif operator == "-":
-        made = range(left.start - high, left.stop - low)
+        values = range(left.start - high, left.stop - low)
     else:
         corners = [left_end * right_end for left_end in (left.start, left.stop - 1) for right_end in (low, high)]
-        made = range(min(corners), max(corners) + 1)
-    return value_range(operator, made)
+        values = range(min(corners), max(corners) + 1)
+    return value_range(operator, values)
 
 
-def value_range(operator: str, made: range) -> range:
+def value_range(operator: str, values: range) -> range:
     """Return the range of an operation's values. Raises TypeError if it exceeds CIF's integers."""
-    if made.start < -LARGEST - 1 or made.stop - 1 > LARGEST:
-        raise TypeError(f"`{operator}` could overflow: its values are {made.start} to {made.stop - 1}")
-    return made
+    if values.start < -LARGEST - 1 or values.stop - 1 > LARGEST:
+        raise TypeError(f"`{operator}` could overflow: its values are {values.start} to {values.stop - 1}")
+    return values
 
 
 def _divided(operator: str, left: range, right: range) -> range:

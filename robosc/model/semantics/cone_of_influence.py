@@ -80,11 +80,11 @@ class ConeOfInfluence:
     @property
     def data(self) -> dict[InputSource, InputRead]:
         """Inputs of the supervisor, each with its first reading."""
-        found: dict[InputSource, InputRead] = {}
+        first_readings: dict[InputSource, InputRead] = {}
         for reading in self.readings:
             if reading.source is not None:
-                found.setdefault(reading.source, reading)
-        return found
+                first_readings.setdefault(reading.source, reading)
+        return first_readings
 
 
 def cone_of_influence(instances: Instances) -> ConeOfInfluence:
@@ -180,8 +180,8 @@ def all_assignments(instances: Instances) -> Iterator[AssignmentPlace]:
         for transition, _ in instance.transitions:
             for assignment in transition.assignments:
                 variable = instances.variable(assignment.item, instance) if assignment.item else None
-                given = assignment.value
-                value = None if given is None else instances.expanded(given, instance)
+                expression = assignment.value
+                value = None if expression is None else instances.expanded(expression, instance)
                 yield AssignmentPlace(instance, transition, assignment, variable, value)
 
 

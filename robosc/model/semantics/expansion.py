@@ -204,12 +204,12 @@ class Expansion:
 
     def _call(self, call: robosc.Call, environment: _Environment) -> Generator[Any, Any, ex.Expression | None]:
         function = call.function
-        given: list[ex.Expression] = []  # A generator cannot yield from within a comprehension.
+        values: list[ex.Expression] = []  # A generator cannot yield from within a comprehension.
         if function in environment.opened or function.value is None or len(call.arguments) != len(function.parameters):
             return None
         for argument in call.arguments:
-            given.append((yield (argument, environment)))  # noqa: PERF401
-        arguments = dict(zip(function.parameters, given, strict=True))
+            values.append((yield (argument, environment)))  # noqa: PERF401
+        arguments = dict(zip(function.parameters, values, strict=True))
         owner = environment.within if _is_member(function) else None
         if owner is not None:
             arguments = {**owner.arguments, **arguments}
@@ -222,24 +222,24 @@ class Expansion:
     ) -> Generator[Any, Any, ex.Expression]:
         assert self._instances is not None
         counts = quantifier.quantifier == robosc.Quantifier.count
-        found: list[ex.Expression] = []
+        bodies: list[ex.Expression] = []
         for instance in self._instances.of(quantifier.template):
             templates = {**environment.templates, quantifier.template: instance.component}
             body = yield (quantifier.body, environment._replace(templates=templates))
             if counts:
                 counted, uncounted = ex.IntegerLiteral(value=1), ex.IntegerLiteral(value=0)
                 body = ex.Conditional(condition=body, then=counted, otherwise=uncounted, source=quantifier.source)
-            found.append(body)
-        if not found:
+            bodies.append(body)
+        if not bodies:
             is_all = quantifier.quantifier == robosc.Quantifier.all
             return ex.IntegerLiteral(value=0) if counts else ex.BooleanLiteral(value=is_all)
         operator: Any = _OPERATORS[str(quantifier.quantifier)]
-        return reduce(lambda left, right: operator(left=left, right=right, source=quantifier.source), found)
+        return reduce(lambda left, right: operator(left=left, right=right, source=quantifier.source), bodies)
 
     def _copy(self, element: Any, environment: _Environment) -> Generator[Any, Any, Any]:
-        made = type(element)()
+        copied_element = type(element)()
         if isinstance(element, robosc.ArrayElement):
-            self._elements[element] = made  # References to the element come later.
+            self._elements[element] = copied_element  # References to the element come later.
         children = []
         for _, child in contents(element):
             children.append((yield (child, environment)))
@@ -250,16 +250,16 @@ class Expansion:
                 continue
             if is_attribute(feature) or not feature.containment:
                 if not feature.many:
-                    setattr(made, name, self._elements.get(value, value) if name == "item" else value)
+                    setattr(copied_element, name, self._elements.get(value, value) if name == "item" else value)
             elif feature.many:
-                getattr(made, name).extend(next(inside) for _ in value)
+                getattr(copied_element, name).extend(next(inside) for _ in value)
             else:
-                setattr(made, name, next(inside))
+                setattr(copied_element, name, next(inside))
         if isinstance(element, robosc.Access) and element.component is not None:
             owner = self._owner(element.component, environment)
             if owner is not None and (environment.moved or element.component in environment.templates):
-                made.component = owner.component
-        return made
+                copied_element.component = owner.component
+        return copied_element
 
     def _owner(self, component: robosc.Component | None, environment: _Environment) -> Instance | None:
         if self._instances is None:
@@ -298,9 +298,9 @@ def _folded(expression: ex.Expression) -> ex.Expression:
     value = _value(expression)
     if value is None:
         return expression
-    made = robosc.Access(item=value) if isinstance(value, robosc.EnumValue) else literal(value)
-    made.source = expression.source
-    return made
+    constant_expression = robosc.Access(item=value) if isinstance(value, robosc.EnumValue) else literal(value)
+    constant_expression.source = expression.source
+    return constant_expression
 
 
 def _value(expression: ex.Expression) -> Value | None:

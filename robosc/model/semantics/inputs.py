@@ -128,8 +128,8 @@ def inputs_in(
         else:
             # The bounds of a conditional's variable apply to its branches.
             inside = operands(part)
-            kept = [None, limits, limits] if isinstance(part, ex.Conditional) else [None] * len(inside)
-            pending += reversed(list(zip(inside, kept, strict=True)))
+            limits_inside = [None, limits, limits] if isinstance(part, ex.Conditional) else [None] * len(inside)
+            pending += reversed(list(zip(inside, limits_inside, strict=True)))
 
 
 def readable(carried: ComputedValue) -> ComputedValue:
@@ -145,9 +145,9 @@ def may_be_missing(carried: ComputedValue) -> bool:
 
 def _reads(part: ex.Expression, inside: Sequence[_Reads], port: PortInstance, event: PortEvent) -> _Reads:
     """Summarize the reads of an expression from those of its operands. The operands of an access are its indices."""
-    data, fixed = any(read.data for read in inside), all(read.fixed for read in inside)
-    beyond, reason = any(read.beyond for read in inside), any(read.reason for read in inside)
-    elements = any(read.elements for read in inside) or _is_partial(part)
+    data, fixed = any(operand.data for operand in inside), all(operand.fixed for operand in inside)
+    beyond, reason = any(operand.beyond for operand in inside), any(operand.reason for operand in inside)
+    elements = any(operand.elements for operand in inside) or _is_partial(part)
     if isinstance(part, robosc.ErrorReason):
         return _Reads(True, True, False, reason=True)
     if not isinstance(part, robosc.Access):
@@ -171,8 +171,8 @@ def _is_finite(declared: robosc.DataType | None) -> bool:
     """Return whether data of the type is an input itself. Unknown types count too; other checks report them."""
     if isinstance(declared, robosc.IntegerDataType):
         return declared.minimum is not None and declared.maximum is not None
-    found = declared_type(declared)
-    return found == BOOLEAN or isinstance(found, EnumType)
+    kind = declared_type(declared)
+    return kind == BOOLEAN or isinstance(kind, EnumType)
 
 
 def property_path(access: robosc.Access) -> tuple[robosc.ObjectProperty, ...] | None:

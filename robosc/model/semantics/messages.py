@@ -175,21 +175,21 @@ def origins(graph: rosgraph.RosGraph) -> dict[rosgraph.NodeVariable, dict[tuple[
     """
     known = {reception.event: reception for reception in receptions(graph)}
     stored = [
-        (reaction.event, given.variable, value)
+        (reaction.event, assignment.variable, value)
         for reaction in graph.reactions
-        for given in reaction.assignments
-        if is_structured(given.variable.type) and isinstance(value := whole(given.value), rosgraph.WireAccess)
+        for assignment in reaction.assignments
+        if is_structured(assignment.variable.type) and isinstance(value := whole(assignment.value), rosgraph.WireAccess)
     ]
-    found: dict[rosgraph.NodeVariable, dict[tuple[rosgraph.Reception, Path], None]] = {}
+    by_variable: dict[rosgraph.NodeVariable, dict[tuple[rosgraph.Reception, Path], None]] = {}
     changed = True
     while changed:
         changed = False
         for event, variable, access in stored:
-            starts = found.get(access.variable, {}) if access.variable else {(known[event], ()): None}
+            starts = by_variable.get(access.variable, {}) if access.variable else {(known[event], ()): None}
             places = {(reception, (*path, *path_of(access))): None for reception, path in starts}
-            changed = changed or not places.keys() <= found.get(variable, {}).keys()
-            found.setdefault(variable, {}).update(places)
-    return {variable: places for variable, places in found.items() if places}
+            changed = changed or not places.keys() <= by_variable.get(variable, {}).keys()
+            by_variable.setdefault(variable, {}).update(places)
+    return {variable: places for variable, places in by_variable.items() if places}
 
 
 def kept_reads(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Reception, Path, MessageRead]]:
@@ -221,9 +221,14 @@ def reads(values: Iterable[ex.Expression]) -> Iterator[tuple[Path, MessageRead]]
         owner = value.eContainer()
         if isinstance(owner, rosgraph.IfReadable):
             owner = owner.eContainer()
-        kept = owner.variable.type if isinstance(owner, rosgraph.NodeAssignment) else None
-        if isinstance(value, rosgraph.WireAccess) and value.variable is None and kept and holds_objects(kept):
-            for inside, kind in parts_of(kept):
+        stored_type = owner.variable.type if isinstance(owner, rosgraph.NodeAssignment) else None
+        if (
+            isinstance(value, rosgraph.WireAccess)
+            and value.variable is None
+            and stored_type
+            and holds_objects(stored_type)
+        ):
+            for inside, kind in parts_of(stored_type):
                 path = (*path_of(value), *inside)
                 yield path, MessageRead(value if EACH in path else access_to(path, type(kind)()), kind)
         argument = None
@@ -267,32 +272,32 @@ def logged_data(values: Iterable[ex.Expression]) -> Shown:
 
     A read of an element at any position shows the whole array.
     """
-    found: dict[Path, MessageRead] = {}
-    for path, read in reads(values):
-        if path not in found or not found[path].is_value:
-            found[path] = read
-    objects = [path for path, read in found.items() if not read.is_value]
+    reads_by_path: dict[Path, MessageRead] = {}
+    for path, message_read in reads(values):
+        if path not in reads_by_path or not reads_by_path[path].is_value:
+            reads_by_path[path] = message_read
+    objects = [path for path, message_read in reads_by_path.items() if not message_read.is_value]
     for path in objects:
-        if any(other[: len(path)] == path for other in found if other != path):
-            del found[path]  # something is read of it
-    return _in_arrays(found)
+        if any(other[: len(path)] == path for other in reads_by_path if other != path):
+            del reads_by_path[path]  # something is read of it
+    return _in_arrays(reads_by_path)
 
 
-def _in_arrays(found: dict[Path, MessageRead]) -> Shown:
-    arrays = {path[: path.index(EACH)] for path in found if EACH in path}
-    made: Shown = {}
+def _in_arrays(reads_by_path: dict[Path, MessageRead]) -> Shown:
+    arrays = {path[: path.index(EACH)] for path in reads_by_path if EACH in path}
+    nested: Shown = {}
     elements: dict[Path, dict[Path, MessageRead]] = {}
-    for path, read in found.items():
+    for path, message_read in reads_by_path.items():
         array = next((path[:length] for length in range(len(path)) if path[:length] in arrays), None)
         if array is None:
-            made[path] = read
+            nested[path] = message_read
         else:
-            made.setdefault(array, {})
+            nested.setdefault(array, {})
             rest = tuple(EACH if step.isdigit() else step for step in path[len(array) + 1 :])
-            elements.setdefault(array, {}).setdefault(rest, read)
+            elements.setdefault(array, {}).setdefault(rest, message_read)
     for array, inside in elements.items():
-        made[array] = _in_arrays(inside)
-    return made
+        nested[array] = _in_arrays(inside)
+    return nested
 
 
 def paths_set(sending: rosgraph.Sending) -> list[Path]:
@@ -308,12 +313,12 @@ def parts_with_headers(sending: rosgraph.Sending) -> list[tuple[str, ...]]:
     """
     paths = paths_set(sending)
     parts = {()} | {path[:length] for path in paths for length in range(1, len(path))}
-    given = {path[: path.index("header")] for path in paths if "header" in path}
-    return sorted(part for part in parts - given if "header" not in part)
+    with_header = {path[: path.index("header")] for path in paths if "header" in path}
+    return sorted(part for part in parts - with_header if "header" not in part)
 
 
 def message_named(graph: rosgraph.RosGraph, name: str) -> rosgraph.Sending | None:
     """Return the message that the node sends with this name or `Component.name`; None unless there is exactly one."""
     sendings = [sending for publisher in graph.publishers for sending in publisher.sendings]
-    found = [sending for sending in sendings if name in (sending.name, sending.event.eContainer().origin)]
-    return found[0] if len(found) == 1 else None
+    matches = [sending for sending in sendings if name in (sending.name, sending.event.eContainer().origin)]
+    return matches[0] if len(matches) == 1 else None

@@ -163,7 +163,7 @@ def _first(before: Callable[[Any, Any], bool]) -> Callable[[Any], Any]:
         numbers = [value for value in values if value == value]  # noqa: PLR0124 - NaN is passed over
         if not numbers:
             raise UnreadableError(f"there is no number in an array of {len(values)}")
-        return reduce(lambda found, value: value if before(value, found) else found, numbers)
+        return reduce(lambda best, value: value if before(value, best) else best, numbers)
 
     return chosen
 

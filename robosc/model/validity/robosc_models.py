@@ -21,22 +21,24 @@ if TYPE_CHECKING:
     from robosc.model.validity.model_checks import Checks, Fault, Model
 
 
-def _check_instance(made: robosc.InstantiatedComponent | robosc.ImportedComponent, _model: Model) -> Iterator[Fault]:
-    user = around(made, robosc.Component)
+def _check_instance(
+    instantiation: robosc.InstantiatedComponent | robosc.ImportedComponent, _model: Model
+) -> Iterator[Fault]:
+    user = around(instantiation, robosc.Component)
     if user is not None and user.parameters:
-        yield made, f"the template '{user.name}' has no text of its own"
+        yield instantiation, f"the template '{user.name}' has no text of its own"
         return
-    seen, component = {user}, made.definition
+    seen, component = {user}, instantiation.definition
     while isinstance(component.type, robosc.InstantiatedComponent | robosc.ImportedComponent):
         if component in seen:
-            yield made, f"'{component.name}' is made of itself"
+            yield instantiation, f"'{component.name}' is made of itself"
             return
         seen.add(component)
         component = component.type.definition
-    if isinstance(made, robosc.ImportedComponent):
-        yield from _import(made)
-    elif not made.definition.parameters:
-        yield made, f"'{made.definition.name}' is no template"
+    if isinstance(instantiation, robosc.ImportedComponent):
+        yield from _import(instantiation)
+    elif not instantiation.definition.parameters:
+        yield instantiation, f"'{instantiation.definition.name}' is no template"
 
 
 def _import(imported: robosc.ImportedComponent) -> Iterator[Fault]:

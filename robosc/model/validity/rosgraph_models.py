@@ -31,9 +31,9 @@ def _own_event(element: Any, model: Model) -> Iterator[Fault]:
         yield element, f"the event '{event.name}' is another model's"
 
 
-def _interface(wanted: rosgraph.InterfaceKind) -> Check:
-    message = f"'{{0.interface.type}}' is a {{0.interface.kind}}, but a {wanted} is wanted"
-    return demand(lambda user: user.interface.kind == wanted, message)
+def _interface(kind: rosgraph.InterfaceKind) -> Check:
+    message = f"'{{0.interface.type}}' is a {{0.interface.kind}}, but a {kind} is wanted"
+    return demand(lambda user: user.interface.kind == kind, message)
 
 
 def _literals(conversion: rosgraph.Conversion, _model: Model) -> Iterator[Fault]:
@@ -48,17 +48,17 @@ def _inputs(reception: rosgraph.Reception, _model: Model) -> Iterator[Fault]:
             yield assignment, f"'{reception.event.name}' does not carry the input '{assignment.input.name}'"
 
 
-def _reason(read: rosgraph.ErrorReason, _model: Model) -> Iterator[Fault]:
+def _reason(reason: rosgraph.ErrorReason, _model: Model) -> Iterator[Fault]:
     """Check that a reason is read only at an error, and that its enumeration has all reasons of the node."""
-    user = read.eContainer()
+    user = reason.eContainer()
     while isinstance(user, ex.Expression | rosgraph.NodeAssignment | rosgraph.InputAssignment):
         user = user.eContainer()
     event = user.event if isinstance(user, rosgraph.Reaction | rosgraph.Reception) else None
     if event is None or event.kind != sct.EventKind.error:
-        yield read, "a reason is read at the error of a service or an action only"
-    missing = {*FAILURES} - {literal.name for literal in read.enumeration.literals}
+        yield reason, "a reason is read at the error of a service or an action only"
+    missing = {*FAILURES} - {literal.name for literal in reason.enumeration.literals}
     if missing:
-        yield read, f"{read.enumeration.name} has no literal '{min(missing)}'"
+        yield reason, f"{reason.enumeration.name} has no literal '{min(missing)}'"
 
 
 class _Shape:
@@ -85,8 +85,8 @@ class _Shape:
 
 def _converted_shape(conversion: rosgraph.Conversion, _model: Model) -> Iterator[Fault]:
     shape = _Shape()
-    for read in _reads(rule.condition for rule in conversion.rules):
-        yield from shape.add(read, _path(read), read.type)
+    for access in _reads(rule.condition for rule in conversion.rules):
+        yield from shape.add(access, _path(access), access.type)
 
 
 def _sent_shape(sending: rosgraph.Sending, _model: Model) -> Iterator[Fault]:
@@ -118,7 +118,7 @@ def _received_shapes(graph: rosgraph.RosGraph, _model: Model) -> Iterator[Fault]
                 yield from _received(shape, access)
     for event, values in reactions.items():
         if event not in read_anywhere:
-            yield from ((read, f"'{event.name}' comes with no data") for read in _reads(values))
+            yield from ((access, f"'{event.name}' comes with no data") for access in _reads(values))
 
 
 def _received(shape: _Shape, access: rosgraph.WireAccess) -> Iterator[Fault]:
@@ -128,14 +128,14 @@ def _received(shape: _Shape, access: rosgraph.WireAccess) -> Iterator[Fault]:
     yield from shape.add(access, path, access.type)
     owner = access.eContainer()
     if isinstance(owner, rosgraph.ConversionCall):
-        for read in _reads(rule.condition for rule in owner.conversion.rules):
-            yield from shape.add(access, [*path, *_path(read)], read.type)
+        for inner in _reads(rule.condition for rule in owner.conversion.rules):
+            yield from shape.add(access, [*path, *_path(inner)], inner.type)
 
 
 def _reads(values: Iterable[ex.Expression]) -> Iterator[rosgraph.WireAccess]:
     for value in values:
-        found = (access for _, access in tree(value) if isinstance(access, rosgraph.WireAccess))
-        yield from (access for access in found if source_of(access) is None)
+        accesses = (access for _, access in tree(value) if isinstance(access, rosgraph.WireAccess))
+        yield from (access for access in accesses if source_of(access) is None)
 
 
 def _path(access: rosgraph.WireAccess) -> list[str | int]:

@@ -49,8 +49,8 @@ def _end_of_action(plant: sct.Plant, _model: Model) -> Iterator[Fault]:
     """Check that an action does not end when it is canceled, as it did in models of the first two editions."""
     ended = (edge for edge in edges_of(plant) if edge.event.kind == sct.EventKind.cancel and edge.target.name == IDLE)
     if plant.kind == sct.PlantKind.action and any(ended):
-        found = f"the action '{plant.origin or plant.name}' ends where it is canceled, as in older models"
-        yield plant, f"{found}; make this model anew from its text: `robosc transform MODEL.rscd --to xmi`"
+        message = f"the action '{plant.origin or plant.name}' ends where it is canceled, as in older models"
+        yield plant, f"{message}; make this model anew from its text: `robosc transform MODEL.rscd --to xmi`"
 
 
 def _initial_value(variable: sct.DiscreteVariable, model: Model) -> Iterator[Fault]:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     #: Function that lets data come in and returns its fields, None if it has none.
     Act = Callable[[], "dict[str, Any] | None"]
 
-_Made = TypeVar("_Made", bound="DrivenController")
+_Controller = TypeVar("_Controller", bound="DrivenController")
 
 _DAY = 24 * 3600 * 1000
 #: Milliseconds after its time at which a timer has certainly expired.
@@ -113,7 +113,7 @@ class Drive:
         #: Reads and sample messages of each incoming event; the events of one topic share them.
         self.incoming: dict[sct.Event, IncomingKind] = all_incoming(graph, distribution)
 
-    def _begin(self, kind: type[_Made]) -> _Made:
+    def _begin(self, kind: type[_Controller]) -> _Controller:
         """Create the controller of a new run, without starting it."""
         self._pace = Pace(self._period)
         self._now = START * self._period

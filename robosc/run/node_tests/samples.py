@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 #: Number of trials without a new sample after which the search ends.
 _TRIALS = 500
-_KEPT = 4
+_SAMPLES_PER_CLASS = 4
 _SEED = 1
 #: Maximum number of classes.
 _CLASSES = 64
@@ -78,22 +78,24 @@ class IncomingKind:
 
     def defaults(self, values: Mapping[Path, Leaf]) -> dict[Path, Leaf]:
         """Return the other fields whose default is not zero, `false` or empty."""
-        found: dict[Path, Leaf] = {}
+        initial_values: dict[Path, Leaf] = {}
         for path, known in self.fields.items():
             if known.initial:
-                ways = {_along(path, given) for given in values} if any(map(str.isdigit, path)) else {path}
-                found |= {way: known.initial for way in ways if way is not None and way not in values}
-        return found
+                ways = {_along(path, other_path) for other_path in values} if any(map(str.isdigit, path)) else {path}
+                initial_values |= {way: known.initial for way in ways if way is not None and way not in values}
+        return initial_values
 
     @property
     def conversions(self) -> list[LoggedValue]:
         """The values that the log shows as literals."""
-        return [read for _, shown in self.events for read in shown if read.conversion is not None]
+        return [logged for _, shown in self.events for logged in shown if logged.conversion is not None]
 
     @property
     def direct(self) -> list[Path]:
         """The paths of the values that the log shows unchanged."""
-        return list(dict.fromkeys(read.path for _, shown in self.events for read in shown if read.conversion is None))
+        return list(
+            dict.fromkeys(logged.path for _, shown in self.events for logged in shown if logged.conversion is None)
+        )
 
 
 class Values:
@@ -173,11 +175,11 @@ def incoming(
             unreadable.add(event)
         for path, kind in data_read([*messages.reads(values), *later]):
             fields.setdefault(path, definition.field(path, kind))
-        found = [
+        logged = [
             LoggedValue(path, part.conversion if isinstance(part, messages.MessageRead) else None)
             for path, part in shown.items()
         ]
-        events.append((event, found))
+        events.append((event, logged))
     inner = {(), *(path[:length] for path in fields for length in range(len(path)))} - {
         path for path, field in fields.items() if not isinstance(field.type, rosgraph.ObjectType)
     }
@@ -189,15 +191,15 @@ def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dic
     """Return the messages to choose from for each incoming event; the events of one topic share them."""
     data = NodeData(graph, Engine(graph.model))
     data.reason = Failure.ABORTED
-    values, kept = Values(graph), list(messages.kept_reads(graph))
+    values, stored_reads = Values(graph), list(messages.kept_reads(graph))
     known: dict[sct.Event, IncomingKind] = {}
     for interface, part, receptions in messages.received_messages(graph):
         described = []
         for reception in receptions:
-            read = [assigned.value for assigned in reception.inputs] + data.values_read(reception.event)
-            later = [(path, inner) for owner, path, inner in kept if owner is reception]
+            values_read = [assigned.value for assigned in reception.inputs] + data.values_read(reception.event)
+            later = [(path, inner) for owner, path, inner in stored_reads if owner is reception]
             later += _read_by_error(reception, data)
-            described.append((event_name(reception.event), ReceivedData(read).parts, read, later))
+            described.append((event_name(reception.event), ReceivedData(values_read).parts, values_read, later))
         kind = incoming(distribution, interface, part, described)
         if any(happens_anyway(reception.event) for reception in receptions):
             kind.unreadable.clear()
@@ -225,35 +227,37 @@ def _find_samples(kind: IncomingKind, values: Values, data: NodeData, receptions
     in_vain = 0
     while in_vain < _TRIALS:
         tried = _tried(choice, paths, pools, seen)
-        made = kind.message(tried)
-        literals = tuple(_literal(read, made, data) for read in conversions)
-        kept = [kind.samples.setdefault(literals, [])]
-        events = _events(receptions, made, data)
+        message = kind.message(tried)
+        literals = tuple(_literal(conversion, message, data) for conversion in conversions)
+        sample_lists = [kind.samples.setdefault(literals, [])]
+        events = _events(receptions, message, data)
         if events is not None and ((literals, events) in classes or len(classes) < _CLASSES):
-            kept.append(classes.setdefault((literals, events), Class(literals, events)).samples)
+            sample_lists.append(classes.setdefault((literals, events), Class(literals, events)).samples)
         in_vain += 1
-        for samples in kept:
-            if len(samples) < _KEPT and tried not in samples:
+        for samples in sample_lists:
+            if len(samples) < _SAMPLES_PER_CLASS and tried not in samples:
                 samples.append(tried)
                 seen.append(tried)
                 in_vain = 0
-    kind.samples = {literals: sorted(found, key=len, reverse=True) for literals, found in kind.samples.items()}
+    kind.samples = {
+        literals: sorted(candidates, key=len, reverse=True) for literals, candidates in kind.samples.items()
+    }
     kind.classes = list(classes.values())
 
 
 def _events(
-    receptions: Sequence[rosgraph.Reception], made: Any, data: NodeData
+    receptions: Sequence[rosgraph.Reception], message: Any, data: NodeData
 ) -> tuple[tuple[str, tuple[tuple[str, Any], ...]], ...] | None:
     """Return the inputs of the supervisor from a message; None if some of them can't be read."""
     events = []
     try:
         for reception in receptions:
             for value in data.values_read(reception.event):
-                data.value(value, made)
+                data.value(value, message)
             if not happens_anyway(reception.event):
-                for given in reception.inputs:
-                    data.value(given.value, made)
-            inputs = ((given.input.name, data.input(given, made)) for given in reception.inputs)
+                for assignment in reception.inputs:
+                    data.value(assignment.value, message)
+            inputs = ((assignment.input.name, data.input(assignment, message)) for assignment in reception.inputs)
             events.append((event_name(reception.event), tuple(inputs)))
     except UnreadableError:
         return None
@@ -272,16 +276,16 @@ def _tried(
     place = choice.random()
     match choice.randrange(4):
         case 0:
-            made = {path: pools[path][int(place * len(pools[path]))] for path in paths}
+            leaves = {path: pools[path][int(place * len(pools[path]))] for path in paths}
         case 1:
-            made = {path: choice.choice(pools[path]) for path in paths}
+            leaves = {path: choice.choice(pools[path]) for path in paths}
         case _:
-            made = dict(choice.choice(seen))
+            leaves = dict(choice.choice(seen))
             for path in choice.sample(paths, min(len(paths), choice.randint(1, 3))):
-                made[path] = choice.choice(pools[path])
+                leaves[path] = choice.choice(pools[path])
     if choice.random() < 1 / 16:
-        made = shorten(made, choice)
-    return {path: made[path] for path in paths if path in made}
+        leaves = shorten(leaves, choice)
+    return {path: leaves[path] for path in paths if path in leaves}
 
 
 def shorten(values: Mapping[Path, Leaf], choice: random.Random) -> dict[Path, Leaf]:
@@ -289,11 +293,11 @@ def shorten(values: Mapping[Path, Leaf], choice: random.Random) -> dict[Path, Le
     return dict(islice(values.items(), choice.randrange(len(values) + 1)))
 
 
-def _literal(read: LoggedValue, argument: Any, data: NodeData) -> str:
-    assert read.conversion is not None
-    for step in read.path:
+def _literal(logged: LoggedValue, argument: Any, data: NodeData) -> str:
+    assert logged.conversion is not None
+    for step in logged.path:
         try:
             argument = argument[int(step)] if step.isdigit() else getattr(argument, step)
         except IndexError:
-            return read.conversion.default.name
-    return data.convert(read.conversion, argument).name
+            return logged.conversion.default.name
+    return data.convert(logged.conversion, argument).name

@@ -205,7 +205,7 @@ class Tour(Drive):
             acts |= self._classes(topic.topic, topic.receptions, partial(self._publish, topic))
         for service in self._graph.serviceClients:
             acts |= self._classes(service.identifier, [service.response], partial(self._answer, service))
-            reasons = tuple((given.input.name, Failure.TIMEOUT.value) for given in service.error.inputs)
+            reasons = tuple((assignment.input.name, Failure.TIMEOUT.value) for assignment in service.error.inputs)
             failure = Stimulus(f"{service.identifier} fails", ((event_name(service.error.event), reasons),), fails=True)
             acts[failure] = partial(self._fail, service)
         for action in self._graph.actionClients:
@@ -229,21 +229,21 @@ class Tour(Drive):
     ) -> dict[Stimulus, Act]:
         kind = self.incoming[receptions[0].event]
         return {
-            Stimulus(f"{name} {number}", found.events, fails): partial(send, kind, found)
-            for number, found in enumerate(kind.classes)
+            Stimulus(f"{name} {number}", message_class.events, fails): partial(send, kind, message_class)
+            for number, message_class in enumerate(kind.classes)
         }
 
-    def _publish(self, topic: rosgraph.Subscription, kind: IncomingKind, found: Class) -> dict[str, Any]:
+    def _publish(self, topic: rosgraph.Subscription, kind: IncomingKind, message_class: Class) -> dict[str, Any]:
         """Send a message; the first one on a topic with several events lacks data that one of them needs."""
         unreadable = [self._unreadable(reception) for reception in topic.receptions[1:]]
         short = next((message for message in unreadable if message is not None), None)
-        data, fields = self._message(kind, found) if short is None else short
+        data, fields = self._message(kind, message_class) if short is None else short
         self._controller.receive(topic, data)
         return fields
 
-    def _answer(self, client: rosgraph.ServiceClient, kind: IncomingKind, found: Class) -> dict[str, Any]:
+    def _answer(self, client: rosgraph.ServiceClient, kind: IncomingKind, message_class: Class) -> dict[str, Any]:
         _, handlers = self._robot.calls.pop(client)
-        data, fields = self._message(kind, found)
+        data, fields = self._message(kind, message_class)
         handlers.answered(data)
         return fields
 
@@ -256,34 +256,35 @@ class Tour(Drive):
         handlers.answered(unreadable[0])
         return unreadable[1]
 
-    def _feed_back(self, client: rosgraph.ActionClient, kind: IncomingKind, found: Class) -> dict[str, Any]:
-        data, fields = self._message(kind, found)
+    def _feed_back(self, client: rosgraph.ActionClient, kind: IncomingKind, message_class: Class) -> dict[str, Any]:
+        data, fields = self._message(kind, message_class)
         self._robot.goals[client].handlers.feedback(data)
         return fields
 
     def _end(
-        self, client: rosgraph.ActionClient, outcome: GoalOutcome, kind: IncomingKind, found: Class
+        self, client: rosgraph.ActionClient, outcome: GoalOutcome, kind: IncomingKind, message_class: Class
     ) -> dict[str, Any] | None:
         """End a goal with a result."""
-        data, fields = self._message(kind, found)
+        data, fields = self._message(kind, message_class)
         self._robot.goals.pop(client).handlers.ended(outcome, data, "")
         return fields if fields or outcome is GoalOutcome.SUCCEEDED else None
 
-    def _abort(self, client: rosgraph.ActionClient, kind: IncomingKind, found: Class) -> dict[str, Any] | None:
+    def _abort(self, client: rosgraph.ActionClient, kind: IncomingKind, message_class: Class) -> dict[str, Any] | None:
         """End a goal with a result that can't be read, if possible; else abort it."""
         unreadable = self._unreadable(client.response)
         if unreadable is None:
-            return self._end(client, GoalOutcome.ABORTED, kind, found)
+            return self._end(client, GoalOutcome.ABORTED, kind, message_class)
         self._robot.goals.pop(client).handlers.ended(GoalOutcome.SUCCEEDED, unreadable[0], "")
         return unreadable[1]
 
-    def _message(self, kind: IncomingKind, found: Class) -> tuple[Any, dict[str, Any]]:
+    def _message(self, kind: IncomingKind, message_class: Class) -> tuple[Any, dict[str, Any]]:
         """Return the least used sample of a class, as data and as nested fields."""
         number = min(
-            range(len(found.samples)), key=lambda sample: (self._used[id(found), sample], self._choice.random())
+            range(len(message_class.samples)),
+            key=lambda sample: (self._used[id(message_class), sample], self._choice.random()),
         )
-        self._used[id(found), number] += 1
-        return kind.message(found.samples[number]), nest(found.samples[number])
+        self._used[id(message_class), number] += 1
+        return kind.message(message_class.samples[number]), nest(message_class.samples[number])
 
     def _unreadable(self, reception: rosgraph.Reception) -> tuple[Any, dict[str, Any]] | None:
         """Return data without the elements that the present state needs; None if it needs none, or if used before."""

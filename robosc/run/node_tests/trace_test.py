@@ -152,13 +152,13 @@ def describe_incoming(kind: IncomingKind) -> dict[str, Any]:
             {
                 "event": event,
                 **({"unreadable": True} if event in kind.unreadable else {}),
-                "reads": [{"path": list(read.path), "converted": read.conversion is not None} for read in shown],
+                "reads": [{"path": list(logged.path), "converted": logged.conversion is not None} for logged in shown],
             }
             for event, shown in kind.events
         ],
         "samples": [
-            {"literals": list(literals), "message": nest(found[0])}
-            for literals, found in kind.samples.items()
+            {"literals": list(literals), "message": nest(samples[0])}
+            for literals, samples in kind.samples.items()
             if literals
         ],
     }

@@ -58,11 +58,11 @@ def report(  # noqa: PLR0913 - the inputs of a report
     different = {text: path for path, text in reversed(traces.items())}
     shown = play(models, {path: text for path, text in traces.items() if different[text] == path})
     model = models.sct
-    stated = [*model.requirements, *model.invariants, *model.properties]
+    statements = [*model.requirements, *model.invariants, *model.properties]
     return {
         "notice": NOTICE,
         "robot": model.name,
-        "requirements": _requirements(model, stated, verdicts, shown, printing.Sources(outputs)),
+        "requirements": _requirements(model, statements, verdicts, shown, printing.Sources(outputs)),
         "verdicts": [
             {
                 "property": verdict.property,
@@ -99,21 +99,21 @@ def _generated(
         for target in (TARGETS[name] for name in _TARGETS):
             if target.needs_graph and models.rosgraph is None:
                 continue
-            found = target.findings(models, configuration)
-            if has_errors(found):
-                refused.append({"target": target.name, "reason": found[0].message})
+            findings = target.findings(models, configuration)
+            if has_errors(findings):
+                refused.append({"target": target.name, "reason": findings[0].message})
                 continue
             tests = trace_test_of(target, models, configuration, interface_paths)
             missed |= dict.fromkeys(tests.missed if tests else ())
-            made = target.files(models, configuration, tests=tests)
+            texts = target.files(models, configuration, tests=tests)
             folder = target.folder(models, configuration)
-            files |= {f"{folder}/{path}" if folder else path: text for path, text in made.items()}
+            files |= {f"{folder}/{path}" if folder else path: text for path, text in texts.items()}
     return files, refused, list(missed)
 
 
 def _requirements(
     model: sct.SupervisoryControlModel,
-    stated: Sequence[sct.StatedRequirement],
+    statements: Sequence[sct.StatedRequirement],
     verdicts: Sequence[Verdict],
     shown: TraceCoverage,
     sources: printing.Sources,
@@ -124,10 +124,10 @@ def _requirements(
     """
     guards = {guard.event: guard for guard in model.supervisor.guards} if model.supervisor else {}
     grouped: dict[str, list[sct.StatedRequirement]] = {}
-    for requirement in stated:
+    for requirement in statements:
         grouped.setdefault(requirement_identifier(requirement), []).append(requirement)
     by_property = {verdict.property: verdict.outcome.value for verdict in verdicts}
-    found = []
+    entries = []
     for name, parts in grouped.items():
         file, span = place(parts[0])
         generated: dict[str, set[int]] = {}
@@ -135,7 +135,7 @@ def _requirements(
             for path, lines in sources.places(part).items():
                 generated.setdefault(path, set()).update(lines)
         about = [verdict for verdict in verdicts if verdict.requirement == name]
-        found.append(
+        entries.append(
             {
                 "name": name,
                 "kind": _kind(parts[0]),
@@ -151,11 +151,11 @@ def _requirements(
                 "generated": [{"path": path, "lines": sorted(generated[path])} for path in sorted(generated)],
             }
         )
-    return found
+    return entries
 
 
-def _kind(stated: sct.StatedRequirement) -> str:
-    match stated:
+def _kind(statement: sct.StatedRequirement) -> str:
+    match statement:
         case sct.Requirement():
             return "requirement"
         case sct.StateInvariant():

@@ -41,10 +41,10 @@ class TraceCoverage:
         """Return the coverage of the robot."""
         behaviours = [plant for plant in model.plants if plant.kind == sct.PlantKind.behaviour]
         written = [edge for plant in behaviours for edge in edges_of(plant) if edge.source is not None]
-        asked = [event for event in executed.events if event.role in _DECIDED]
+        decided = [event for event in executed.events if event.role in _DECIDED]
         guards = [
             {"event": event.name, "true": self.enabled[event.name], "false": self.disabled[event.name]}
-            for event in asked
+            for event in decided
         ]
         return {
             "events": self.events,

@@ -46,10 +46,10 @@ class ExtendedText:
     def expressions(self, model: sct.SupervisoryControlModel) -> list[ex.Expression]:
         """Remove the properties of the conditions from the model made of the text; return their expressions."""
         named = {declared.name: declared for declared in model.properties}
-        found = [named[_name(number)] for number in range(len(self.conditions))]
-        for declared in found:
+        properties = [named[_name(number)] for number in range(len(self.conditions))]
+        for declared in properties:
             model.properties.remove(declared)
-        return [declared.condition for declared in found]
+        return [declared.condition for declared in properties]
 
 
 def add_conditions(text: str, end: int, conditions: Sequence[Holds]) -> ExtendedText:

@@ -262,13 +262,13 @@ class Player(Drive):
         fields: dict[str, Any] = {}
         for event in (*others, source):
             kind = self.incoming[event]
-            reads = [read.path for _, shown in kind.events for read in shown]
+            reads = [logged.path for _, shown in kind.events for logged in shown]
             data = None
-            is_message = line.is_message or _is_raw([read for _, shown in kind.events for read in shown], line.data)
+            is_message = line.is_message or _is_raw([logged for _, shown in kind.events for logged in shown], line.data)
             if line.data is not None and not is_message and reads:
                 data = {"value": _by_index(line.data, reads)}
-            given = with_nan(dict(line.data)) if is_message else None
-            played = TraceLine(line.span.line, 0.0, "in", event_name(event), data, given)
+            whole = with_nan(dict(line.data)) if is_message else None
+            played = TraceLine(line.span.line, 0.0, "in", event_name(event), data, whole)
             fields = merged(fields, Reader(describe_incoming(kind)).message([played]))
         values = leaf_values(fields)
         defaults = kind.defaults(values)
@@ -430,41 +430,41 @@ class Player(Drive):
 
     def _verdict(self, line: Permission, event: sct.Event) -> Diagnostic | None:
         engine = self._controller.engine
-        by, told = engine.blocked_by(event_name(event)), words(event)
+        by, phrase = engine.blocked_by(event_name(event)), words(event)
         failing = engine.failing(event_name(event))
         if not line.forbidden:
             if by is None:
                 return None
             why = f"{quote_requirements(failing)} forbids it" if failing else _WHY[by]
-            return line.fault(f"the {told} is not allowed: {why}", self._state())
+            return line.fault(f"the {phrase} is not allowed: {why}", self._state())
         if by in (None, Blocked.PLANT):
             why = "it is allowed" if by is None else _WHY[Blocked.PLANT]
-            return line.fault(f"the {told} is not forbidden: {why}", self._state())
+            return line.fault(f"the {phrase} is not forbidden: {why}", self._state())
         if line.by is None or any(
             line.by in (requirement.name, requirement.text) or line.by in (requirement.text or "")
             for requirement in failing
         ):
             return None
         others = quote_requirements(failing) if failing else "synthesis"
-        return line.fault(f"the {told} is not forbidden by `{line.by}`, but by {others}", self._state())
+        return line.fault(f"the {phrase} is not forbidden by `{line.by}`, but by {others}", self._state())
 
     def _sent(self, line: SentCommand, event: sct.Event) -> Diagnostic | None:
         lines = enumerate(map(json.loads, self._lines.lines[self._since :]), self._since)
-        found = [(number, entry) for number, entry in lines if entry["event"] == event_name(event)]
-        told = words(event)
+        sent_lines = [(number, entry) for number, entry in lines if entry["event"] == event_name(event)]
+        phrase = words(event)
         if not line.expected:
-            return line.fault(f"the {told} was sent") if found else None
-        if not found:
-            return line.fault(f"the {told} was not sent since the last step", self._state())
+            return line.fault(f"the {phrase} was sent") if sent_lines else None
+        if not sent_lines:
+            return line.fault(f"the {phrase} was not sent since the last step", self._state())
         # The log does not show objects that are forwarded unchanged.
-        sent = [_with_handed_on(entry, self._controller.messages.get(number)) for number, entry in found]
+        sent = [_with_handed_on(entry, self._controller.messages.get(number)) for number, entry in sent_lines]
         if line.data is None or any(_agrees(line.data, data) for data in sent):
             return None
         unknown = _first_unknown(line.data, sent[-1], self._handed_on(event))
         if unknown:
-            message = f"`{unknown}` of the {told} can't be compared: it is handed on as it came"
+            message = f"`{unknown}` of the {phrase} can't be compared: it is handed on as it came"
             return line.fault(message, "leave it out: times and fields of unknown definitions are not compared")
-        return line.fault(f"the {told} was sent with other data", f"sent was {json_text(sent[-1])}")
+        return line.fault(f"the {phrase} was sent with other data", f"sent was {json_text(sent[-1])}")
 
     def _handed_on(self, event: sct.Event) -> list[Sequence[str]]:
         """Return the paths in a command at which data is forwarded unchanged."""
@@ -483,13 +483,13 @@ class Player(Drive):
     def _state(self) -> str:
         engine = self._controller.engine
         plants = [plant for plant in self._graph.model.plants if plant.kind == sct.PlantKind.behaviour]
-        told = [f"{plant.origin}.{plant.locations[engine.location(plant)].name}" for plant in plants]
-        told += [
+        parts = [f"{plant.origin}.{plant.locations[engine.location(plant)].name}" for plant in plants]
+        parts += [
             f"{plant.origin}.{variable.name} = {engine.value(variable)}"
             for plant in plants
             for variable in plant.variables
         ]
-        return f"the robot is in {', '.join(told)}" if told else ""
+        return f"the robot is in {', '.join(parts)}" if parts else ""
 
 
 _WHY = {
@@ -505,18 +505,18 @@ def _is_raw(reads: Sequence[LoggedValue], data: Any) -> bool:
     The event log has literals for enums, and lists for arrays that the model reads as a whole. Raises NamingError for
     data with both, and for a lone value in the place of a literal.
     """
-    values = [(read, _value_at(data, read.path)) for read in reads]
+    values = [(message_read, _value_at(data, message_read.path)) for message_read in reads]
     raw = [
         value
-        for read, value in values
+        for message_read, value in values
         if value is not None
         and (
             not isinstance(value, str)
-            if read.conversion is not None
+            if message_read.conversion is not None
             else isinstance(value, dict) and bool(value) and all(name.isdigit() for name in value)
         )
     ]
-    has_literals = any(read.conversion is not None and isinstance(value, str) for read, value in values)
+    has_literals = any(message_read.conversion is not None and isinstance(value, str) for message_read, value in values)
     if raw and (has_literals or not isinstance(data, dict)):
         raise NamingError(
             f"{json.dumps(raw[0])} is data of ROS in the place of a literal", "write `with message {…}` with all fields"
@@ -536,21 +536,21 @@ def _value_at(data: Any, path: Sequence[str]) -> Any:
 
 def _by_index(value: Any, reads: Sequence[Sequence[str]]) -> Any:
     """Return data in which objects from index to element replace lists whose elements are read one by one."""
-    if isinstance(value, list) and any(read and read[0].isdigit() for read in reads):
+    if isinstance(value, list) and any(path and path[0].isdigit() for path in reads):
         value = {str(index): element for index, element in enumerate(value)}
     if not isinstance(value, dict):
         return value
-    below = {name: [read[1:] for read in reads if read and read[0] == name] for name in value}
+    below = {name: [path[1:] for path in reads if path and path[0] == name] for name in value}
     return {name: _by_index(inner, below[name]) for name, inner in value.items()}
 
 
-def _agrees(expected: Any, found: Any) -> bool:
+def _agrees(expected: Any, actual: Any) -> bool:
     """Return whether data has the expected values; fields that are not named may have any value."""
-    if isinstance(expected, dict) and isinstance(found, dict):
-        return all(name in found and _agrees(value, found[name]) for name, value in expected.items())
-    if isinstance(expected, list) and isinstance(found, list):
-        return len(expected) == len(found) and all(map(_agrees, expected, found))
-    return same(expected, found)
+    if isinstance(expected, dict) and isinstance(actual, dict):
+        return all(name in actual and _agrees(value, actual[name]) for name, value in expected.items())
+    if isinstance(expected, list) and isinstance(actual, list):
+        return len(expected) == len(actual) and all(map(_agrees, expected, actual))
+    return same(expected, actual)
 
 
 def _with_handed_on(entry: Mapping[str, Any], message: Any) -> Any:
@@ -566,13 +566,13 @@ def _plain(value: Any) -> Any:
     return [_plain(inner) for inner in value] if isinstance(value, list) else value
 
 
-def _first_unknown(expected: Any, found: Any, handed_on: Sequence[Sequence[str]], path: tuple[str, ...] = ()) -> str:
+def _first_unknown(expected: Any, actual: Any, handed_on: Sequence[Sequence[str]], path: tuple[str, ...] = ()) -> str:
     """Return the first expected field that is missing in forwarded data, as `pose.position`; empty if there is none."""
-    if isinstance(expected, dict) and isinstance(found, dict):
+    if isinstance(expected, dict) and isinstance(actual, dict):
         for name, value in expected.items():
             inside = (*path, name)
-            if name in found:
-                unknown = _first_unknown(value, found[name], handed_on, inside)
+            if name in actual:
+                unknown = _first_unknown(value, actual[name], handed_on, inside)
             else:
                 unknown = ".".join(inside) if any(inside[: len(way)] == way for way in handed_on) else ""
             if unknown:

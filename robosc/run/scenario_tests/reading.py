@@ -170,8 +170,8 @@ class _Reader:
             steps += self._step(text, line)
 
     def _wait(self, text: str, line: Line) -> Iterator[Line]:
-        given = _WAIT.fullmatch(text)
-        seconds = float(given[1]) * _SECONDS[given[2]] if given else -1.0
+        match = _WAIT.fullmatch(text)
+        seconds = float(match[1]) * _SECONDS[match[2]] if match else -1.0
         if 0 <= seconds <= _LONGEST:
             yield Wait(line.file, line.span, seconds)
         else:
@@ -199,8 +199,8 @@ class _Reader:
             yield IncomingEvent(line.file, line.span, step.event, step.data, step.is_message, step.reason)
 
     def _expected(self, text: str, line: Line) -> Iterator[Line]:
-        given = _EXPECTED.fullmatch(text)
-        if given is None:
+        match = _EXPECTED.fullmatch(text)
+        if match is None:
             if not text:
                 self.findings.append(
                     line.fault("`expect` needs what is expected", "write `expect move allowed`, or a condition")
@@ -214,20 +214,20 @@ class _Reader:
                 return
             self.conditions.append(Holds(line.file, span, text, len(self.conditions)))
             yield self.conditions[-1]
-        elif given["sent"]:
-            expected = given["sent"] == "sent"
-            data = self._data(text, given, line)
+        elif match["sent"]:
+            expected = match["sent"] == "sent"
+            data = self._data(text, match, line)
             if not expected and data is not None:
                 self.findings.append(line.fault("what is not sent has no data", "leave out `with …`"))
-            yield SentCommand(line.file, line.span, event_in_words(given), expected, data)
+            yield SentCommand(line.file, line.span, event_in_words(match), expected, data)
         else:
-            by = given["by"].strip().strip('"') if given["by"] else None
-            yield Permission(line.file, line.span, event_in_words(given), bool(given["forbidden"]), by)
+            by = match["by"].strip().strip('"') if match["by"] else None
+            yield Permission(line.file, line.span, event_in_words(match), bool(match["forbidden"]), by)
 
-    def _data(self, text: str, given: re.Match[str], line: Line) -> Any:
+    def _data(self, text: str, match: re.Match[str], line: Line) -> Any:
         """Return the data at the end of an expectation; None if there is none, or if it can't be parsed."""
         try:
-            return data_in_words(text, given.start("data")) if given["data"] else None
+            return data_in_words(text, match.start("data")) if match["data"] else None
         except StepError as error:
             self._unread(error, text, line)
             return None

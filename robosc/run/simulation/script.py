@@ -68,11 +68,11 @@ def read_script(
     for number, line in enumerate(json_lines(text), 1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
-        read = _Line(file, number, line, names)
-        found = read.step()
-        if found is not None:
-            steps.append(found)
-        findings += read.findings
+        parsed_line = _Line(file, number, line, names)
+        step = parsed_line.step()
+        if step is not None:
+            steps.append(step)
+        findings += parsed_line.findings
     return steps, findings
 
 
@@ -175,11 +175,11 @@ class _Line:
 
     def _wait(self, seconds: str) -> ScriptStep | None:
         try:
-            given = float(seconds)
+            duration = float(seconds)
         except ValueError:
-            given = -1.0
-        if 0.0 <= given <= _LONGEST_WAIT:
-            return ScriptStep(self._number, WAIT, {"seconds": given})
+            duration = -1.0
+        if 0.0 <= duration <= _LONGEST_WAIT:
+            return ScriptStep(self._number, WAIT, {"seconds": duration})
         self._fault(self._start, f"`wait` needs a number of seconds from 0 to {_LONGEST_WAIT}", "write `wait 3.0`", 4)
         return None
 
@@ -199,14 +199,14 @@ class _Line:
 
     def _json(self, column: int) -> dict[str, Any] | None:
         try:
-            read = json_value(self._line[column:])
+            parsed = json_value(self._line[column:])
         except JsonError as error:
             self._fault(column + error.position, str(error), error.hint)
             return None
-        if not isinstance(read, dict):
+        if not isinstance(parsed, dict):
             self._fault(column, "data is an object", f'write {{"value": {self._line[column:].strip()}}}')
             return None
-        return read
+        return parsed
 
     def _fault(self, column: int, message: str, hint: str | None = None, length: int = 1) -> None:
         span = Span(self._number, column + 1, self._number, column + 1 + length)

@@ -58,8 +58,8 @@ class RequestResult:
     def answer(self) -> dict[str, Any]:
         """Return the object that `simulate --script` prints."""
         by = None if self.by is None else str(self.by)
-        given = dict(self.data) if self.event == REFUSE else {}
-        return {"event": self.event, **given, "accepted": self.accepted, "by": by, "state": dict(self.state)}
+        details = dict(self.data) if self.event == REFUSE else {}
+        return {"event": self.event, **details, "accepted": self.accepted, "by": by, "state": dict(self.state)}
 
 
 def refusal(engine: Engine, action: str) -> Blocked | None:
@@ -104,8 +104,8 @@ class Simulation:
         A refusal to cancel a goal changes nothing, too. Raises DataError, and KeyError for an unknown event.
         """
         if event == REFUSE:
-            given = data or {}
-            return RequestResult(event, given, refusal(self.engine, given["of"]), whole_state(self.engine))
+            arguments = data or {}
+            return RequestResult(event, arguments, refusal(self.engine, arguments["of"]), whole_state(self.engine))
         inputs = self.data.inputs(event, data or {})
         before = self.engine.state
         by = self.engine.blocked_by(event) or self.data.unreadable(event, data or {})
@@ -130,7 +130,7 @@ class Simulation:
         if not enabled:
             return None
         event = random.choice(enabled)
-        values = {given.name: _any(given.type, random) for given in self._inputs[event]}
+        values = {event_input.name: _any(event_input.type, random) for event_input in self._inputs[event]}
         return event, self.data.shape(event, self.data.fit_reason(event, values))
 
     def random_step(self, random: Random) -> RequestResult | None:
@@ -215,10 +215,10 @@ class LoopSimulation:
                 self._loop.perform(by.error, self.data.inputs(by.error, self.data.of_unreadable(data)))
             if not self._in_batch:
                 self._loop.end()
-        given = dict(data) if event in (WAIT, REFUSE) else {}
+        details = dict(data) if event in (WAIT, REFUSE) else {}
         return {
             "event": event,
-            **given,
+            **details,
             "accepted": by is None,
             "by": None if by is None else str(by),
             "happened": list(self._happened),

@@ -75,21 +75,21 @@ def recorded_moments(simulation: Simulation, path: str, node: str | None) -> Ite
         for reported in followed:
             yield round(report["time"] - began, 3), reported
     if began is None:
-        asked = f"`{node}/state`" if node else "a topic `~/state`"
-        raise PlayError(f"{path} has no reports of this robot on {asked}{f': {fault}' if fault else ''}")
+        source = f"`{node}/state`" if node else "a topic `~/state`"
+        raise PlayError(f"{path} has no reports of this robot on {source}{f': {fault}' if fault else ''}")
 
 
-def counterexample_steps(simulation: Simulation, wanted: str | None) -> tuple[list[ScriptStep], str]:
+def counterexample_steps(simulation: Simulation, name_of_property: str | None) -> tuple[list[ScriptStep], str]:
     """Return a counterexample of a property and the explanation of `verify`; None means the first refuted one.
 
     Irrelevant data has the defaults of ROS. Raises PlayError if there is no counterexample.
     """
     verdicts = verify_system(simulation.engine.model)
     properties = [verdict.property for verdict in verdicts]
-    named = [name for name in properties if wanted is None or _is_called(name, wanted)]
-    if wanted is not None and not named:
-        close = get_close_matches(wanted, properties, n=1)
-        raise PlayError(f"there is no property `{wanted}`{f'; did you mean `{close[0]}`?' if close else ''}")
+    named = [name for name in properties if name_of_property is None or _is_called(name, name_of_property)]
+    if name_of_property is not None and not named:
+        close = get_close_matches(name_of_property, properties, n=1)
+        raise PlayError(f"there is no property `{name_of_property}`{f'; did you mean `{close[0]}`?' if close else ''}")
     refuted = next(
         (verdict for verdict in verdicts if verdict.outcome is Outcome.REFUTED and verdict.property in named), None
     )
@@ -98,9 +98,9 @@ def counterexample_steps(simulation: Simulation, wanted: str | None) -> tuple[li
     return _steps(simulation, [*refuted.trace, *refuted.onwards]), f"{refuted.property}: {refuted.explanation}\n"
 
 
-def _is_called(verified: str, wanted: str) -> bool:
+def _is_called(verified: str, name: str) -> bool:
     """Return whether a property matches: by its name in `verify`, or by its name in the model."""
-    return verified == wanted or re.match(rf"property {re.escape(wanted)}(?!\w)", verified) is not None
+    return verified == name or re.match(rf"property {re.escape(name)}(?!\w)", verified) is not None
 
 
 def _steps(simulation: Simulation, trace: Sequence[TraceStep]) -> list[ScriptStep]:

@@ -94,18 +94,18 @@ class StoredVariables:
 
     def _value(self, expression: ex.Expression, values: Values, data: Mapping[str, Any]) -> Any:
         """Return the value of an expression; None if something that it reads is unknown."""
-        given = whole(data["value"], expression) if "value" in data else _NOT_GIVEN
+        whole_data = whole(data["value"], expression) if "value" in data else _NOT_GIVEN
         try:
-            return evaluate(expression, partial(self._read, values, given))
+            return evaluate(expression, partial(self._read, values, whole_data))
         except (UnknownError, UnreadableError):
             return None
 
-    def _read(self, values: Values, data: Any, reference: ex.Expression, *given: Any) -> Any:
+    def _read(self, values: Values, data: Any, reference: ex.Expression, *indices: Any) -> Any:
         match reference:
             case rosgraph.NodeVariableReference():
                 return self._variable(reference.variable, values)
             case rosgraph.ConversionCall():
-                return self._literal(reference.conversion, read(data, reference.argument, *given), values)
+                return self._literal(reference.conversion, read(data, reference.argument, *indices), values)
             case rosgraph.ErrorReason():
                 return self._node.value(reference)
             case ex.EnumerationLiteralReference():
@@ -114,15 +114,15 @@ class StoredVariables:
                 return self._node.is_in(reference.location)
             case sct.VariableReference():
                 return self._node.value(reference)
-        return self._reached(data, reference, *given)
+        return self._reached(data, reference, *indices)
 
-    def _reached(self, data: Any, reference: ex.Expression, *given: Any) -> Any:
+    def _reached(self, data: Any, reference: ex.Expression, *indices: Any) -> Any:
         """Return the value that a reference reads of data.
 
         The log of an end that happens anyway leaves out what could not be read: an element there is `UnreadableError`.
         """
         try:
-            return read(data, reference, *given)
+            return read(data, reference, *indices)
         except UnknownError:
             if self._happens_anyway and reads_elements(reference):
                 raise UnreadableError("the array has no such element") from None
@@ -155,5 +155,5 @@ class StoredVariables:
 def _finite(value: Any) -> bool | int | float | str | None:
     if value is None or (isinstance(value, float) and not math.isfinite(value)):
         return None
-    told: bool | int | float | str | None = format_value(value)  # type: ignore[assignment]
-    return told
+    external: bool | int | float | str | None = format_value(value)  # type: ignore[assignment]
+    return external

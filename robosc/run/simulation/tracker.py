@@ -96,14 +96,14 @@ class Tracker:
 
     def _ends(self, report: Mapping[str, Any]) -> dict[sct.Plant | sct.DiscreteVariable, Value]:
         """Return the states and variables of the components in a report."""
-        robot, told = report.get("robot"), report.get("components")
+        robot, components = report.get("robot"), report.get("components")
         if robot != self.engine.model.name:
             raise ReportError(f"the report is one of the robot `{robot}`, the model is `{self.engine.model.name}`")
         ends: dict[sct.Plant | sct.DiscreteVariable, Value] = {}
         for name, plant in self._components.items():
             try:
-                ends[plant] = told[name]["state"]  # type: ignore[index]
-                ends |= {variable: told[name]["variables"][variable.name] for variable in plant.variables}  # type: ignore[index]
+                ends[plant] = components[name]["state"]  # type: ignore[index]
+                ends |= {variable: components[name]["variables"][variable.name] for variable in plant.variables}  # type: ignore[index]
             except (KeyError, TypeError):
                 raise ReportError(f"the report does not tell the state of `{name}`") from None
         try:
@@ -145,15 +145,15 @@ class Tracker:
         for number, event in enumerate(events):
             for plant in self._moves.get(event, ()):
                 taking_part.setdefault(plant, []).append(number)
-        found: list[dict[sct.Plant, tuple[sct.Edge, int]]] = [{} for _ in events]
+        paths: list[dict[sct.Plant, tuple[sct.Edge, int]]] = [{} for _ in events]
         for plant, numbers in taking_part.items():
             moves = [self._moves[events[number]][plant] for number in numbers]
             end = next(
                 (place for place, location in enumerate(plant.locations) if location.name == ends.get(plant)), None
             )
             for number, step in zip(numbers, _path(moves, self.engine.location(plant), end), strict=True):
-                found[number][plant] = step
-        return found
+                paths[number][plant] = step
+        return paths
 
 
 def _move(edge: sct.Edge) -> _Move:

@@ -76,8 +76,8 @@ class _Kind(NamedTuple):
         """Return the type of a field or an element; None if it is unknown."""
         if is_element:
             return self._replace(type=self.type.at(int(step))) if isinstance(self.type, Sequence) else None
-        found = (self.fields or {}).get(step)
-        return None if found is None else self._replace(type=found, section=Section.MESSAGE)
+        field_type = (self.fields or {}).get(step)
+        return None if field_type is None else self._replace(type=field_type, section=Section.MESSAGE)
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ class _Part:
     def is_literal(self) -> bool:
         """Whether it is the name of a literal of an enumeration that is made of the part."""
         return isinstance(self.value, str) and any(
-            self.value == literal.name for made in self.conversions for literal in made.enumeration.literals
+            self.value == literal.name for conversion in self.conversions for literal in conversion.enumeration.literals
         )
 
     @property
@@ -124,8 +124,8 @@ class _Part:
             step = str(key)
             kinds = (kind.inside(step, is_element=is_array) for kind in self.kinds)
             reads = (
-                (path[1:], read)
-                for path, read in self.reads
+                (path[1:], message_read)
+                for path, message_read in self.reads
                 if path and (path[0] == step or (is_array and _is_index(path[0])))
             )
             yield replace(
@@ -152,11 +152,11 @@ def _open_part(reads: tuple[tuple[Path, MessageRead], ...], literals: bool) -> _
     conversions: list[rosgraph.Conversion] = []
     pending = list(reads)
     while pending:
-        path, read = pending.pop()
-        opened.append((path, read))
-        if not path and read.conversion is not None and read.conversion not in conversions:
-            conversions.append(read.conversion)
-            pending += all_reads([rule.condition for rule in read.conversion.rules])
+        path, message_read = pending.pop()
+        opened.append((path, message_read))
+        if not path and message_read.conversion is not None and message_read.conversion not in conversions:
+            conversions.append(message_read.conversion)
+            pending += all_reads([rule.condition for rule in message_read.conversion.rules])
     return _Part(None, (), tuple(opened), literals=literals, conversions=tuple(conversions) if literals else ())
 
 
@@ -171,12 +171,14 @@ class WireFit:
         values: dict[str, list[ex.Expression]] = {}
         for reception in receptions(graph):
             name = event_name(reception.event)
-            values[name] = [given.value for given in reception.inputs]
+            values[name] = [assignment.value for assignment in reception.inputs]
         for reaction in graph.reactions:
-            values.setdefault(event_name(reaction.event), []).extend(given.value for given in reaction.assignments)
-        kept = [(event_name(owner.event), path, read) for owner, path, read in kept_reads(graph)]
+            values.setdefault(event_name(reaction.event), []).extend(
+                assignment.value for assignment in reaction.assignments
+            )
+        stored = [(event_name(owner.event), path, message_read) for owner, path, message_read in kept_reads(graph)]
         for name, several in values.items():
-            later = [(path, read) for owner, path, read in kept if owner == name]
+            later = [(path, message_read) for owner, path, message_read in stored if owner == name]
             self._reads[name] = (*all_reads(several), *later)
         clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = [*graph.serviceClients, *graph.actionClients]
         for client in clients:  # an error may be an answer that can't be read
@@ -191,8 +193,8 @@ class WireFit:
 
     def wire_type(self, event: str, path: tuple[str, ...]) -> WireType | None:
         """Return the type of a field in ROS 2 or else ROS 1; None if it is unknown."""
-        found = (known.type_at(*self._sections[event], path) for known in self.types.distributions)
-        return next((reached[0] for reached in found if reached is not None), None)
+        reached_types = (known.type_at(*self._sections[event], path) for known in self.types.distributions)
+        return next((reached[0] for reached in reached_types if reached is not None), None)
 
     def fault(self, event: str, value: Any, *, is_message: bool = False) -> Fault | None:
         """Return a fault of the first part of an event's data that its ROS type or the model rejects, else None.
@@ -211,7 +213,9 @@ class WireFit:
                 continue
             expected = _expected(part)
             if expected is not None:
-                others = [literal.name for made in part.conversions for literal in made.enumeration.literals]
+                others = [
+                    literal.name for conversion in part.conversions for literal in conversion.enumeration.literals
+                ]
                 expected = ", ".join([*others, f"or {expected}"]) if others else expected
                 return Fault(f"{part.place} is {in_short(part.value)}, expected {expected}")
             if isinstance(part.value, list | dict) and not _has_fitting_numbers(part):
@@ -227,7 +231,7 @@ class WireFit:
         while pending:
             part = pending.pop()
             if part.is_literal:
-                if not any(part.value == literal(made, part.path) for made in part.conversions):
+                if not any(part.value == literal(conversion, part.path) for conversion in part.conversions):
                     return f"{part.place} is {in_short(part.value)}"
             elif isinstance(part.value, list | dict):
                 parts = list(part.parts)
@@ -272,20 +276,20 @@ def _expected(part: _Part) -> str | None:
     if kinds:
         expected = [_misfit(kind.type, part.value) for kind in kinds]
         return None if None in expected else expected[0]
-    for path, read in part.reads:
+    for path, message_read in part.reads:
         if path:
-            found = _misfit(Sequence(NestedType("", "")) if _is_index(path[0]) else NestedType("", ""), part.value)
-        elif isinstance(read.type, ex.IntegerType):
+            misfit = _misfit(Sequence(NestedType("", "")) if _is_index(path[0]) else NestedType("", ""), part.value)
+        elif isinstance(message_read.type, ex.IntegerType):
             several = [_misfit(Basic(name), part.value) for name in _INTEGERS]
-            found = None if None in several else several[0]
-        elif isinstance(read.type, ex.BooleanType | ex.DoubleType | ex.StringType):
-            found = _misfit(Basic(_WIDEST[type(read.type)]), part.value)
-        elif isinstance(read.type, rosgraph.ArrayType):
-            found = _misfit(Sequence(NestedType("", "")), part.value)
+            misfit = None if None in several else several[0]
+        elif isinstance(message_read.type, ex.BooleanType | ex.DoubleType | ex.StringType):
+            misfit = _misfit(Basic(_WIDEST[type(message_read.type)]), part.value)
+        elif isinstance(message_read.type, rosgraph.ArrayType):
+            misfit = _misfit(Sequence(NestedType("", "")), part.value)
         else:
-            found = None
-        if found is not None:
-            return found
+            misfit = None
+        if misfit is not None:
+            return misfit
     return None
 
 

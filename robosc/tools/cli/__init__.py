@@ -80,11 +80,11 @@ def _visible_errors() -> Iterator[None]:
     try:
         yield
     except click.ClickException as error:
-        said = error.format_message()
-        if visible_lines(said) == said:
+        message = error.format_message()
+        if visible_lines(message) == message:
             raise
         kind = _InternalError if isinstance(error, _InternalError) else CallError
-        raise kind(visible_lines(said)) from error
+        raise kind(visible_lines(message)) from error
 
 
 class _Commands(click.Group):
@@ -153,8 +153,8 @@ def _error_message(error: Exception, *, show: bool) -> click.ClickException:
     return _InternalError(f"a fault of robosc itself, please report it: {type(error).__name__}: {error}{hint}")
 
 
-def _cmake_dir(context: click.Context, _parameter: click.Parameter, asked: bool) -> None:
-    if asked:
+def _cmake_dir(context: click.Context, _parameter: click.Parameter, is_requested: bool) -> None:
+    if is_requested:
         put(str(locate("cmake")))
         context.exit()
 

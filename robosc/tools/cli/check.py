@@ -104,11 +104,11 @@ def _mend(model: str, paths: Paths) -> None:
         return  # writing the text would lose the bytes that cannot be decoded
     seen = {content}
     for _ in range(_ROUNDS):
-        found = checked(content)
-        edits = safe_edits(found, checked)
+        checked_model = checked(content)
+        edits = safe_edits(checked_model, checked)
         if not edits:
             break
-        after = found.reading.file.text.after(edits, content)
+        after = checked_model.reading.file.text.after(edits, content)
         if after in seen:
             break
         seen.add(after)

@@ -62,16 +62,16 @@ def command(port: int | None, once: bool) -> None:
     )
 
 
-def _load(wanted: LaunchTarget) -> tuple[Models, Sequence[Diagnostic], Mapping[str, str]]:
+def _load(target: LaunchTarget) -> tuple[Models, Sequence[Diagnostic], Mapping[str, str]]:
     report = _FindingList(aside=True)
-    given = [
-        f"{name}={value if isinstance(value, str) else json.dumps(value)}" for name, value in wanted.parameters.items()
+    parameters = [
+        f"{name}={value if isinstance(value, str) else json.dumps(value)}" for name, value in target.parameters.items()
     ]
     models: Models | None = None
     try:
         with report:
-            models = read_models(wanted.program, Paths(wanted.libraries, wanted.interfaces), report, cif=True)
-            set_parameters(models.rosgraph, given)
+            models = read_models(target.program, Paths(target.libraries, target.interfaces), report, cif=True)
+            set_parameters(models.rosgraph, parameters)
             supervise_models(models, report)
     except click.ClickException as error:
         raise PlayError(error.format_message(), report.findings, report.texts) from None

@@ -99,7 +99,7 @@ def _question(
 ) -> Callable[[SynthesizedSystem], Explanation | Possibility | None]:
     """Return the analysis that answers the question. Its result is None if the supervisor is empty."""
     try:
-        asked = find_event(model, event or why_never or "")
+        event_in_question = find_event(model, event or why_never or "")
         codes = {} if state is None else parse_state(model, state)
     except NamingError as error:
         raise CallError(str(error)) from error
@@ -107,7 +107,7 @@ def _question(
     def answer(system: SynthesizedSystem) -> Explanation | Possibility | None:
         if not system.controlled.satisfiable():
             return None
-        return possibility(system, asked) if event is None else explain(system, asked, codes)
+        return possibility(system, event_in_question) if event is None else explain(system, event_in_question, codes)
 
     return answer
 

@@ -36,7 +36,7 @@ def command(
     layer: bool,
     chosen: str | None,
     form: str,
-    given: Sequence[str],
+    parameter_texts: Sequence[str],
     paths: Paths,
     arguments: Sequence[str],
     live: bool,  # noqa: ARG001  # there is no other ROS
@@ -61,7 +61,7 @@ def command(
         models = read_models(model, paths, report)
         if models.rosgraph is None:
             raise CallError(f"{model} has no ROS graph: give its .rosgraph.xmi or .rscd")
-        set_parameters(models.rosgraph, given)
+        set_parameters(models.rosgraph, parameter_texts)
         settings = read_configuration(model, chosen, report)
         supervise_models(models, report)
         target = TARGETS["ros2-layer" if layer else "ros2"]

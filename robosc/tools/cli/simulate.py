@@ -47,7 +47,7 @@ def command(
     number: int | None,
     seed: int,
     chosen: str | None,
-    given: Sequence[str],
+    parameter_texts: Sequence[str],
     paths: Paths,
 ) -> None:
     """Simulate a supervised robot: step by step by hand, by a script, or at random.
@@ -72,7 +72,7 @@ def command(
         raise click.UsageError("--loop needs a --script")
     with Report(aside=True) as report:
         models = read_models(model, paths, report, cif=not loop)
-        set_parameters(models.rosgraph, given)
+        set_parameters(models.rosgraph, parameter_texts)
         settings = _settings(model, chosen, report) if loop else None
         supervise_models(models, report)
         if script is not None:

@@ -72,10 +72,10 @@ def command(model: str, as_json: bool, counts: bool, count_inputs: bool, megabyt
         if counts:
             _count(plants, megabytes << 20, times, as_json=as_json)
             return
-        found = supervise_otherwise(plants, memory=megabytes << 20)
-        if found is not None:
+        synthesis = supervise_otherwise(plants, memory=megabytes << 20)
+        if synthesis is not None:
             show = _show_json if as_json else _show
-            show(plants, Diagnosis(**vars(found)), times)
+            show(plants, Diagnosis(**vars(synthesis)), times)
             return
         try:
             with show_progress(plants) as statistics:

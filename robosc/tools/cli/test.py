@@ -122,12 +122,12 @@ def command(
             runs = []
             for number, scenario in enumerate(played, 1):
                 operations = Operations()
-                found = player.play(scenario, operations)
-                if started is not None and not found:
-                    found = _followed(started, scenario, player)
+                deviations = player.play(scenario, operations)
+                if started is not None and not deviations:
+                    deviations = _followed(started, scenario, player)
                 runs.append(operations)
-                failed += bool(found)
-                report.add(found)
+                failed += bool(deviations)
+                report.add(deviations)
                 logs[f"scenario_{number}.jsonl"] = "".join(f"{line}\n" for line in player.trace)
             if engine == "c":
                 report.add(_compared(models, settings, runs))
@@ -145,9 +145,9 @@ def _read(
     conditions: list[Holds] = []
     for name in names:
         text, faults = decode(name, files.read(name))
-        found, expected, findings = read_scenarios(name, text.content)
+        more_scenarios, expected, findings = read_scenarios(name, text.content)
         report.add([*(replace(fault, rule=RULE) for fault in faults), *findings], {name: text.content})
-        scenarios += found
+        scenarios += more_scenarios
         conditions += expected
     report.add(unknown_events(plain.sct, scenarios))
     return (*_resolve_conditions(path, plain, conditions, paths, report), scenarios)
@@ -185,13 +185,13 @@ def _live(models: Models, settings: Configuration, player: Player, node: str | N
 
 def _command() -> list[str]:
     """Return the command that runs the model as a node, with the search folders and configuration of this call."""
-    given = click.get_current_context().params
-    options = [word for folder in given["library_paths"] for word in ("-I", folder)]
-    options += [word for folder in given["interface_paths"] for word in ("--interface-path", folder)]
-    options += ["--config", given["chosen"]] if given["chosen"] else []
+    params = click.get_current_context().params
+    options = [word for folder in params["library_paths"] for word in ("-I", folder)]
+    options += [word for folder in params["interface_paths"] for word in ("--interface-path", folder)]
+    options += ["--config", params["chosen"]] if params["chosen"] else []
     synthesizer = chosen_synthesizer()
     options += ["--synthesizer", synthesizer.name] if synthesizer else []
-    return [sys.executable, "-m", "robosc", "run", given["model"], "--ros2", *options]
+    return [sys.executable, "-m", "robosc", "run", params["model"], "--ros2", *options]
 
 
 def _followed(live: LiveNode, scenario: Scenario, player: Player) -> list[Diagnostic]:

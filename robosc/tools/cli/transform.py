@@ -50,11 +50,11 @@ class _Command(click.Command):
     """Lists the targets in its help, with those of installed packages. Explains how to name several of them."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        given = list(args)
+        words = list(args)
         try:
             return super().parse_args(ctx, args)
         except click.UsageError as error:
-            names = [name for name in (word.removeprefix("--to=") for word in given) if name in targets()]
+            names = [name for name in (word.removeprefix("--to=") for word in words) if name in targets()]
             if len(names) > 1 and "extra argument" in error.message:
                 raise click.UsageError(f"{error.message}: write `--to {','.join(names)}`", ctx) from error
             raise
@@ -161,8 +161,8 @@ def command(
         if into is None:
             trees = _trees(folder, files, copies, models, settings)
         else:
-            (made,) = files.values()
-            trees = {folder: {**made, "inputs.txt": "".join(f"{name}\n" for name in _inputs())}}
+            (generated,) = files.values()
+            trees = {folder: {**generated, "inputs.txt": "".join(f"{name}\n" for name in _inputs())}}
         interruption.check()
         with progress(f"writing to {folder}"):  # may wait for another run
             changed = set(write(trees))

@@ -54,7 +54,7 @@ def command(
     opens: bool,
     port: int,
     address: str,
-    given: Sequence[str],
+    parameter_texts: Sequence[str],
     paths: Paths,
 ) -> None:
     """Show the decisions of a supervised robot in a browser: states, commands, and why they are forbidden.
@@ -91,7 +91,7 @@ def command(
     for model in models:
         with Report(aside=True) as report:
             robot = read_models(model, paths, report, cif=True)
-            set_parameters(robot.rosgraph, given)
+            set_parameters(robot.rosgraph, parameter_texts)
             settings = read_configuration(model, None, report)
             supervise_models(robot, report)
             simulation = Simulation(robot.sct, robot.rosgraph, robot.ros_types)
@@ -157,8 +157,8 @@ def _record(
         if log is not None:
             return view.Record(simulation, graph, script_steps(simulation, log), seed)
         if refuted is not None:
-            steps, said = counterexample_steps(simulation, None if refuted == "any" else refuted)
-            say(said, err=True, nl=False)
+            steps, message = counterexample_steps(simulation, None if refuted == "any" else refuted)
+            say(message, err=True, nl=False)
             return view.Record(simulation, graph, steps, seed)
     except RecordingError as error:
         raise CallError(str(error)) from None

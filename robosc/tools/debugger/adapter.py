@@ -135,8 +135,8 @@ class Adapter:
 
     def _refuse(self, answer: Mapping[str, Any], why: str) -> None:
         # The format would read braces as names of variables.
-        told = {"id": 1, "format": why.replace("{", "(").replace("}", ")"), "showUser": True}
-        self._connection.send("response", **answer, success=False, message=why, body={"error": told})
+        error = {"id": 1, "format": why.replace("{", "(").replace("}", ")"), "showUser": True}
+        self._connection.send("response", **answer, success=False, message=why, body={"error": error})
 
     def _event(self, name: str, body: Mapping[str, Any] | None = None) -> None:
         self._connection.send("event", event=name, **({} if body is None else {"body": body}))
@@ -187,8 +187,8 @@ class Adapter:
         models, findings, texts = self._load(launch.target)
         self._output(as_text.render(findings, texts), "stderr")
         simulation = Simulation(models.sct, models.rosgraph, models.ros_types)
-        steps, told = launch.steps(simulation)
-        self._output(told)
+        steps, message = launch.steps(simulation)
+        self._output(message)
         replay = Replay(simulation, steps, launch.seed)
         self._event("process", {"name": models.sct.name, "isLocalProcess": True, "startMethod": "launch"})
         return _Run(replay, launch)
@@ -303,25 +303,25 @@ class Adapter:
             self._stopped(Stop("exception", f"a fault of robosc itself, please report it: {fault}"))
 
     async def _played(self, run: _Run, step: Callable[[_Run, int], tuple[str, Stop | None, bool]]) -> None:
-        told: list[str] = []
+        outputs: list[str] = []
         number = 0
         while True:
-            said, stop, over = step(run, number)
-            told.append(said)
+            output, stop, over = step(run, number)
+            outputs.append(output)
             number += 1
             if self._pausing and stop is None and not over:
                 stop = Stop("pause", "paused")
             if stop is not None or over:
                 self._running = None
-                self._output("".join(told))
+                self._output("".join(outputs))
                 if stop is not None:
                     self._stopped(stop)
                 else:
                     self._over(run)
                 return
             if number % _AT_ONCE == 0:
-                self._output("".join(told))
-                told.clear()
+                self._output("".join(outputs))
+                outputs.clear()
                 await asyncio.sleep(0)
 
     def _onwards(self, run: _Run, number: int) -> tuple[str, Stop | None, bool]:
@@ -380,8 +380,8 @@ class Adapter:
 
     def _set_breakpoints(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
         lines = [self._line(point) for point in _objects(arguments.get("breakpoints"))]
-        told = self._debugged.stops.in_file(_path(arguments), lines)
-        return {"breakpoints": [point | {"line": self._shown_line(point["line"])} for point in told]}
+        points = self._debugged.stops.in_file(_path(arguments), lines)
+        return {"breakpoints": [point | {"line": self._shown_line(point["line"])} for point in points]}
 
     def _set_function_breakpoints(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
         names = [str(point.get("name", "")) for point in _objects(arguments.get("breakpoints"))]
@@ -393,13 +393,13 @@ class Adapter:
         return {"breakpoints": self._debugged.stops.filters([*filters, *_objects(arguments.get("filterOptions"))])}
 
     def _data_breakpoint_info(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
-        asked = str(arguments.get("name", ""))
+        requested = str(arguments.get("name", ""))
         if arguments.get("variablesReference"):
             children = self._children(arguments["variablesReference"])
-            asked = next((child.path for child in children if child.name == asked and child.path), asked)
-        name = self._debugged.views.state_name(asked)
+            requested = next((child.path for child in children if child.name == requested and child.path), requested)
+        name = self._debugged.views.state_name(requested)
         if name is None:
-            return {"dataId": None, "description": f"{asked} is no part of the state that changes"}
+            return {"dataId": None, "description": f"{requested} is no part of the state that changes"}
         return {"dataId": name, "description": name, "accessTypes": ["write"], "canPersist": True}
 
     def _set_data_breakpoints(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -420,7 +420,7 @@ class Adapter:
 
     def _stack_trace(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
         frames = self._debugged.views.frames()
-        told = []
+        shown_frames = []
         for number, frame in enumerate(frames):
             shown_frame: dict[str, Any] = {"id": number + 1, "name": frame.name, "line": 0, "column": 0}
             if frame.file is not None:
@@ -432,9 +432,9 @@ class Adapter:
                 if frame.end_line is not None and frame.end_column is not None:
                     shown_frame["endLine"] = self._shown_line(frame.end_line)
                     shown_frame["endColumn"] = frame.end_column - 1 + self._first_column
-            told.append(shown_frame)
+            shown_frames.append(shown_frame)
         first, count = (_natural(arguments.get(name)) for name in ("startFrame", "levels"))
-        return {"stackFrames": told[first : first + count if count else None], "totalFrames": len(told)}
+        return {"stackFrames": shown_frames[first : first + count if count else None], "totalFrames": len(shown_frames)}
 
     def _scopes(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
         views = self._debugged.views
@@ -456,14 +456,14 @@ class Adapter:
         }
 
     def _variable(self, variable: Variable) -> dict[str, Any]:
-        told: dict[str, Any] = {
+        body: dict[str, Any] = {
             "name": variable.name,
             "value": variable.value,
             "variablesReference": self._reference(variable.children),
         }
         if variable.path is not None:
-            told["evaluateName"] = variable.path
-        return told
+            body["evaluateName"] = variable.path
+        return body
 
     def _reference(self, children: Callable[[], Sequence[Variable]] | None) -> int:
         if children is None:
@@ -495,9 +495,9 @@ class Adapter:
         if text in ("", "help", "?"):
             return {"result": _HELP, "variablesReference": 0}, None
         if word == "why":
-            told = run.views.explain(event_name(find_event(run.replay.engine.model, rest.strip())))
-            said = Renderer(run.replay.engine.model, at).answer(told)
-            return {"result": said, "variablesReference": 0}, None
+            explanation = run.views.explain(event_name(find_event(run.replay.engine.model, rest.strip())))
+            answer_text = Renderer(run.replay.engine.model, at).answer(explanation)
+            return {"result": answer_text, "variablesReference": 0}, None
         if word == WAIT:
             return self._waited(run, text)
         value = run.views.value(text)
@@ -515,8 +515,8 @@ class Adapter:
         if findings:
             raise RequestError(f"{findings[0].message}; {findings[0].hint}")
         moments = run.replay.let_go_by(steps[0].data["seconds"])
-        said = "".join(map(self._describe, moments)).rstrip()
-        return {"result": said, "variablesReference": 0}, lambda: self._injected(run, moments)
+        output = "".join(map(self._describe, moments)).rstrip()
+        return {"result": output, "variablesReference": 0}, lambda: self._injected(run, moments)
 
     @staticmethod
     def _is_event(run: _Run, text: str) -> bool:
@@ -550,8 +550,8 @@ class Adapter:
 
     # Lines
 
-    def _line(self, given: Any) -> int:
-        line = given.get("line") if isinstance(given, dict) else None
+    def _line(self, position: Any) -> int:
+        line = position.get("line") if isinstance(position, dict) else None
         if not _is_integer(line):
             raise RequestError("`line` has to be a number")
         return line + 1 - self._first_line
@@ -643,7 +643,7 @@ def _natural(value: Any) -> int:
     return value if _is_integer(value) and value > 0 else 0
 
 
-def _objects(given: Any) -> list[dict[str, Any]]:
-    if given is not None and not (isinstance(given, list) and all(isinstance(item, dict) for item in given)):
+def _objects(items: Any) -> list[dict[str, Any]]:
+    if items is not None and not (isinstance(items, list) and all(isinstance(item, dict) for item in items)):
         raise RequestError("a list of objects is wanted")
-    return given or []
+    return items or []

@@ -177,27 +177,27 @@ class Targets:
 
     @staticmethod
     def _event(event: sct.Event) -> Target:
-        wanted = event_name(event)
-        return Target(words(event), None, lambda moment, _: moment.happened and moment.event == wanted)
+        target_name = event_name(event)
+        return Target(words(event), None, lambda moment, _: moment.happened and moment.event == target_name)
 
     @staticmethod
     def _requirement(requirement: sct.Requirement) -> Target:
         event = event_name(requirement.event)
-        told = requirement.text or requirement.name or "a requirement"
-        what = f"`{told}` begins to forbid the {words(requirement.event)}"
+        text = requirement.text or requirement.name or "a requirement"
+        what = f"`{text}` begins to forbid the {words(requirement.event)}"
         return Target(what, None, lambda _, watcher: watcher.fails(requirement), frozenset([event]))
 
     @staticmethod
     def _becomes_forbidden(event: sct.Event) -> Target:
-        wanted = event_name(event)
+        target_name = event_name(event)
         what = f"the {words(event)} becomes forbidden"
-        return Target(what, None, lambda _, watcher: watcher.forbidden(wanted), frozenset([wanted]))
+        return Target(what, None, lambda _, watcher: watcher.forbidden(target_name), frozenset([target_name]))
 
     @staticmethod
     def _becomes_allowed(event: sct.Event) -> Target:
-        wanted = event_name(event)
+        target_name = event_name(event)
         what = f"the {words(event)} becomes possible"
-        return Target(what, None, lambda _, watcher: watcher.allowed(wanted), frozenset([wanted]))
+        return Target(what, None, lambda _, watcher: watcher.allowed(target_name), frozenset([target_name]))
 
 
 def real(file: str) -> str:

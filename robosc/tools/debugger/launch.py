@@ -63,10 +63,10 @@ class Launch:
     def of(cls, arguments: Mapping[str, Any]) -> Launch:
         """Return the launch of a request's arguments. Raises RequestError."""
         for name, (kind, expected) in _KEYS.items():
-            given = arguments.get(name)
-            if given is not None and (not isinstance(given, kind) or (isinstance(given, bool) and kind is int)):
-                raise RequestError(f"launch: `{name}` is {json.dumps(given)}, expected {expected}")
-            paths = given if isinstance(given, list) else [given]
+            value = arguments.get(name)
+            if value is not None and (not isinstance(value, kind) or (isinstance(value, bool) and kind is int)):
+                raise RequestError(f"launch: `{name}` is {json.dumps(value)}, expected {expected}")
+            paths = value if isinstance(value, list) else [value]
             if any("\0" in path for path in paths if isinstance(path, str)):
                 raise RequestError(f"launch: `{name}` has a null character: no path has one")
         if not arguments.get("program"):
@@ -92,6 +92,6 @@ class Launch:
         if self.script is not None:
             return script_steps(simulation, self.script), ""
         if self.counterexample is not None:
-            wanted = self.counterexample if isinstance(self.counterexample, str) else None
-            return counterexample_steps(simulation, wanted)
+            name = self.counterexample if isinstance(self.counterexample, str) else None
+            return counterexample_steps(simulation, name)
         return None, ""

@@ -92,23 +92,23 @@ class Views:
         """Return a step in words."""
         if moment.event == WAIT:
             return f"{_seconds(moment.end.timers[0])} on the clock"
-        said = (
+        phrase = (
             refusal_in_words(self._engine, moment.data["of"])
             if moment.event == REFUSE
             else words(self.events[moment.event])
         )
         return (
-            said
+            phrase
             if moment.by is None
-            else f"{said} can't happen: {self._replay.simulation.reason(moment.event, moment.by)}"
+            else f"{phrase} can't happen: {self._replay.simulation.reason(moment.event, moment.by)}"
         )
 
-    def _frame(self, said: str, element: Any, plant: sct.Plant | None = None) -> Frame:
+    def _frame(self, label: str, element: Any, plant: sct.Plant | None = None) -> Frame:
         file, span = place(element)
         if not Path(file).is_file():
-            return Frame(said, None, plant=plant)
+            return Frame(label, None, plant=plant)
         return Frame(
-            said,
+            label,
             os.path.abspath(file),  # noqa: PTH100 - must not resolve links: the editor has the file open by this path
             span.line,
             self._units(file, span.line, span.column),
@@ -204,17 +204,18 @@ class Views:
             self._explained[key] = explore(self._model, lambda system: explain(system, self.events[event], codes))
         return self._explained[key]
 
-    def _reasons(self, told: Explanation) -> list[Variable]:
+    def _reasons(self, explanation: Explanation) -> list[Variable]:
         reasons = [
-            Variable(at(note.element), note.text, _details(note.details)) for note in (*told.plants, *told.requirements)
+            Variable(at(note.element), note.text, _details(note.details))
+            for note in (*explanation.plants, *explanation.requirements)
         ]
-        if told.counterexample is not None:
-            reasons.append(Variable("otherwise", counterexample_in_words(told.counterexample, self._model)))
-        elif told.needless:
+        if explanation.counterexample is not None:
+            reasons.append(Variable("otherwise", counterexample_in_words(explanation.counterexample, self._model)))
+        elif explanation.needless:
             reasons.append(Variable("supervisor", NEEDLESS))
-        reasons += [Variable("would help", note.text) for note in told.changes]
-        if told.way:
-            reasons.append(Variable("shortest way", in_words(told.way, self._model)))
+        reasons += [Variable("would help", note.text) for note in explanation.changes]
+        if explanation.way:
+            reasons.append(Variable("shortest way", in_words(explanation.way, self._model)))
         return reasons
 
     # Names in the debug console
@@ -243,9 +244,9 @@ class Views:
         for plant in self._model.plants:
             own, inner = text in (name(plant), plant.name), owner in (name(plant), plant.name)
             known = [plant.name] if own else [f"{plant.name}.{last}", f"{name(plant)}.{last}"] if inner else []
-            found = next((candidate for candidate in known if candidate in state), None)
-            if found is not None:
-                return found
+            match = next((candidate for candidate in known if candidate in state), None)
+            if match is not None:
+                return match
         return text if text in state else None
 
 

@@ -107,7 +107,7 @@ class _Layouter:
 
     def links(self, sizes: Mapping[str, Point]) -> list[list[Link]]:
         """Return, for each arrow, its links from its earlier node to its later one."""
-        found = []
+        links = []
         for number, arrow in enumerate(self.group.arrows):
             ends = (arrow.source, arrow.target) if self.forward[number] else (arrow.target, arrow.source)
             ports = [self.port(sizes, end, side, number) for end, side in zip(ends, (1, 0), strict=True)]
@@ -116,13 +116,13 @@ class _Layouter:
                 stops = [(ends[0], ports[0]), (_label(number), middle), (ends[1], ports[1])]
             else:
                 stops = list(zip(ends, ports, strict=True))
-            found.append(
+            links.append(
                 [
                     Link(source, target, source_port, target_port, True)
                     for (source, source_port), (target, target_port) in pairwise(stops)
                 ]
             )
-        return found
+        return links
 
     def port(self, sizes: Mapping[str, Point], key: str, side: int, number: int) -> float:
         numbers = self.sides[key, side]
@@ -139,12 +139,12 @@ class _Layouter:
         return arranged.places[other][1] + self.swap(sizes[other])[1] / 2
 
     def routes(self, arranged: Arrangement) -> list[list[Point]]:
-        found, rest = [], iter(arranged.routes)
+        routes, rest = [], iter(arranged.routes)
         for number, arrow in enumerate(self.group.arrows):
             pieces = [next(rest) for _ in range(2 if arrow.labels else 1)]
             points = [self.swap(point) for piece in pieces for point in piece.points]
-            found.append(points if self.forward[number] else points[::-1])
-        return found
+            routes.append(points if self.forward[number] else points[::-1])
+        return routes
 
     def size(self, node: DiagramNode) -> Point:
         """Return width and height of a node, with room for all its arrows and its mark."""

@@ -61,7 +61,7 @@ def render(template: str, **values: object) -> str:
 def _mermaid(text: str | Label) -> str:
     """Return text for a label: lines joined by `<br/>`, and codes for all characters that may have a meaning."""
     lines = [text] if isinstance(text, str) else text
-    return "<br/>".join(_PLAIN.sub(lambda found: f"#{ord(found[0])};", line) for line in lines)
+    return "<br/>".join(_PLAIN.sub(lambda match: f"#{ord(match[0])};", line) for line in lines)
 
 
 def _dot(text: str) -> str:

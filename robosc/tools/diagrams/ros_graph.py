@@ -37,15 +37,15 @@ def ros_graph(graph: rosgraph.RosGraph) -> Graph:
 
     An arrow has the direction of the data. Services and actions have arrows with two heads.
     """
-    found = connections(graph)
+    connected = connections(graph)
     numbers = {kind: count(1) for kind in _KEYS}
-    keys = [f"{_KEYS[connection.kind]}{next(numbers[connection.kind])}" for connection in found]
+    keys = [f"{_KEYS[connection.kind]}{next(numbers[connection.kind])}" for connection in connected]
     nodes = [
         DiagramNode(key, connection.kind, connection.name, [(row,) for row in (*connection.types, *connection.uses)])
-        for key, connection in zip(keys, found, strict=True)
+        for key, connection in zip(keys, connected, strict=True)
     ]
     arrows = []
-    for key, connection in zip(keys, found, strict=True):
+    for key, connection in zip(keys, connected, strict=True):
         comes_in = connection.kind == "topic" and connection.direction != "out"
         ends = (key, _CONTROLLER) if comes_in else (_CONTROLLER, key)
         arrows.append(Arrow(*ends, both=connection.direction == "both"))

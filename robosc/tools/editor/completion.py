@@ -58,25 +58,25 @@ def completion(snapshot: Snapshot, analysis: Analysis, params: types.CompletionP
     def libraries() -> list[str]:
         return LibraryPath(snapshot.libraries, snapshot.texts).library_names(analysis.path)
 
-    start, end, found = proposals(text.content, offset, reread, snapshot.ros_types, libraries)
+    start, end, proposed = proposals(text.content, offset, reread, snapshot.ros_types, libraries)
     place = to_range(text, start, end)
-    items = [item for proposal in found for item in _items(proposal, place)]
+    items = [item for proposal in proposed for item in _items(proposal, place)]
     return types.CompletionList(is_incomplete=False, items=items)
 
 
 def _topics(snapshot: Snapshot, place: types.Range) -> list[types.CompletionItem]:
     """Return the names of topics, services and actions in the project and its libraries."""
-    found: dict[str, str] = {}
+    details: dict[str, str] = {}
     analyses = [analysis for path in snapshot.models() if (analysis := snapshot.analysis(path)) is not None]
     for file in (file for analysis in analyses for file in analysis.reading.files.values()):
         for element in file.declared_names:
             if isinstance(element, rsc.CommunicationType) and element.identifier:
-                found.setdefault(element.identifier, summary(element))
+                details.setdefault(element.identifier, summary(element))
     return [
         types.CompletionItem(
-            name, kind=types.CompletionItemKind.Value, detail=found[name], text_edit=types.TextEdit(place, name)
+            name, kind=types.CompletionItemKind.Value, detail=details[name], text_edit=types.TextEdit(place, name)
         )
-        for name in sorted(found)
+        for name in sorted(details)
     ]
 
 
@@ -90,11 +90,11 @@ def _items(proposal: Proposal, place: types.Range) -> list[types.CompletionItem]
     # Names come before words of the language, and these before whole definitions.
     order = "0" if kind is not types.CompletionItemKind.Keyword else "1"
     detail = summary(proposal.element) if proposal.element is not None else None
-    found = [
+    items = [
         types.CompletionItem(proposal.text, kind=kind, detail=detail, text_edit=edit, sort_text=order + proposal.text)
     ]
     if proposal.starts:
-        found += (
+        items += (
             types.CompletionItem(
                 label,
                 kind=types.CompletionItemKind.Snippet,
@@ -106,14 +106,14 @@ def _items(proposal: Proposal, place: types.Range) -> list[types.CompletionItem]
             )
             for label, body, _ in SNIPPETS.get(proposal.text, ())
         )
-    return found
+    return items
 
 
 def signature_help(_: Snapshot, analysis: Analysis, params: types.SignatureHelpParams) -> types.SignatureHelp | None:
     """Return the signature of the call around a position."""
-    found = signature(analysis.reading, to_offset(analysis.text, params.position))
-    if found is None:
+    called = signature(analysis.reading, to_offset(analysis.text, params.position))
+    if called is None:
         return None
-    parameters = [types.ParameterInformation(parameter) for parameter in found.parameters]
-    shown = types.SignatureInformation(found.label, parameters=parameters, active_parameter=found.active)
-    return types.SignatureHelp([shown], active_signature=0, active_parameter=found.active)
+    parameters = [types.ParameterInformation(parameter) for parameter in called.parameters]
+    shown = types.SignatureInformation(called.label, parameters=parameters, active_parameter=called.active)
+    return types.SignatureHelp([shown], active_signature=0, active_parameter=called.active)

@@ -125,7 +125,7 @@ Range = tuple[int, int, int, int]
 def _replaced(content: str, place: Range, text: str) -> str:
     """Replace a range of a text; the text has the line breaks of the editor."""
     line, unit, end_line, end_unit = place
-    breaks = [found.span() for found in _BREAK.finditer(content)]
+    breaks = [match.span() for match in _BREAK.finditer(content)]
     start = _offset(content, breaks, line, unit)
     end = _offset(content, breaks, end_line, end_unit)
     return content[:start] + text + content[max(start, end) :]
@@ -179,8 +179,8 @@ class Analysis:
 
     def key(self, element: Any) -> tuple[str, int] | None:
         """Return an identity of an element that all analyses share: the file and offset of its name."""
-        found = self.declarations.get(element)
-        return None if found is None else (found[0].text.file, found[1].start)
+        declaration = self.declarations.get(element)
+        return None if declaration is None else (declaration[0].text.file, declaration[1].start)
 
 
 @dataclass
@@ -275,9 +275,9 @@ class Snapshot:
         documents = {**self.documents, path: replace(document, content=part.content)}
         sliced = replace(self, documents=documents, memory=_Memory())
         reading = read(path, self.libraries, self.ros_types, sliced.texts)
-        found = part.findings([*reading.findings, *check(reading.base, reading.findings, self.ros_types)])
+        findings = part.findings([*reading.findings, *check(reading.base, reading.findings, self.ros_types)])
         texts = {file: other.text for file, other in analysis.reading.files.items()} | {text.file: text}
-        return None if found is None else (text, texts, in_order(found))
+        return None if findings is None else (text, texts, in_order(findings))
 
     def _content(self, path: Path) -> str | None:
         document = self.documents.get(path)
@@ -306,10 +306,10 @@ class Snapshot:
 
     def models(self) -> list[Path]:
         """Return the paths of all open texts and of all texts in the editor's folders, hidden folders excluded."""
-        found = dict.fromkeys(self.documents)
+        paths = dict.fromkeys(self.documents)
         for folder in self.folders:
-            found |= dict.fromkeys(Path(path).resolve() for path in files_below(folder, ".rscd"))
-        return list(found)
+            paths |= dict.fromkeys(Path(path).resolve() for path in files_below(folder, ".rscd"))
+        return list(paths)
 
     def analyses_with(self, word: str) -> Iterator[Analysis]:
         """Yield the analyses of all texts of the project that contain a word."""

@@ -75,8 +75,8 @@ def rename_everywhere(
         place = file.text.span(reference.start, reference.end)
         edits.setdefault(file.text.file, []).append(Edit(place, escape_keyword(new)))
     _require_same(snapshot, analysis, name.name, edits, mended)
-    changes = {file: to_edits(texts[file], found) for file, found in edits.items() if found}
-    return types.WorkspaceEdit({snapshot.uri(file): found for file, found in changes.items()})
+    changes = {file: to_edits(texts[file], edits_of_file) for file, edits_of_file in edits.items() if edits_of_file}
+    return types.WorkspaceEdit({snapshot.uri(file): edits_of_file for file, edits_of_file in changes.items()})
 
 
 def renaming_of(file: File, edits: Collection[Edit]) -> Renaming | None:
@@ -111,18 +111,18 @@ def _require_same(
 
     They are also rejected if the word occurs in an unreadable part of a text.
     """
-    analyses = {analysis.path: analysis} | {found.path: found for found in snapshot.analyses_with(word)}
-    for found in analyses.values():
-        for file in found.reading.files.values():
+    analyses = {analysis.path: analysis} | {dependent.path: dependent for dependent in snapshot.analyses_with(word)}
+    for later in analyses.values():
+        for file in later.reading.files.values():
             skipped = (file.text.content[start:end] for start, end in file.skipped)
             if any(re.search(rf"\b{re.escape(word)}\b", part) for part in skipped):
                 raise _refused(f"mend {file.text.file} first: `{word}` stands in what can't be read")
     by_path = {Path(name).resolve(): changes for name, changes in edits.items()}
     after = snapshot.apply_edits(by_path)
-    for path, found in analyses.items():
+    for path, later in analyses.items():
         renamed = after.analysis(path)
-        own = {name: by_path[at] for name in found.reading.files if (at := Path(name).resolve()) in by_path}
-        why = "" if renamed is None else objection(found, renamed, own, mended if found is analysis else ())
+        own = {name: by_path[at] for name in later.reading.files if (at := Path(name).resolve()) in by_path}
+        why = "" if renamed is None else objection(later, renamed, own, mended if later is analysis else ())
         if why is not None:
             raise _refused(f"this would change what {path.name} means{why and f': {why}'}")
 

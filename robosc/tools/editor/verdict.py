@@ -49,15 +49,15 @@ def _verdict(path: str, model: sct.SupervisoryControlModel, supervision: Supervi
     synthesis = supervision.synthesis
     states = f"{format_count(synthesis.controlled_states, 'state')} under its supervisor"
     without = synthesis.uncontrolled_states
-    told = states + (f", {without} without requirements" if without is not None else "")
+    size = states + (f", {without} without requirements" if without is not None else "")
     faults = [finding.message for finding in supervision.findings if has_errors([finding])]
     requirements = {}
     for weight in synthesis.weights:
         file, span = place(weight.requirements[0])
         if file == path:
             forbids = "forbids" if isinstance(weight.requirements[0], sct.StateInvariant) else "forbids something in"
-            said = f"{forbids} {format_count(weight.states, 'state')}" if weight.states else "matters in no state"
-            requirements[str(span.line)] = said
+            effect = f"{forbids} {format_count(weight.states, 'state')}" if weight.states else "matters in no state"
+            requirements[str(span.line)] = effect
     guards: dict[str, list[str]] = {}
     printed = RobotPrinter()
     for guard in synthesis.supervisor.guards if synthesis.supervisor is not None else ():
@@ -66,7 +66,7 @@ def _verdict(path: str, model: sct.SupervisoryControlModel, supervision: Supervi
         if whole is not None and origin and guard.event.kind in (sct.EventKind.trigger, sct.EventKind.cancel):
             name = "request" if guard.event.kind == sct.EventKind.trigger else "cancel"
             guards.setdefault(origin, []).append(f"{name}: {printed(whole)}")
-    return Verdict("; ".join([told, *faults]), requirements, guards)
+    return Verdict("; ".join([size, *faults]), requirements, guards)
 
 
 def main() -> None:

@@ -83,13 +83,13 @@ def commands_of(model: sct.SupervisoryControlModel) -> list[sct.Event]:
 
 def transitions_of(plant: sct.Plant) -> list[list[sct.Edge]]:
     """Return the transitions of an automaton, each with all edges that were created for it."""
-    found: dict[object, list[sct.Edge]] = {}
+    by_key: dict[object, list[sct.Edge]] = {}
     for edge in edges_of(plant):
         if not _is_written(edge):
             continue
         key = (origin(edge), edge.target, str(edge.source or ""), edge.event)
-        found.setdefault(key, []).append(edge)
-    return list(found.values())
+        by_key.setdefault(key, []).append(edge)
+    return list(by_key.values())
 
 
 def _is_written(edge: sct.Edge) -> bool:
@@ -198,19 +198,22 @@ class _Describer:
             "owner": plant_of(event).origin or plant_of(event).name,
             "place": self.place(event) or self.place(plant_of(event)),
             **({"timer": True} if event.timer is not None else {}),
-            "inputs": [{"name": given.name, "label": _label(given), **_values(given.type)} for given in event.inputs],
+            "inputs": [
+                {"name": event_input.name, "label": _label(event_input), **_values(event_input.type)}
+                for event_input in event.inputs
+            ],
             "kept": [] if self._graph is None else self._beside(event, self._graph),
         }
 
     @staticmethod
     def _beside(event: sct.Event, graph: rosgraph.RosGraph) -> list[dict[str, Any]]:
         """Return the data of an event that only the node stores: the path of fields, and the kind of input field."""
-        found = data_beside(graph, event)
-        is_lone = not event.inputs and len(found) == 1
+        types_by_path = data_beside(graph, event)
+        is_lone = not event.inputs and len(types_by_path) == 1
         return [
             {"path": list(path), "label": "value" if is_lone and len(path) < 2 else ".".join(["value", *path])}
             | {"kind": _KINDS[type(kind)]}
-            for path, kind in found.items()
+            for path, kind in types_by_path.items()
         ]
 
 
@@ -222,9 +225,9 @@ def _spelled(tokens: Sequence[Token]) -> str:
     return "".join(pieces)
 
 
-def _label(given: sct.Input) -> str:
+def _label(event_input: sct.Input) -> str:
     """Return the path of an input in the data of its event, as the text of the model writes it."""
-    return given.text or ".".join(["value", *given.name.split("_")[2:]])
+    return event_input.text or ".".join(["value", *event_input.name.split("_")[2:]])
 
 
 def _values(kind: ex.Type) -> dict[str, Any]:

@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     from robosc.run.simulation import Simulation
 
 #: Maximum number of moments that a live view stores.
-KEPT = 20_000
+CAPACITY = 20_000
 
 
 class Live(Moments):
     """Moments of a running node; `nodes` are the names of the nodes that may report them."""
 
-    def __init__(self, simulation: Simulation, graph: rosgraph.RosGraph, nodes: str, kept: int = KEPT) -> None:
-        super().__init__(simulation, graph, kept)
+    def __init__(self, simulation: Simulation, graph: rosgraph.RosGraph, nodes: str, capacity: int = CAPACITY) -> None:
+        super().__init__(simulation, graph, capacity)
         self._nodes = nodes
         self._tracker = Tracker(self.engine)
         self._definition = json.dumps(definition(graph), sort_keys=True)

@@ -96,26 +96,26 @@ class Moments:
         self,
         time: float,
         running: Mapping[str, int],
-        told: Mapping[str, Any],
+        entries: Mapping[str, Any],
         edges: Iterable[sct.Edge],
-        kept: Values,
+        stored: Values,
     ) -> None:
         """Add a moment with the present state of the engine; `running` has the milliseconds left of timers."""
-        moment: dict[str, Any] = {"time": time, **told}
-        if "event" in told:
+        moment: dict[str, Any] = {"time": time, **entries}
+        if "event" in entries:
             moment["transitions"] = [list(self._numbers[edge]) for edge in edges if edge in self._numbers]
         state = self.engine.state
         if self._states:
             moment |= self._changes(self._states[-1], state)
             moment["timers"] = _changed(self._running[-1], running)
             before = self._stored[-1]
-            moment["state"] |= {name: value for name, value in kept.items() if value != before[name]}
+            moment["state"] |= {name: value for name, value in stored.items() if value != before[name]}
         else:
-            moment |= self._whole(running, kept)
+            moment |= self._whole(running, stored)
         self.moments.append(moment)
         self._states.append(state)
         self._running.append(dict(running))
-        self._stored.append(kept)
+        self._stored.append(stored)
         if self._most is not None and len(self.moments) > self._most:
             self._forget(len(self.moments) // 2)
 
@@ -124,14 +124,14 @@ class Moments:
         """Variables that only the node stores, at the last moment."""
         return self._stored[-1] if self._stored else self._node.initial
 
-    def _add_told(self, time: float, running: Mapping[str, int], told: ReportedMoment) -> None:
+    def _add_told(self, time: float, running: Mapping[str, int], report: ReportedMoment) -> None:
         """Add a moment that a node has reported."""
-        said = (
+        entries = (
             {"words": "what the node says"}
-            if told.event is None
-            else {"event": told.event, "words": self.describe_event(told.event)}
+            if report.event is None
+            else {"event": report.event, "words": self.describe_event(report.event)}
         )
-        self._add(time, running, said, told.edges, self._node.update(self._kept_last, told.variables))
+        self._add(time, running, entries, report.edges, self._node.update(self._kept_last, report.variables))
 
     def _changes(self, before: State, now: State) -> dict[str, Any]:
         """Return the changes between two states; the engine must be in the second."""
@@ -152,12 +152,12 @@ class Moments:
                 self._verdicts[event] = verdict
         return {"state": state, "commands": commands, "enabled": enabled}
 
-    def _whole(self, running: Mapping[str, int], kept: Values) -> dict[str, Any]:
+    def _whole(self, running: Mapping[str, int], stored: Values) -> dict[str, Any]:
         """Return the complete values of a moment in the engine's present state."""
         self._look()
         return {
             "whole": True,
-            "state": {**whole_state(self.engine), **kept},
+            "state": {**whole_state(self.engine), **stored},
             "commands": {event: self._verdicts[event] for event in self.events if event in self._commands},
             "enabled": {event: True for event, verdict in self._verdicts.items() if verdict is None},
             "timers": dict(running),
@@ -174,8 +174,8 @@ class Moments:
 
     def _cut(self, length: int) -> None:
         """Remove moments until `length` are left; the engine must be in the state of the last of them."""
-        kept = length - self.first
-        del self.moments[kept:], self._states[kept:], self._running[kept:], self._stored[kept:]
+        remaining = length - self.first
+        del self.moments[remaining:], self._states[remaining:], self._running[remaining:], self._stored[remaining:]
         self.cuts.append(length)
         self._look()
 
@@ -223,14 +223,16 @@ class Moments:
             if len(self._explained) == _MOST_EXPLAINED:
                 self._explained.clear()
             codes = parse_state(self._model, json.dumps({"state": dict(state)}))
-            told = explore(self._model, lambda system: explain(system, self.events[event], codes))
-            blocking = told.counterexample
+            explanation = explore(self._model, lambda system: explain(system, self.events[event], codes))
+            blocking = explanation.counterexample
             self._explained[key] = {
-                "allowed": told.allowed,
-                "notes": [NEEDLESS] if told.needless else [note.text for note in (*told.plants, *told.requirements)],
+                "allowed": explanation.allowed,
+                "notes": [NEEDLESS]
+                if explanation.needless
+                else [note.text for note in (*explanation.plants, *explanation.requirements)],
                 "otherwise": "" if blocking is None else counterexample_in_words(blocking, self._model),
-                "changes": [note.text for note in told.changes],
-                "way": in_words(told.way, self._model) if told.way else "",
+                "changes": [note.text for note in explanation.changes],
+                "way": in_words(explanation.way, self._model) if explanation.way else "",
             }
         return self._explained[key]
 

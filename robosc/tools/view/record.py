@@ -96,16 +96,16 @@ class Record(Moments):
         if self._replay.has_future:
             self._forward(1)
 
-    def _perform(self, event: str, inputs: object, data: object, kept: object) -> None:
+    def _perform(self, event: str, inputs: object, data: object, stored_data: object) -> None:
         """Let an event happen, with values of its inputs by name, or with data in the shape of the event log.
 
-        `kept` lists pairs: the path of fields to data that only the node stores, and that data.
+        `stored_data` lists pairs: the path of fields to data that only the node stores, and that data.
         """
         if isinstance(inputs, dict):
             known = {carried.name for carried in self.events[event].inputs}
             if set(inputs) != known:
                 raise ActionError(f"{event} has the inputs {', '.join(sorted(known)) or '(none)'}")
-            others = _others(kept)
+            others = _others(stored_data)
             beside = {} if self._graph is None else data_beside(self._graph, self.events[event])
             if others and set(others) != set(beside):
                 raise ActionError(f"`kept` of {event} has the fields {', '.join(map('.'.join, beside)) or '(none)'}")
@@ -157,15 +157,15 @@ class Record(Moments):
         return "time goes by" if moment.event == WAIT else self.describe_event(moment.event)
 
     def _keep(self, moment: Moment | None) -> None:
-        told: dict[str, Any] = {}
+        entries: dict[str, Any] = {}
         if moment is not None:
-            told = {"event": moment.event, "data": dict(moment.data), "words": self._words(moment)}
+            entries = {"event": moment.event, "data": dict(moment.data), "words": self._words(moment)}
             if moment.by is not None:
-                told |= {"by": str(moment.by), "reason": self.simulation.reason(moment.event, moment.by)}
-        timers, kept = self._replay.timers, self._kept_last
+                entries |= {"by": str(moment.by), "reason": self.simulation.reason(moment.event, moment.by)}
+        timers, stored = self._replay.timers, self._kept_last
         if moment is not None and moment.happened:
-            kept = self._node.after(kept, moment.event, moment.data, moment.before)
-        self._add(timers.now / 1000, timers.running, told, () if moment is None else moment.edges, kept)
+            stored = self._node.after(stored, moment.event, moment.data, moment.before)
+        self._add(timers.now / 1000, timers.running, entries, () if moment is None else moment.edges, stored)
 
 
 def _any(kind: ex.Type, random: Random) -> bool | int | float | str:
@@ -179,13 +179,13 @@ def _any(kind: ex.Type, random: Random) -> bool | int | float | str:
     return random.randint(-1000, 1000) / 100
 
 
-def _others(kept: object) -> dict[tuple[str, ...], Any]:
-    """Return data by its path of fields. Raises ActionError if `kept` is malformed."""
-    found: dict[tuple[str, ...], Any] = {}
-    for pair in kept if isinstance(kept, list) else [None]:
+def _others(pairs: object) -> dict[tuple[str, ...], Any]:
+    """Return data by its path of fields. Raises ActionError if `pairs` is malformed."""
+    by_path: dict[tuple[str, ...], Any] = {}
+    for pair in pairs if isinstance(pairs, list) else [None]:
         match pair:
             case [list(path), bool() | int() | float() | str() as value] if all(isinstance(name, str) for name in path):
-                found[tuple(path)] = value
+                by_path[tuple(path)] = value
             case _:
                 raise ActionError("`kept` is a list of pairs of fields and data")
-    return found
+    return by_path

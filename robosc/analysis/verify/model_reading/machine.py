@@ -147,8 +147,8 @@ class Event:
     @property
     def reads(self) -> frozenset[Slot]:
         """Slots that the result of the event depends on."""
-        found = [participant.reads for participant in self.participants]
-        return frozenset().union(*found, *(restriction.condition.reads for restriction in self.restrictions))
+        slots = [participant.reads for participant in self.participants]
+        return frozenset().union(*slots, *(restriction.condition.reads for restriction in self.restrictions))
 
     def happen(self, state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> EventOutcome:
         """Return the result of the event in a state with some inputs."""
@@ -196,18 +196,18 @@ def compile_condition(expression: ex.Expression, meaning: Callable[[ex.Expressio
     reads: set[Slot] = set()
 
     def reader(reference: ex.Expression) -> Callable[..., Any]:
-        found = meaning(reference)
-        if isinstance(found, At):
-            slot, location = found
+        target = meaning(reference)
+        if isinstance(target, At):
+            slot, location = target
             reads.add(slot)
             return lambda state, _: state[slot] == location
-        if isinstance(found, Slot):
-            reads.add(found)
-            return lambda state, _: state[found]
-        if isinstance(found, EventInput):
-            name = found.name
+        if isinstance(target, Slot):
+            reads.add(target)
+            return lambda state, _: state[target]
+        if isinstance(target, EventInput):
+            name = target.name
             return lambda _, inputs: inputs[name]
-        return lambda *_: found
+        return lambda *_: target
 
     program = Program[Any](expression, reader)
     return Condition(program, frozenset(reads))
@@ -217,5 +217,5 @@ def saturate(value: Any, domain: Domain) -> Value:
     """Return the value of a slot after an assignment; an integer saturates at its range."""
     if isinstance(domain, range):
         return min(max(int(value), domain.start), domain.stop - 1)
-    held: Value = value
-    return held
+    result: Value = value
+    return result

@@ -68,11 +68,11 @@ class _PlantReading:
             machine.marked[slot] = frozenset(location.name for location in plant.locations if location.marked)
             machine.sources[slot] = plant
             for variable in plant.variables:
-                held = Slot(called, variable.name)
-                machine.domains[held] = _domain(variable.type)
+                target = Slot(called, variable.name)
+                machine.domains[target] = _domain(variable.type)
                 assert variable.initial is not None
-                machine.initial[held] = compile_condition(variable.initial, self.meaning).compute({}, {})
-                machine.sources[held] = variable
+                machine.initial[target] = compile_condition(variable.initial, self.meaning).compute({}, {})
+                machine.sources[target] = variable
             for event in plant.events:
                 machine.events[self.name(event)] = Event(
                     event.kind.name,
@@ -84,8 +84,8 @@ class _PlantReading:
         for plant in self.plants:
             self.edges(plant)
         for required in self.model.requirements:
-            wanted = required.kind == sct.RequirementKind.needs
-            restriction = Restriction(self.condition(required.condition), wanted, required)
+            value = required.kind == sct.RequirementKind.needs
+            restriction = Restriction(self.condition(required.condition), value, required)
             machine.events[self.name(required.event)].restrictions.append(restriction)
         self.claims()
         return machine
@@ -138,27 +138,27 @@ class _PlantReading:
     ) -> Participant:
         slot = Slot(self.plants[plant])
         reads = {slot} if leaving else set()
-        read: dict[sct.Edge, Any] = {}
+        compiled_edges: dict[sct.Edge, Any] = {}
         for edge in [*everywhere, *(edge for edges in leaving.values() for edge in edges)]:
             guard = None if edge.guard is None else self.condition(edge.guard)
             updates = [
                 (Slot(slot.plant, update.variable.name), self.condition(update.value)) for update in edge.updates
             ]
-            read[edge] = guard, updates
+            compiled_edges[edge] = guard, updates
             reads.update(*(condition.reads for condition in [guard, *(value for _, value in updates)] if condition))
         domains = self.machine.domains
 
         def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> EventEffect | None:
-            found: EventEffect | None = None
+            effect: EventEffect | None = None
             for edge in [*leaving.get(str(state[slot]), ()), *everywhere] if leaving else everywhere:
-                guard, updates = read[edge]
+                guard, updates = compiled_edges[edge]
                 if guard is None or guard.compute(state, inputs):
-                    given = {held: saturate(value.compute(state, inputs), domains[held]) for held, value in updates}
-                    taken = EventEffect({slot: edge.target.name, **given}, edge)
-                    if found is not None and found.writes != taken.writes:
+                    values = {slot: saturate(value.compute(state, inputs), domains[slot]) for slot, value in updates}
+                    taken = EventEffect({slot: edge.target.name, **values}, edge)
+                    if effect is not None and effect.writes != taken.writes:
                         raise AmbiguousError(edge)
-                    found = taken
-            return found
+                    effect = taken
+            return effect
 
         return Participant(step, frozenset(reads), plant)
 

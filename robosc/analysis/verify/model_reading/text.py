@@ -122,8 +122,8 @@ class _TextReading:
                 self.behaviour(instance)
         self.provided()
         self.required()
-        for (stated, within), plant in self.names.observers.items():
-            self.observer(stated, within, plant)
+        for (requirement, within), plant in self.names.observers.items():
+            self.observer(requirement, within, plant)
         self.claims()
         return self.machine
 
@@ -163,9 +163,9 @@ class _TextReading:
         kind = name.partition("_")[2]
         kind = {"after": "timeout"}.get(kind.rstrip("0123456789"), kind.rstrip("0123456789"))
         kind = "data" if plant.kind == "data" else kind
-        made = Event(kind, controllable=name.startswith("c_"), element=element)
-        self.machine.events[EventName(plant, name)] = made
-        return made
+        event = Event(kind, controllable=name.startswith("c_"), element=element)
+        self.machine.events[EventName(plant, name)] = event
+        return event
 
     def of(self, reference: robosc.CommunicationReference, named: str, within: Instance | None) -> EventName:
         return EventName(_plant(*self.names.port(reference, within)), named)
@@ -189,8 +189,8 @@ class _TextReading:
 
     def first_value(self, variable: robosc.Variable, domain: Domain, instance: Instance) -> Value:
         if variable.initial is not None:
-            given = self.names.constant(variable.initial, Environment(instance, instance.arguments))
-            return saturate(given, domain)
+            value = self.names.constant(variable.initial, Environment(instance, instance.arguments))
+            return saturate(value, domain)
         if isinstance(variable.type, robosc.ComplexDataTypeReference):
             assert isinstance(variable.type.type, robosc.EnumDataType)
             rules = variable.type.type.rules
@@ -223,8 +223,8 @@ class _TextReading:
         for name, places in tried.items():
             # Transitions of every state are tried after those of a state itself.
             ordered = {
-                place: sorted(found, key=lambda transition: not isinstance(transition.eContainer(), robosc.State))
-                for place, found in places.items()
+                place: sorted(transitions, key=lambda transition: not isinstance(transition.eContainer(), robosc.State))
+                for place, transitions in places.items()
             }
             ignored = name.plant != instance.plant and name.name != "c_trigger"
             self.machine.events[name].participants.append(self.reaction(name, ordered, instance, ignored))
@@ -271,8 +271,8 @@ class _TextReading:
         def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> EventEffect | None:
             for guard, fixed, assigned in ways.get(str(state[location]), ()):
                 if guard is None or guard.compute(state, inputs):
-                    given = {slot: saturate(value.compute(state, inputs), domains[slot]) for slot, value in assigned}
-                    return EventEffect({**fixed.writes, **given}, fixed.source)
+                    values = {slot: saturate(value.compute(state, inputs), domains[slot]) for slot, value in assigned}
+                    return EventEffect({**fixed.writes, **values}, fixed.source)
             return nothing if ignored else None
 
         source = next(iter(tried.values()))[0]
@@ -282,14 +282,14 @@ class _TextReading:
         self, transition: robosc.Transition, name: EventName, instance: Instance
     ) -> tuple[Condition | None, EventEffect, list[tuple[Slot, Condition]]]:
         guard = transition.guard if isinstance(transition, robosc.GuardedTransition) else None
-        asked = None if guard is None else self.condition(guard, instance, name)
+        condition = None if guard is None else self.condition(guard, instance, name)
         writes = {} if transition.target is None else {Slot(instance.plant): transition.target.name}
         assigned: dict[Slot, Condition] = {}
         for assignment in transition.assignments:
             slot = Slot(instance.plant, assignment.item.item.name if assignment.item.item else "")
             if slot in self.plants.domains:
                 assigned[slot] = self.condition(assignment.value, instance, name, slot)
-        return asked, EventEffect(writes, transition), list(assigned.items())
+        return condition, EventEffect(writes, transition), list(assigned.items())
 
     # Expressions
 
@@ -310,15 +310,15 @@ class _TextReading:
                 written = ex.Conditional(condition=present, then=written, otherwise=self.names.leaf(assigned))
 
         def meaning(reference: ex.Expression) -> Meaning:
-            found = self.names.meaning(reference)
-            slot = found.slot if isinstance(found, At) else found
+            target = self.names.meaning(reference)
+            slot = target.slot if isinstance(target, At) else target
             if isinstance(slot, Slot) and slot not in self.machine.domains:
-                read = f"{slot.plant.origin}.{slot.variable}"
-                raise UnlikeError(f"the text reads `{read}`, which the plants do not have", expression)
-            if isinstance(found, Data):
-                said = "".join(found.words)
-                raise UnlikeError(f"the text reads `{said}`, which no input of the plants tells", expression)
-            return found
+                variable = f"{slot.plant.origin}.{slot.variable}"
+                raise UnlikeError(f"the text reads `{variable}`, which the plants do not have", expression)
+            if isinstance(target, Data):
+                words = "".join(target.words)
+                raise UnlikeError(f"the text reads `{words}`, which no input of the plants tells", expression)
+            return target
 
         return compile_condition(written, meaning)
 
@@ -347,35 +347,35 @@ class _TextReading:
         words = self.names.words(part) if computed else None
         alike = {input_name: event.inputs[input_name] for text, input_name in computed if event and text == words}
         if alike:
-            kept = None if assigned is None else self.machine.domains[assigned]
-            if isinstance(kept, range):
+            slot_range = None if assigned is None else self.machine.domains[assigned]
+            if isinstance(slot_range, range):
                 # Inputs of the same text differ in their range.
-                alike = {input_name: domain for input_name, domain in alike.items() if domain == kept}
+                alike = {input_name: domain for input_name, domain in alike.items() if domain == slot_range}
             if not alike:
                 raise UnlikeError("the plants have another range for what is computed of data", part)
-            told = next(iter(alike))
-            domain = _REASONS[name.plant.kind] if words == ("error",) else alike[told]
-            self.machine.events[name].inputs[told] = domain
-            return self.names.leaf(EventInput(told))
-        found = self.names.meaning(part) if isinstance(part, robosc.Access) else None
-        if isinstance(found, Data) and found.path is not None:
-            wanted = "_".join(["i", name.name.removeprefix("u_"), *found.path])
+            candidate = next(iter(alike))
+            domain = _REASONS[name.plant.kind] if words == ("error",) else alike[candidate]
+            self.machine.events[name].inputs[candidate] = domain
+            return self.names.leaf(EventInput(candidate))
+        target = self.names.meaning(part) if isinstance(part, robosc.Access) else None
+        if isinstance(target, Data) and target.path is not None:
+            expected_name = "_".join(["i", name.name.removeprefix("u_"), *target.path])
             fitted = [
                 carried.name
                 for carried in inputs
-                if carried.text is None and carried.name.rstrip("_") == wanted.rstrip("_")
+                if carried.text is None and carried.name.rstrip("_") == expected_name.rstrip("_")
             ]
             if len(fitted) == 1:
-                self.machine.events[name].inputs[fitted[0]] = self.carried(name, found.path)
+                self.machine.events[name].inputs[fitted[0]] = self.carried(name, target.path)
                 return self.names.leaf(EventInput(fitted[0]))
         inside = operands(part)
         if not inside:
             return part
-        made: list[ex.Expression] = []
+        parts: list[ex.Expression] = []
         for number, operand in enumerate(inside):
             branch = isinstance(part, ex.Conditional) and number > 0
-            made.append((yield operand, assigned if branch else None))
-        return with_operands(part, made)
+            parts.append((yield operand, assigned if branch else None))
+        return with_operands(part, parts)
 
     def carried(self, name: EventName, path: Sequence[str]) -> Domain:
         """Return the values of a part of an event's data."""
@@ -400,10 +400,10 @@ class _TextReading:
 
         Statements outside of components replace those inside.
         """
-        found: dict[_Port, list[tuple[robosc.ProvideStatement, Instance | None]]] = {}
+        by_port: dict[_Port, list[tuple[robosc.ProvideStatement, Instance | None]]] = {}
         for statement, within in self.names.definitions(robosc.ProvideStatement):
-            found.setdefault(self.names.port(statement.communicationType, within), []).append((statement, within))
-        for port, statements in found.items():
+            by_port.setdefault(self.names.port(statement.communicationType, within), []).append((statement, within))
+        for port, statements in by_port.items():
             outside = [statement for statement in statements if statement[1] is None]
             self.choice(Plant("data", _plant(*port).origin), outside or statements)
 
@@ -434,13 +434,13 @@ class _TextReading:
             if not isinstance(requirement, known):
                 raise NotReadError(requirement)
         starting: dict[EventName, list[Restriction]] = {}
-        for stated, within in self.names.definitions(robosc.CommunicationRequirement):
-            wanted = not isinstance(stated, robosc.DisablesRequirement)
-            condition = self.condition(stated.condition, within)
+        for statement, within in self.names.definitions(robosc.CommunicationRequirement):
+            value = not isinstance(statement, robosc.DisablesRequirement)
+            condition = self.condition(statement.condition, within)
             for name in dict.fromkeys(
-                self.of(reference, "c_trigger", within) for reference in stated.target.communicationTypes
+                self.of(reference, "c_trigger", within) for reference in statement.target.communicationTypes
             ):
-                starting.setdefault(name, []).append(Restriction(condition, wanted, stated))
+                starting.setdefault(name, []).append(Restriction(condition, value, statement))
         for name, restrictions in starting.items():
             self.machine.events[name].restrictions += restrictions
         for name, event in self.machine.events.items():
@@ -448,19 +448,19 @@ class _TextReading:
                 event.restrictions.append(_broken(starting.get(EventName(name.plant, "c_trigger"), []), event.element))
 
     def observer_slots(self) -> None:
-        for (stated, within), plant in self.names.observers.items():
-            if isinstance(stated, robosc.OrderRequirement):
-                self.locations(plant, ("waiting", "ready"), "waiting", ("waiting", "ready"), stated)
-            elif isinstance(stated, robosc.CountRequirement):
-                self.locations(plant, ("counting",), "counting", ["counting"], stated)
-                most = self.names.constant(stated.bound, Environment(within, within.arguments if within else {}))
-                self.slot(Slot(plant, "count"), range(most + 1), 0, stated)
+        for (requirement, within), plant in self.names.observers.items():
+            if isinstance(requirement, robosc.OrderRequirement):
+                self.locations(plant, ("waiting", "ready"), "waiting", ("waiting", "ready"), requirement)
+            elif isinstance(requirement, robosc.CountRequirement):
+                self.locations(plant, ("counting",), "counting", ["counting"], requirement)
+                most = self.names.constant(requirement.bound, Environment(within, within.arguments if within else {}))
+                self.slot(Slot(plant, "count"), range(most + 1), 0, requirement)
             else:
-                assert isinstance(stated, robosc.AutomatonRequirement)
-                names = tuple(state.name for state in stated.states)
-                initial = next(state.name for state in stated.states if state.initial)
-                marked = [state.name for state in stated.states if state.marked] or names
-                self.locations(plant, names, initial, marked, stated)
+                assert isinstance(requirement, robosc.AutomatonRequirement)
+                names = tuple(state.name for state in requirement.states)
+                initial = next(state.name for state in requirement.states if state.initial)
+                marked = [state.name for state in requirement.states if state.marked] or names
+                self.locations(plant, names, initial, marked, requirement)
 
     def named(self, reference: robosc.EventReference, within: Instance | None) -> EventName:
         """Return the named event, the request, or the arrival of an outgoing message."""
@@ -472,36 +472,36 @@ class _TextReading:
         )
         return self.of(reference.communicationType, "u_response" if comes else "c_trigger", within)
 
-    def observer(self, stated: robosc.Requirement, within: Instance | None, plant: Plant) -> None:
-        if isinstance(stated, robosc.AutomatonRequirement):
-            self.automaton(stated, within, Slot(plant))
+    def observer(self, requirement: robosc.Requirement, within: Instance | None, plant: Plant) -> None:
+        if isinstance(requirement, robosc.AutomatonRequirement):
+            self.automaton(requirement, within, Slot(plant))
             return
-        assert isinstance(stated, robosc.OrderRequirement | robosc.CountRequirement)
-        anchor = self.named(stated.anchor, within)
-        targets = dict.fromkeys(self.named(event, within) for event in stated.target.events)
+        assert isinstance(requirement, robosc.OrderRequirement | robosc.CountRequirement)
+        anchor = self.named(requirement.anchor, within)
+        targets = dict.fromkeys(self.named(event, within) for event in requirement.target.events)
         events = self.machine.events
-        slot = Slot(plant) if isinstance(stated, robosc.OrderRequirement) else Slot(plant, "count")
+        slot = Slot(plant) if isinstance(requirement, robosc.OrderRequirement) else Slot(plant, "count")
         allowed = At(slot, "ready")
         for name in targets:
-            if isinstance(stated, robosc.CountRequirement):
+            if isinstance(requirement, robosc.CountRequirement):
                 holds = _below(slot, self.machine.domains[slot])
-                events[name].participants.append(_one_more(slot, stated))
+                events[name].participants.append(_one_more(slot, requirement))
             else:
                 holds = self.is_at(allowed)
-                if stated.each and name != anchor:
-                    events[name].participants.append(_always({slot: "waiting"}, stated))
-            events[name].restrictions.append(Restriction(holds, True, stated))
-        given: Value = "ready" if isinstance(stated, robosc.OrderRequirement) else 0
-        events[anchor].participants.append(_always({slot: given}, stated))
+                if requirement.each and name != anchor:
+                    events[name].participants.append(_always({slot: "waiting"}, requirement))
+            events[name].restrictions.append(Restriction(holds, True, requirement))
+        result: Value = "ready" if isinstance(requirement, robosc.OrderRequirement) else 0
+        events[anchor].participants.append(_always({slot: result}, requirement))
 
     def is_at(self, place: At) -> Condition:
         return compile_condition(self.names.leaf(place), lambda _: place)
 
-    def automaton(self, stated: robosc.AutomatonRequirement, within: Instance | None, slot: Slot) -> None:
+    def automaton(self, requirement: robosc.AutomatonRequirement, within: Instance | None, slot: Slot) -> None:
         """Add a requirement automaton: an event without a transition with a true condition is forbidden."""
         alphabet = {
             self.named(transition.event, within): transition
-            for state in stated.states
+            for state in requirement.states
             for transition in state.transitions
         }
         for name in alphabet:
@@ -515,33 +515,33 @@ class _TextReading:
                     for transition in state.transitions
                     if self.named(transition.event, within) == name
                 ]
-                for state in stated.states
+                for state in requirement.states
             }
-            asked = (way[0] for found in ways.values() for way in found)
-            reads = frozenset({slot}).union(*(condition.reads for condition in asked if condition))
+            conditions = (way[0] for alternatives in ways.values() for way in alternatives)
+            reads = frozenset({slot}).union(*(condition.reads for condition in conditions if condition))
             event = self.machine.events[name]
-            event.participants.append(_following(slot, ways, reads, stated))
+            event.participants.append(_following(slot, ways, reads, requirement))
             possible = partial(_first, slot, ways)
-            event.restrictions.append(Restriction(Condition(possible, reads), True, stated))
+            event.restrictions.append(Restriction(Condition(possible, reads), True, requirement))
 
     def claims(self) -> None:
         """Read the conditions of `never`, `always`, and of properties."""
-        for stated, within in self.names.definitions(robosc.StateInvariant):
-            wanted = stated.kind == robosc.InvariantKind.always
-            self.claim("the condition of an invariant", stated.condition, within, wanted, stated)
+        for invariant, within in self.names.definitions(robosc.StateInvariant):
+            value = invariant.kind == robosc.InvariantKind.always
+            self.claim("the condition of an invariant", invariant.condition, within, value, invariant)
         for claimed, within in self.names.definitions(robosc.Property):
             if isinstance(claimed, robosc.InvariantProperty):
-                wanted = claimed.kind == robosc.InvariantKind.always
-                self.claim("the condition of a property", claimed.condition, within, wanted, claimed)
+                value = claimed.kind == robosc.InvariantKind.always
+                self.claim("the condition of a property", claimed.condition, within, value, claimed)
             elif isinstance(claimed, robosc.ReachabilityProperty):
                 self.claim("what a property says can be reached", claimed.condition, within, True, claimed)
                 start = claimed.premise or ex.BooleanLiteral(value=True)
                 self.claim("where a property begins", start, within, True, claimed)
 
     def claim(
-        self, what: str, expression: ex.Expression, within: Instance | None, wanted: bool, source: ex.Located
+        self, what: str, expression: ex.Expression, within: Instance | None, value: bool, source: ex.Located
     ) -> None:
-        self.machine.conditions.append(Claim(what, self.condition(expression, within), wanted, source))
+        self.machine.conditions.append(Claim(what, self.condition(expression, within), value, source))
 
 
 def _plant(instance: Instance, communication: robosc.CommunicationType) -> Plant:
@@ -557,18 +557,18 @@ def _phases(slot: Slot, step: Mapping[str, str], source: ex.Located) -> Particip
 
 
 def _chosen(
-    slot: Slot, location: str, asked: Sequence[tuple[Condition | None, bool]], source: ex.Located
+    slot: Slot, location: str, conditions: Sequence[tuple[Condition | None, bool]], source: ex.Located
 ) -> Participant:
     """Return a choice of data that needs each condition to have its value; a missing condition is true."""
 
     def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> EventEffect | None:
         holds = (
-            (True if condition is None else bool(condition.compute(state, inputs))) is wanted
-            for condition, wanted in asked
+            (True if condition is None else bool(condition.compute(state, inputs))) is value
+            for condition, value in conditions
         )
         return EventEffect({slot: location}, source) if all(holds) else None
 
-    return Participant(step, frozenset().union(*(condition.reads for condition, _ in asked if condition)), source)
+    return Participant(step, frozenset().union(*(condition.reads for condition, _ in conditions if condition)), source)
 
 
 def _always(writes: Mapping[Slot, Value], source: ex.Located) -> Participant:

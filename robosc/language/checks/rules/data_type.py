@@ -76,32 +76,32 @@ def _sent_as(sent: rsc.DataType) -> Hint:
 
 def _without_enum(hint: str, declared: rsc.ComplexDataTypeReference) -> Replacement | None:
     """Return a hint that replaces an enum by its base type."""
-    found: rsc.DataType | None = declared
+    base_type: rsc.DataType | None = declared
     seen = set()
-    while isinstance(found, rsc.ComplexDataTypeReference) and isinstance(found.type, rsc.EnumDataType):
-        if found.type in seen:
+    while isinstance(base_type, rsc.ComplexDataTypeReference) and isinstance(base_type.type, rsc.EnumDataType):
+        if base_type.type in seen:
             return None
-        seen.add(found.type)
-        found = found.type.type
-    return Replacement(hint, _text(found), declared, is_choice=True) if found is not None else None
+        seen.add(base_type.type)
+        base_type = base_type.type.type
+    return Replacement(hint, _text(base_type), declared, is_choice=True) if base_type is not None else None
 
 
 def _base_of(enum: rsc.EnumDataType) -> Iterator[Finding]:
-    found = declared_type(enum.type)
+    base_type = declared_type(enum.type)
     repair: Hint | None = None
-    if isinstance(found, EnumType):
-        repair = f"declare it from the type that `{found.definition.name}` is from"
+    if isinstance(base_type, EnumType):
+        repair = f"declare it from the type that `{base_type.definition.name}` is from"
         if isinstance(enum.type, rsc.ComplexDataTypeReference):
             repair = _without_enum(repair, enum.type) or repair
-    elif isinstance(found, ArrayType):
+    elif isinstance(base_type, ArrayType):
         repair = "declare it from the object that has the array, and read elements by `value.….[0]`"
-    elif found == NONE:
+    elif base_type == NONE:
         repair = Choice(
             "declare it from `boolean`, `integer`, `double`, `string` or an object",
             tuple(Replacement(f"declare it from `{name}`", name, enum.type) for name in _BASIC),
         )
     if repair:
-        what = {EnumType: "another enum", ArrayType: "an array"}.get(type(found), "no data")
+        what = {EnumType: "another enum", ArrayType: "an array"}.get(type(base_type), "no data")
         yield Finding(
             enum.type,
             f"enum `{enum.name}` is from {what}, expected boolean, integer, double, string or an object",

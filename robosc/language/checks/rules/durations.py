@@ -49,11 +49,11 @@ def duration(base: rsc.Base) -> Iterator[Finding]:
                 yield from _set(transition, instances(base).parameter(access, meaning.instance), meaning)
                 continue
             (value,) = meaning.values(transition.duration)
-            found = None if value is None else milliseconds(transition, meaning.instance)
-            if found is not None and not SHORTEST <= found <= LONGEST:
+            length = None if value is None else milliseconds(transition, meaning.instance)
+            if length is not None and not SHORTEST <= length <= LONGEST:
                 yield meaning.finding(
                     transition.duration or transition,
-                    f"this time is {_TOO_LONG if found > LONGEST else _TOO_SHORT}, expected {_EXPECTED}",
+                    f"this time is {_TOO_LONG if length > LONGEST else _TOO_SHORT}, expected {_EXPECTED}",
                     _UNITS,
                 )
 
@@ -65,8 +65,8 @@ def _set(transition: rsc.TimedTransition, owned: InstanceParameter, meaning: Mea
     if low is not None and high is not None:
         shortest, longest = (set_milliseconds(bound, UNITS[transition.unit]) for bound in (low, high))
         if shortest < SHORTEST or longest > LONGEST:
-            found = _TOO_SHORT if shortest < SHORTEST else _TOO_LONG
-            message = f"`{parameter.name}` may be set to {low}..{high} {unit}, some of it {found}, expected {_EXPECTED}"
+            fault = _TOO_SHORT if shortest < SHORTEST else _TOO_LONG
+            message = f"`{parameter.name}` may be set to {low}..{high} {unit}, some of it {fault}, expected {_EXPECTED}"
             yield meaning.finding(transition.duration or transition, message, f"narrow its range; {_UNITS}")
     elif meaning.instance is None and parameter.lowest is None and declared_type(parameter.type) == DOUBLE:
         yield Finding(

@@ -78,8 +78,8 @@ def enum_state_overlap(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _overlaps(library: rsc.Library) -> set[tuple[rsc.EnumValue, rsc.State]]:
-    found = [state for instance in instances(library) for state in instance.states]
-    return {(value, state) for value in _reachable_values(library) for state in found if value.name == state.name}
+    states = [state for instance in instances(library) for state in instance.states]
+    return {(value, state) for value in _reachable_values(library) for state in states if value.name == state.name}
 
 
 def _import(base: rsc.Base, instance: Instance, unit: rsc.Base) -> rsc.Component:

@@ -55,8 +55,8 @@ def variable_type(base: rsc.Base) -> Iterator[Finding]:
     """Each variable holds one value; those that the supervisor needs have a finite type and finite data."""
     stored = _stored(base)
     for variable in variables(base):
-        found = declared_type(variable.type)
-        if found == NONE:
+        value_type = declared_type(variable.type)
+        if value_type == NONE:
             yield Finding(
                 variable,
                 f"variable `{variable.name}` holds no value, expected data",
@@ -68,18 +68,20 @@ def variable_type(base: rsc.Base) -> Iterator[Finding]:
                     ),
                 ),
             )
-        elif isinstance(found, ArrayType | ObjectType):
-            starts = "an array starts empty" if isinstance(found, ArrayType) else "each field starts as a variable does"
+        elif isinstance(value_type, ArrayType | ObjectType):
+            starts = (
+                "an array starts empty" if isinstance(value_type, ArrayType) else "each field starts as a variable does"
+            )
             if variable.initial is not None:
-                message = f"variable `{variable.name}` is {found} and takes no initial value: {starts}"
+                message = f"variable `{variable.name}` is {value_type} and takes no initial value: {starts}"
                 hint = Removal(
                     f"write `variable {variable.name}: …` without `=`",
                     part_of(variable.initial).preceded_by("="),
                     is_choice=False,
                 )
                 yield Finding(variable.initial, message, hint)
-            if _has_objects(found) and variable not in stored:
-                message = f"variable `{variable.name}` is {found}, and no event stores anything in it"
+            if _has_objects(value_type) and variable not in stored:
+                message = f"variable `{variable.name}` is {value_type}, and no event stores anything in it"
                 yield Finding(
                     variable,
                     message,
@@ -89,8 +91,8 @@ def variable_type(base: rsc.Base) -> Iterator[Finding]:
     yield from supervised_faults(base, function_faults)
 
 
-def _has_objects(found: Type) -> bool:
-    return isinstance(found, ObjectType) or (isinstance(found, ArrayType) and _has_objects(found.element))
+def _has_objects(kind: Type) -> bool:
+    return isinstance(kind, ObjectType) or (isinstance(kind, ArrayType) and _has_objects(kind.element))
 
 
 def _stored(base: rsc.Base) -> set[rsc.Variable]:
@@ -99,19 +101,21 @@ def _stored(base: rsc.Base) -> set[rsc.Variable]:
         (variable, value)
         for _, transition in transitions(base)
         # If a transition assigns a variable several times, the last assignment takes effect.
-        for variable, value in {assigned_variable(given): given.value for given in transition.assignments}.items()
+        for variable, value in {
+            assigned_variable(assignment): assignment.value for assignment in transition.assignments
+        }.items()
     ]
-    found: set[rsc.Variable] = set()
+    stored: set[rsc.Variable] = set()
     more = True
     while more:
         reached = {
             variable
             for variable, value in assigned
-            if variable is not None and any(access.value or access.item in found for access in accesses(value))
+            if variable is not None and any(access.value or access.item in stored for access in accesses(value))
         }
-        more = not reached <= found
-        found |= reached
-    return found
+        more = not reached <= stored
+        stored |= reached
+    return stored
 
 
 #: Repair for a variable of the node with too many values.
@@ -120,15 +124,15 @@ _KEPT_REPAIR = "let a variable remember what matters of it, such as `do some := 
 
 def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
     for owned, reason in result.variables.items():
-        found = declared_type(owned.type)
-        if found in {DOUBLE, STRING} or isinstance(found, ArrayType | ObjectType):
+        value_type = declared_type(owned.type)
+        if value_type in {DOUBLE, STRING} or isinstance(value_type, ArrayType | ObjectType):
             name = f"{owned.instance.name}.{owned.variable.name}"
             yield Fault(
                 owned.variable,
                 reason,
-                f"variable `{name}` is {found}, and the supervisor needs it, expected boolean, an integer with a range"
-                " or an enum: its states are finitely many",
-                _KEPT_REPAIR if isinstance(found, ArrayType | ObjectType) else _enum_repair(str(found)),
+                f"variable `{name}` is {value_type}, and the supervisor needs it, expected boolean, "
+                "an integer with a range or an enum: its states are finitely many",
+                _KEPT_REPAIR if isinstance(value_type, ArrayType | ObjectType) else _enum_repair(str(value_type)),
             )
     for reading in readings(result):
         access = reading.reason.access
@@ -260,13 +264,13 @@ def _without_range(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
                 ),
             )
     for reading in readings(result):
-        told = reading.source
-        if not isinstance(told, ComputedValue) or told.type != INTEGER or told.bounds is not None:
+        source = reading.source
+        if not isinstance(source, ComputedValue) or source.type != INTEGER or source.bounds is not None:
             continue
         element: ex.Located = reading.part
         hint: Hint = "compare it with a literal, or assign it as it is to a variable, whose range it takes"
         path = property_path(reading.part) if isinstance(reading.part, rsc.Access) else None
-        declared = None if path is None else Data(told.port, told.event, path).type
+        declared = None if path is None else Data(source.port, source.event, path).type
         if _has_wrong_bounds(declared):
             continue
         if _is_unbounded(declared):
@@ -286,7 +290,7 @@ def _without_range(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
         yield Fault(
             element,
             reading.reason,
-            f"`{told.text}` is an integer without range, and {_needed(reading)} is computed from it"
+            f"`{source.text}` is an integer without range, and {_needed(reading)} is computed from it"
             " and others, expected a range: the supervisor's inputs have finitely many values",
             hint,
         )
@@ -337,9 +341,9 @@ def _provided(
     if not isinstance(data, rsc.ObjectValue):
         yield data, declared, name
         return
-    for given in data.properties:
-        if given.property is not None:
-            yield from _provided(given.value, given.property.type, given.property.name)
+    for field in data.properties:
+        if field.property is not None:
+            yield from _provided(field.value, field.property.type, field.property.name)
 
 
 def _outside(

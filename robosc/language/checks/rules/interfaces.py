@@ -97,9 +97,9 @@ def interface_unknown(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]
         if isinstance(data.interface.eContainer(), rsc.InterfaceTypeReference):
             continue  # The data type that links the interface has the finding.
         for fault in _unknown(data, interfaces):
-            wanted: ex.Located | None = fault.property if isinstance(fault, Fault) else data.interface
+            candidate: ex.Located | None = fault.property if isinstance(fault, Fault) else data.interface
             other = data.declared if isinstance(fault, Fault) else data.communication
-            element = wanted if wanted is not None and unit_of(wanted) is base else other
+            element = candidate if candidate is not None and unit_of(candidate) is base else other
             if (element, fault.message) not in reported:
                 reported.add((element, fault.message))
                 yield Finding(element, fault.message, _suggestion(fault, element))
@@ -126,13 +126,13 @@ def _suggestion(fault: Fault | Unknown, element: ex.Located | None) -> Hint:
 
 
 def _unknown(data: CommunicationData, interfaces: RosTypes) -> list[Fault] | list[Unknown]:
-    found = faults(data, interfaces, {})
-    return [found] if isinstance(found, Unknown) else [fault for fault in found if fault.unknown]
+    mismatches = faults(data, interfaces, {})
+    return [mismatches] if isinstance(mismatches, Unknown) else [fault for fault in mismatches if fault.unknown]
 
 
 def _faulty(base: rsc.Base, interfaces: RosTypes) -> Iterator[tuple[ex.Located, str, Hint, bool]]:
     """Yield the places to change in the base's text, with message, hint, and whether the model uses the data."""
-    found: dict[tuple[ex.Located, str, Hint], bool] = {}
+    places: dict[tuple[ex.Located, str, Hint], bool] = {}
     units = {unit: list(carried_data(unit)) for unit in [base, *reachable(base, carries)]}
     everything = UsedData([base, *reachable(base)] if any(units.values()) else ())
     for unit, communicated in units.items():
@@ -151,8 +151,8 @@ def _faulty(base: rsc.Base, interfaces: RosTypes) -> Iterator[tuple[ex.Located, 
                     elif fault.text is not None and fault.property is None and element is data.declared:
                         hint = Replacement(fault.hint, fault.text, element)
                     key = (element, fault.message, hint)
-                    found[key] = found.get(key, False) or fault.is_used(uses)
-    yield from ((*key, used) for key, used in found.items())
+                    places[key] = places.get(key, False) or fault.is_used(uses)
+    yield from ((*key, used) for key, used in places.items())
 
 
 def _of_property(fault: Fault, declared: rsc.ObjectProperty) -> Hint:

@@ -113,8 +113,8 @@ def _forbidden_ends(known: Instances, places: Places) -> Iterator[Finding]:
 
 def _variables_read(known: Instances, places: Places) -> Iterator[Finding]:
     """Report transitions on a cancel that assign a variable which a requirement on another command reads."""
-    read = _readers(known)
-    for instance in known if read else ():
+    readers_by_variable = _readers(known)
+    for instance in known if readers_by_variable else ():
         for transition, _ in instance.transitions:
             port = (
                 known.port(transition.communicationType, instance)
@@ -123,7 +123,9 @@ def _variables_read(known: Instances, places: Places) -> Iterator[Finding]:
             )
             for assignment in transition.assignments if port is not None else ():
                 variable = assigned_variable(assignment)
-                readers = read.get(InstanceVariable(instance, variable), ()) if variable is not None else ()
+                readers = (
+                    readers_by_variable.get(InstanceVariable(instance, variable), ()) if variable is not None else ()
+                )
                 others = [reader for reader, restricted in readers if restricted - {port}]
                 place = places.new(assignment, instance, port.communication) if port is not None and others else None
                 if place is not None and port is not None and variable is not None:
@@ -139,13 +141,13 @@ def _variables_read(known: Instances, places: Places) -> Iterator[Finding]:
 
 def _readers(known: Instances) -> dict[InstanceVariable, list[tuple[rsc.Requirement, set[PortInstance | None]]]]:
     """Return the requirements that read each variable, each with the commands that it restricts."""
-    found: dict[InstanceVariable, list[tuple[rsc.Requirement, set[PortInstance | None]]]] = {}
-    for stated in command_conditions(known):
-        for access in accesses(known.expanded(stated.condition, stated.within)):
-            variable = known.variable(access, stated.within)
+    readers: dict[InstanceVariable, list[tuple[rsc.Requirement, set[PortInstance | None]]]] = {}
+    for condition in command_conditions(known):
+        for access in accesses(known.expanded(condition.condition, condition.within)):
+            variable = known.variable(access, condition.within)
             if variable is not None:
-                found.setdefault(variable, []).append((stated.requirement, stated.restricted))
-    return found
+                readers.setdefault(variable, []).append((condition.requirement, condition.restricted))
+    return readers
 
 
 @rule("answer-unheard", Severity.WARNING)
@@ -156,7 +158,7 @@ def answer_unheard(base: rsc.Base) -> Iterator[Finding]:
     known = instances(base)
     heard = _answers_heard(known)
     restricted = _restricted(known)
-    read = _states_read(known)
+    states_read = _states_read(known)
     places = Places(base)
     for instance in known:
         for transition, state in instance.transitions:
@@ -166,7 +168,7 @@ def answer_unheard(base: rsc.Base) -> Iterator[Finding]:
             port = known.port(transition.communicationType, instance)
             if port is None or isinstance(port.communication, rsc.Message) or port in heard:
                 continue
-            unread = port not in restricted and (instance, target) not in read
+            unread = port not in restricted and (instance, target) not in states_read
             if unread and _answers_nothing(port.communication) and not _commands(target, instance, port, known):
                 continue
             place = places.new(transition, instance, port.communication)
@@ -183,29 +185,29 @@ def answer_unheard(base: rsc.Base) -> Iterator[Finding]:
 
 def _answers_heard(known: Instances) -> set[PortInstance]:
     """Return the services and actions whose response a transition or a requirement names."""
-    found: set[PortInstance | None] = set()
+    ports: set[PortInstance | None] = set()
     for instance in known:
         for transition, _ in instance.transitions:
             if _is_on(transition, rsc.ResultType.response):
-                found.add(known.port(transition.communicationType, instance))
+                ports.add(known.port(transition.communicationType, instance))
     for kind in (rsc.OrderRequirement, rsc.CountRequirement, rsc.AutomatonRequirement):
         for requirement in known.statements(kind):
             for reference in events_of(requirement.element):
                 if kind_of(reference) == rsc.ResultType.response:
-                    found.add(known.port(reference.communicationType, requirement.within))
-    return {port for port in found if port is not None}
+                    ports.add(known.port(reference.communicationType, requirement.within))
+    return {port for port in ports if port is not None}
 
 
 def _restricted(known: Instances) -> set[PortInstance]:
     """Return the communications whose start a requirement restricts."""
-    found: set[PortInstance | None] = set()
+    ports: set[PortInstance | None] = set()
     for requirement in known.statements(rsc.CommunicationRequirement):
-        found |= commands_of(requirement, known)
+        ports |= commands_of(requirement, known)
     for kind in (rsc.OrderRequirement, rsc.CountRequirement, rsc.AutomatonRequirement):
         for statement in known.statements(kind):
             for reference in events_of(statement.element):
-                found.add(known.port(reference.communicationType, statement.within))
-    return {port for port in found if port is not None}
+                ports.add(known.port(reference.communicationType, statement.within))
+    return {port for port in ports if port is not None}
 
 
 def _states_read(known: Instances) -> set[tuple[Instance | None, rsc.State]]:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 #: Name of each kind of reason in `~/blocked`, in order of precedence.
 _KINDS = {Origin.requirement: "requirement", Origin.plants: "state", Origin.synthesis: "synthesis"}
 #: Start of the sentence for each kind of reason, and the separator before the texts of the reasons.
-_SAID = {
+_HEADINGS = {
     "requirement": ("forbidden", ": "),
     "state": ("not possible", " in "),
     "synthesis": ("forbidden by synthesis", ": "),
@@ -33,8 +33,8 @@ class LoggedReason:
     because: Sequence[str]
 
     def __str__(self) -> str:
-        said, joint = _SAID[self.kind]
-        return said + (joint + ("; " if joint == ": " else ", ").join(self.because) if self.because else "")
+        heading, joint = _HEADINGS[self.kind]
+        return heading + (joint + ("; " if joint == ": " else ", ").join(self.because) if self.because else "")
 
 
 class Blocking:
@@ -62,5 +62,5 @@ class Blocking:
         return self._conditions[reason]()
 
     def _text(self, reason: executed.Reason) -> str:
-        held = reason.location
-        return reason.text + (held.plant.locations[self.engine.cell(held)].name if held else "")
+        location = reason.location
+        return reason.text + (location.plant.locations[self.engine.cell(location)].name if location else "")

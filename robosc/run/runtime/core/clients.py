@@ -332,18 +332,18 @@ class ActionClient:
         self._set_deadline(lambda: self._lose("neither accepted nor rejected"), LOST)
 
     def _finish(self, outcome: GoalOutcome, result: Message, text: str) -> None:
-        said = f": {text}" if text else ""
+        suffix = f": {text}" if text else ""
         match outcome:
             case GoalOutcome.SUCCEEDED:
                 self._reset()
                 self._answers.response(result)
             case GoalOutcome.CANCELED:
                 own = "canceled by the controller itself, an error to the model"
-                self._end_canceled(f"{own if self._canceling else 'canceled by someone else'}{said}", result)
+                self._end_canceled(f"{own if self._canceling else 'canceled by someone else'}{suffix}", result)
             case GoalOutcome.ABORTED:
-                self._fail(Failure.ABORTED, f"aborted{said}", result)
+                self._fail(Failure.ABORTED, f"aborted{suffix}", result)
             case GoalOutcome.LOST:
-                self._lose(f"{LOST_GOAL}{said}")
+                self._lose(f"{LOST_GOAL}{suffix}")
 
     def _end_canceled(self, why: str, result: Message) -> None:
         late = self._late

@@ -72,8 +72,8 @@ class StatusReporter:
     def _verdict(self, event: sct.Event) -> str:
         if not self._blocking.engine.enabled(event_name(event)):
             return str(self._blocking.reason(event))
-        held = self._own.held_back(event)
-        return "allowed" if held is None else f"held back: {held}"
+        obstacle = self._own.held_back(event)
+        return "allowed" if obstacle is None else f"held back: {obstacle}"
 
 
 def _text(value: Json) -> str:

@@ -47,9 +47,9 @@ class Composer:
         fields: dict[tuple[str, ...], Json] = {}
         alternatives = sending.alternatives
         chosen = next((data for data in alternatives if self.data.is_in(data.location)), None)
-        given = list(chosen.fields) if chosen is not None else []
-        values = [within_range(self.data.value(field.value), field.type) for field in given]
-        for field, value in zip(given, values, strict=True):
+        assignments = list(chosen.fields) if chosen is not None else []
+        values = [within_range(self.data.value(field.value), field.type) for field in assignments]
+        for field, value in zip(assignments, values, strict=True):
             if isinstance(field.value, rosgraph.WireAccess) and holds_objects(field.type):
                 hand_on(self.port, message, field.path, value)
                 continue

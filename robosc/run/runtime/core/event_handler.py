@@ -122,7 +122,7 @@ class EventHandler:
         return ReceivedData(self._values(reception), has_reason=reception.event.kind == sct.EventKind.error)
 
     def _values(self, reception: rosgraph.Reception) -> list[ex.Expression]:
-        return [given.value for given in reception.inputs] + self._data.values_read(reception.event)
+        return [assignment.value for assignment in reception.inputs] + self._data.values_read(reception.event)
 
     # The node's life
 
@@ -183,8 +183,8 @@ class EventHandler:
     def receive(self, subscription: rosgraph.Subscription, message: Message) -> None:
         """Handle a message on a topic as a batch of events. A message that can't be read counts as not received."""
         with self._batch():
-            read = [self._receive(reception, subscription.topic, message) for reception in subscription.receptions]
-            if all(read):
+            results = [self._receive(reception, subscription.topic, message) for reception in subscription.receptions]
+            if all(results):
                 self._note_received(subscription)
 
     def _note_received(self, subscription: rosgraph.Subscription) -> None:
@@ -323,8 +323,8 @@ class EventHandler:
             return None
         source, message = self._received
         if source is not event:
-            read = self._unread[source].read(self._data, message) or {"value": {}}
-            return {**read, **self._logged[event].reason(self._data)}
+            logged = self._unread[source].read(self._data, message) or {"value": {}}
+            return {**logged, **self._logged[event].reason(self._data)}
         return self._logged[event].read(self._data, message) if event in self._logged else None
 
     # Contents of `/diagnostics`

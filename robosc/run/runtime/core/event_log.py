@@ -46,7 +46,7 @@ def default_log(node: str, package: str) -> str:
 
 
 #: Seconds between two flushes of a log, and the number of buffered characters after which lines are lost.
-_FLUSH, _KEPT = 0.02, 8 << 20
+_FLUSH, _MOST_BYTES = 0.02, 8 << 20
 
 
 class EventLog:
@@ -88,7 +88,7 @@ class EventLog:
     def append(self, line: str) -> None:
         """Append a line, which ends with a line feed; if the buffer is full, the line is lost."""
         with self._changed:
-            if self._size + len(line) > _KEPT:
+            if self._size + len(line) > _MOST_BYTES:
                 self._lost += 1
                 return
             self._lines.append(line)
@@ -155,8 +155,8 @@ class ReceivedData:
         self.parts = all_shown(values)
         # An answer that can't be read is an error, too: the reason shows whose data this is.
         self._reads_reason = has_reason and (reads_reason(values) or bool(self.parts))
-        found = self.parts
-        self._parts = {(): found["data",]} if list(found) == [("data",)] else found
+        parts = self.parts
+        self._parts = {(): parts["data",]} if list(parts) == [("data",)] else parts
 
     def read(self, data: NodeData, message: Message) -> Mapping[str, Json] | None:
         """Return the data for the log without what can't be read; None if nothing remains."""
@@ -194,13 +194,13 @@ def _inside(element: Any, parts: Shown, data: NodeData) -> Json:
 
 def nest(values: Mapping[_Path, Json]) -> dict[str, Json]:
     """Return nested objects from paths of names to values."""
-    made: dict[str, Json] = {}
+    root: dict[str, Json] = {}
     for path, value in values.items():
-        owner = made
+        owner = root
         for name in path[:-1]:
             owner = owner.setdefault(name, {})  # type: ignore[assignment]
         owner[path[-1]] = value
-    return made
+    return root
 
 
 def format_value(value: Value) -> Json:

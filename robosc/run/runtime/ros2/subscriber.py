@@ -47,9 +47,9 @@ class Ros2Subscriber:
             self._executor.spin_once(timeout_sec=LOOK)
 
     def _listen(self, node: str, listener: Listener) -> None:
-        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._node.create_subscription(
-            String, f"{node}/definition", lambda text: listener.receive_definition(text.data), kept
+            String, f"{node}/definition", lambda text: listener.receive_definition(text.data), latched
         )
         self._node.create_subscription(
             String, f"{node}/state", lambda text: listener.receive_report(text.data), WAITING
