@@ -11,7 +11,7 @@ import subprocess
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from robosc.language.configuration import LoopConfiguration
+from robosc.language.configuration import ControlLoop
 from robosc.m2m.sct_to_engine import transform
 from robosc.m2t.c import engine
 from robosc.m2t.c.names import CNames
@@ -145,7 +145,7 @@ class Costs:
 def measured(model: SupervisoryControlModel, folder: Path, targets: Mapping[str, Sequence[str]] = TARGETS) -> Costs:
     """Build the engine of a model with its supervisor in a folder, and count its costs; sizes for the given targets."""
     names = CNames(model)
-    for path, text in engine.generate(transform(model), LoopConfiguration()).items():
+    for path, text in engine.generate(transform(model), ControlLoop()).items():
         (folder / path).write_text(text)
     source = folder / f"{names.prefix}_supervisor.c"
     sizes = {target: size(source, names, command) for target, command in targets.items() if shutil.which(command[0])}

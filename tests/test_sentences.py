@@ -15,7 +15,7 @@ from robosc.analysis.verify import validate_c, validate_cif, verify_system
 from robosc.analysis.verify.verdict import Outcome
 from robosc.base.diagnostics import ModelError
 from robosc.engine import Engine
-from robosc.language.configuration import Configuration, LoopConfiguration
+from robosc.language.configuration import Configuration, ControlLoop
 from robosc.m2m.sct_to_engine import transform
 from robosc.m2t import cif, supervisor
 from robosc.m2t.c import engine
@@ -192,7 +192,7 @@ provide lamp with if loud then speed else 0.0"""
 def test_the_c_supervisor_has_no_parameter_but_durations(tmp_path: Path) -> None:
     """The C supervisor takes such durations in its struct, and has no other parameter."""
     model = supervised(tmp_path, CLOCK)
-    texts = "".join(engine.generate(transform(model), LoopConfiguration()).values())
+    texts = "".join(engine.generate(transform(model), ControlLoop()).values())
     assert [duration.parameter for duration in model.durations] == ["pause"]
     assert "pause" in texts
     for name in ("speed", "loud"):

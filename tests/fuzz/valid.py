@@ -148,7 +148,7 @@ def compiled(robots: Sequence[Robot], folder: Path, flags: Sequence[str]) -> Pat
     sources = []
     for robot in robots:
         loop = robot.settings
-        chosen = config.LoopConfiguration(
+        chosen = config.ControlLoop(
             events_per_tick=loop.events_per_tick,
             reactions_per_tick=loop.reactions_per_tick,
             react_immediately=loop.react_immediately,

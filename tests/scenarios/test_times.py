@@ -13,7 +13,7 @@ from robosc.analysis.verify.verdict import Outcome
 from robosc.analysis.wording import words
 from robosc.base.files.json_reading import json_value
 from robosc.base.files.resources import locate
-from robosc.language.configuration import Configuration, LoopConfiguration
+from robosc.language.configuration import Configuration, ControlLoop
 from robosc.language.formatting import format_text
 from robosc.language.text import Text
 from robosc.m2m.sct_to_engine import transform
@@ -129,9 +129,7 @@ def test_the_layout_keeps_it() -> None:
 def test_a_saved_model_is_the_same(model: sct.SupervisoryControlModel, tmp_path: Path) -> None:
     file = tmp_path / "Gate.sct.xmi"
     file.write_text(xmi.to_texts({"Gate.sct.xmi": model})["Gate.sct.xmi"])
-    assert engine.generate(transform(load(file)), LoopConfiguration()) == engine.generate(
-        transform(model), LoopConfiguration()
-    )
+    assert engine.generate(transform(load(file)), ControlLoop()) == engine.generate(transform(model), ControlLoop())
 
 
 def test_the_definition_tells_the_time(path: Path) -> None:
@@ -160,7 +158,7 @@ MUTANTS = [
 @pytest.mark.build
 @pytest.mark.parametrize("mutant", MUTANTS, ids=range(len(MUTANTS)))
 def test_verify_catches_a_wrong_time_in_c(model: sct.SupervisoryControlModel, mutant: tuple[str, str]) -> None:
-    files = engine.generate(transform(model), LoopConfiguration())
+    files = engine.generate(transform(model), ControlLoop())
     assert validate_loop(model, files).outcome is not Outcome.REFUTED
     spoiled = {name: text.replace(*mutant) for name, text in files.items()}
     assert spoiled != files

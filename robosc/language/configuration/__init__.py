@@ -104,7 +104,7 @@ class Supervisor(_Settings):
     controller: ExistingController = ExistingController()
 
 
-class LoopConfiguration(_Settings):
+class ControlLoop(_Settings):
     """Timing of the controller."""
 
     period_ms: Milliseconds = Field(default=100, description="Time from one tick to the next.")
@@ -171,7 +171,7 @@ class Configuration(_Settings):
     )
     output: Output = Output()
     supervisor: Supervisor = Supervisor()
-    control_loop: LoopConfiguration = LoopConfiguration()
+    control_loop: ControlLoop = ControlLoop()
     services: Services = Services()
     actions: Actions = Actions()
     retry_ms: Milliseconds = Field(default=1000, description="From the failure of a service or action to its reset.")

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from robosc.language.configuration import LoopConfiguration
+    from robosc.language.configuration import ControlLoop
 
 _INDENT = 4
 #: Maximum number of events that a comment on a shared condition names.
@@ -41,9 +41,7 @@ _HEADINGS = {
 }
 
 
-def generate(
-    executed: engine.EngineModel, settings: LoopConfiguration, templates: Path | None = None
-) -> dict[str, str]:
+def generate(executed: engine.EngineModel, settings: ControlLoop, templates: Path | None = None) -> dict[str, str]:
     """Return the files `P_supervisor.h` and `P_supervisor.c` of an engine model.
 
     `settings` become the default settings. The preconditions of `robosc.m2t.c.preconditions` must hold.

@@ -431,7 +431,7 @@ class Player(Drive):
     def _verdict(self, line: Permission, event: sct.Event) -> Diagnostic | None:
         engine = self._controller.engine
         by, phrase = engine.blocked_by(event_name(event)), words(event)
-        failing = engine.failing(event_name(event))
+        failing = engine.failing_requirements(event_name(event))
         if not line.forbidden:
             if by is None:
                 return None

@@ -35,7 +35,7 @@ TEXTS = {
 @pytest.mark.parametrize("text", TEXTS.values(), ids=TEXTS)
 def test_what_would_be_too_large_is_never_written_out(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
     steps = 0
-    copied = expansion.copied
+    copied = expansion.copy_tree
 
     def counted(*arguments: object) -> object:
         nonlocal steps

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from unittest.mock import patch
 
-from robosc.language.configuration import LoopConfiguration
+from robosc.language.configuration import ControlLoop
 from robosc.m2m import sct_to_engine
 from robosc.m2t.c import engine
 from robosc.m2t.c.names import CNames
@@ -150,13 +150,13 @@ def program(model: sct.SupervisoryControlModel) -> str:
 def write(
     model: sct.SupervisoryControlModel,
     folder: Path,
-    settings: LoopConfiguration | None = None,
+    settings: ControlLoop | None = None,
     *,
     small: int = sct_to_engine.POLLED,
 ) -> Path:
     """Writes header and source; returns the source. With `small=0` the control loop is that of a large robot."""
     with patch.object(sct_to_engine, "POLLED", small):
-        files = engine.generate(sct_to_engine.transform(model), settings or LoopConfiguration())
+        files = engine.generate(sct_to_engine.transform(model), settings or ControlLoop())
     for name, text in files.items():
         (folder / name).write_text(text)
     return folder / f"{CNames(model).prefix}_supervisor.c"
@@ -165,7 +165,7 @@ def write(
 def build(
     model: sct.SupervisoryControlModel,
     folder: Path,
-    settings: LoopConfiguration | None = None,
+    settings: ControlLoop | None = None,
     *,
     small: int = sct_to_engine.POLLED,
 ) -> Path:

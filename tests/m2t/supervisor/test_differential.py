@@ -39,7 +39,7 @@ def _compare(model: sct.SupervisoryControlModel, loop: Settings, seed: int) -> N
     start = 2**32 - seed % 5000
     walk = Walk(model, loop, seed, start)
     walk.steps(120)
-    chosen = config.LoopConfiguration(
+    chosen = config.ControlLoop(
         events_per_tick=loop.events_per_tick,
         reactions_per_tick=loop.reactions_per_tick,
         react_immediately=loop.react_immediately,

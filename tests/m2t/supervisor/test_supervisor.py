@@ -12,7 +12,7 @@ import pytest
 import robosc
 from robosc.engine import Settings
 from robosc.language.configuration import Configuration
-from robosc.language.configuration import LoopConfiguration as Chosen
+from robosc.language.configuration import ControlLoop as Chosen
 from robosc.m2m.sct_to_engine import POLLED
 from robosc.m2t import supervisor
 from robosc.m2t.models import Models

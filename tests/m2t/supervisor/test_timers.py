@@ -8,7 +8,7 @@ import pytest
 
 import robosc
 from benchmarks.engine_costs import measured
-from robosc.language.configuration import LoopConfiguration
+from robosc.language.configuration import ControlLoop
 from robosc.m2m.sct_to_engine import transform
 from robosc.m2t.c import engine
 from robosc.model import sct
@@ -70,13 +70,13 @@ def test_the_struct_says_how_long_a_time_is_that_is_set_on_the_robot(
 def test_without_times_nothing_is_added() -> None:
     """Models without timers keep their API: no `now`, no deadline."""
     model = made(Path(__file__).parent / "dock.rscd")
-    text = "".join(engine.generate(transform(model), LoopConfiguration()).values())
+    text = "".join(engine.generate(transform(model), ControlLoop()).values())
     assert not re.search(r"\bnow\b|_expire|_wait\b|resolution", text.replace("can happen now", ""))
 
 
 def test_it_reads_no_clock_and_allocates_nothing() -> None:
     """It reads no clock; no heap."""
-    text = "".join(engine.generate(transform(made(GUARD)), LoopConfiguration()).values())
+    text = "".join(engine.generate(transform(made(GUARD)), ControlLoop()).values())
     assert set(re.findall(r"#include <(.*)>", text)) == {"stdbool.h", "stdint.h", "stddef.h"}
 
 
