@@ -13,7 +13,7 @@ from pathlib import Path
 import robosc
 from robosc.language import configuration as config
 from robosc.language.configuration.parameters import controller_parameters, layer_parameters
-from robosc.model.semantics.messages import message_named
+from robosc.model.semantics.messages import find_message
 from robosc.run.runtime.core.controller import Controller
 from robosc.run.runtime.core.event_loop import EventLoop
 from robosc.run.runtime.core.layer import Layer
@@ -129,7 +129,7 @@ class SupervisedNode:
             for layer_parameter in layer_parameters(graph, configuration, str(log))
         }
         self._event_loop = EventLoop(lambda: simulation.time)
-        safe = SafeMessages(on_blocked=[message_named(graph, name) for name in configuration.on_blocked])
+        safe = SafeMessages(on_blocked=[find_message(graph, name) for name in configuration.on_blocked])
         self._layer = Layer(graph, Settings(parameters, configuration), WorldPort(simulation), self._event_loop, safe)
         self._subscriptions = {subscription.topic: subscription for subscription in graph.subscriptions}
         self._sendings = {publisher.topic: publisher.sendings[0] for publisher in graph.publishers}

@@ -97,7 +97,7 @@ class ExpressionCheck:
             wants, finds = names(expected, actual)
             self.report(expression, f"{what} must be {wants}, found {finds}", repair(expression, actual, expected))
 
-    def provided(self, value: ex.Expression | None, expected: Type, what: str) -> None:
+    def expect_data(self, value: ex.Expression | None, expected: Type, what: str) -> None:
         """Report provided data unless it has this type; the properties of an object value are checked one by one."""
         if isinstance(expected, EnumType) or expected == NONE:
             expected = UNKNOWN  # `data-type` and `data-provisioning` report this.
@@ -116,7 +116,7 @@ class ExpressionCheck:
             self.report(value, f"{what} must be {expected}, found an object value", repair(value, UNKNOWN, expected))
         for field in value.properties:
             name = f"the value of property `{field.property.name}`" if field.property else "the value"
-            self.provided(field.value, declared_type(field.property.type) if field.property else UNKNOWN, name)
+            self.expect_data(field.value, declared_type(field.property.type) if field.property else UNKNOWN, name)
 
     def type(self, expression: ex.Expression | None) -> Type:
         """Return the type of the expression and report faults within it; UNKNOWN if it is faulty itself."""

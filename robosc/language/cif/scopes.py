@@ -152,7 +152,7 @@ class Specification:
             for argument in scope.around.names.values() if scope.around else ():
                 if isinstance(argument, Argument) and not _is_algebraic(argument):
                     try:
-                        argument.named = self.resolved(argument)
+                        argument.named = self.resolve(argument)
                     except CifFaultError as fault:
                         argument.named = fault
 
@@ -187,7 +187,7 @@ class Specification:
             raise CifFaultError(node, "unresolved-reference", f"there is no `{first}` here", repair)
         whole = first
         for position, part in enumerate(others, 1):
-            inside = self.resolved(named)
+            inside = self.resolve(named)
             if not isinstance(inside, Scope):
                 raise CifFaultError(
                     node, "unresolved-reference", f"`{whole}` is no group and no automaton: nothing is in it"
@@ -199,7 +199,7 @@ class Specification:
                 )
                 raise CifFaultError(node, "unresolved-reference", message, repair)
             named, whole = inside.names[part], f"{whole}.{part}"
-        return self.resolved(named)
+        return self.resolve(named)
 
     def _beginning(self, name: str, scope: Scope) -> Scope:
         """Return the scope in which the search for a name begins.
@@ -212,7 +212,7 @@ class Specification:
             scope = scope.around
         return scope
 
-    def resolved(self, name: Name) -> Name:
+    def resolve(self, name: Name) -> Name:
         """Return the element behind a parameter that is not algebraic, through all instances."""
         while isinstance(name, Argument) and not _is_algebraic(name):
             if isinstance(name.named, CifFaultError):

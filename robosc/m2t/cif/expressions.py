@@ -63,11 +63,11 @@ class CifPrinter(Printer):
         """Return a name, qualified by its plant, or a literal."""
         match expression:
             case ex.EnumerationLiteralReference():
-                return self._names.used(expression.literal, self._plant)
+                return self._names.used_name(expression.literal, self._plant)
             case sct.LocationReference():
-                return self._names.used(expression.location, self._plant)
+                return self._names.used_name(expression.location, self._plant)
             case sct.VariableReference():
-                return self._names.used(expression.variable, self._plant)
+                return self._names.used_name(expression.variable, self._plant)
             case sct.InputReference():
-                return self._names.used(expression.input, self._plant)
+                return self._names.used_name(expression.input, self._plant)
         return super().atom(expression)

@@ -41,7 +41,7 @@ class Writer:
 
     def write_supervisor(self, supervisor: sct.Supervisor) -> str:
         """Return the plants with their supervisor: its requirements, and an automaton of its additions."""
-        events = [self._names.used(guard.event, None) for guard in supervisor.guards]
+        events = [self._names.used_name(guard.event, None) for guard in supervisor.guards]
         requirements = [
             f"supervisor invariant {event}{BREAK}needs {self._outside(guard.requirement)};"
             for event, guard in zip(events, supervisor.guards, strict=True)
@@ -78,17 +78,17 @@ class Writer:
         if self._model.enumerations:
             yield ""
         for enumeration in self._model.enumerations:
-            literals = join_by_commas(map(self._names.declared, enumeration.literals))
-            yield f"enum {self._names.declared(enumeration)} = {literals};"
+            literals = join_by_commas(map(self._names.declared_name, enumeration.literals))
+            yield f"enum {self._names.declared_name(enumeration)} = {literals};"
         for plant in self._model.plants:
             kind = requirement if plant.kind == sct.PlantKind.requirement else "plant"
-            yield from ["", f"{kind} {self._names.declared(plant)}:", *self._plant(plant), "end"]
+            yield from ["", f"{kind} {self._names.declared_name(plant)}:", *self._plant(plant), "end"]
 
     def _requirements(self) -> Iterator[str]:
         """Return the requirements of the model. Equal conditions on an event appear once."""
         texts: dict[str, list[str]] = {}
         for requirement in self._model.requirements:
-            event, condition = self._names.used(requirement.event, None), self._outside(requirement.condition)
+            event, condition = self._names.used_name(requirement.event, None), self._outside(requirement.condition)
             needs = requirement.kind == sct.RequirementKind.needs
             parts = (event, f"needs {condition}") if needs else (condition, f"disables {event}")
             statement = f"requirement {BREAK.join(parts)};"
@@ -109,7 +109,7 @@ class Writer:
         declared = [*self._events(plant), *self._variables(plant, printer)]
         yield from [*declared, *([""] if declared else [])]
         for location in plant.locations:
-            name = f" {self._names.declared(location)}" if location.name else ""
+            name = f" {self._names.declared_name(location)}" if location.name else ""
             marks = ["initial;"] * location.initial + ["marked;"] * location.marked
             inside = [f"    {' '.join(marks)}"] if marks else []
             inside += [self._edge(edge, location, plant, printer) for edge in edges_from(location)]
@@ -124,15 +124,15 @@ class Writer:
         for (controllable, meaning), events in alike:
             yield from document([meaning] if meaning else [], "  ")
             kind = "controllable" if controllable else "uncontrollable"
-            yield f"  {kind} {join_by_commas(map(self._names.declared, events))};"
+            yield f"  {kind} {join_by_commas(map(self._names.declared_name, events))};"
 
     def _variables(self, plant: sct.Plant, printer: CifPrinter) -> Iterator[str]:
         """Return the inputs and variables of a plant, with a note on each whose number differs from the model's."""
         members: list[sct.Input | sct.DiscreteVariable] = [*plant.inputs, *plant.variables]
         for member in members:
-            name, kind = self._names.declared(member), "bool"
+            name, kind = self._names.declared_name(member), "bool"
             if isinstance(member.type, ex.EnumerationType):
-                kind = self._names.declared(member.type.enumeration)
+                kind = self._names.declared_name(member.type.enumeration)
             elif isinstance(member.type, ex.IntegerType):
                 kind = f"int[{member.type.minimum}..{member.type.maximum}]"
                 yield from document(self._range_declarations(member, member.type), "  ")
@@ -143,17 +143,19 @@ class Writer:
         """Return notes on the number in an integer variable."""
         if member not in self._originals:
             return ["The number of the provide statement that is chosen, 0 for none."]
-        name, original = self._names.declared(member), self._originals[member].type
+        name, original = self._names.declared_name(member), self._originals[member].type
         added = kind.minimum - original.minimum
         return [f"{name} + {added}, with {name} in {original.minimum}..{original.maximum}"] if added else []
 
     def _edge(self, edge: sct.Edge, location: sct.Location, plant: sct.Plant, printer: CifPrinter) -> str:
-        updates = (f"{self._names.declared(update.variable)} := {printer(update.value)}" for update in edge.updates)
+        updates = (
+            f"{self._names.declared_name(update.variable)} := {printer(update.value)}" for update in edge.updates
+        )
         return edge_text(
-            self._names.used(edge.event, plant),
+            self._names.used_name(edge.event, plant),
             "" if edge.guard is None else printer(edge.guard),
             join_by_commas(updates),
-            "" if edge.target is location else self._names.declared(edge.target),
+            "" if edge.target is location else self._names.declared_name(edge.target),
         )
 
     def _counted(self, supervisor: sct.Supervisor) -> list[str]:

@@ -15,10 +15,10 @@ from robosc.model import expression as ex
 from robosc.model.reflection import tree
 from robosc.model.semantics.definition import reported_variables
 from robosc.model.semantics.messages import (
+    find_message,
     first_value,
     holds_objects,
     is_structured,
-    message_named,
     parts_with_headers,
     paths_set,
     reads_elements,
@@ -545,7 +545,7 @@ class GeneratedNode:
         )
 
     def _last(self, name: str) -> LastMessage:
-        sending = message_named(self._graph, name)
+        sending = find_message(self._graph, name)
         assert sending is not None
         event = self._names.c.enumerator(sending.event)
         publisher, message = next(

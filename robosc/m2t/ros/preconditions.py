@@ -15,7 +15,7 @@ from robosc.model import expression as ex
 from robosc.model import rosgraph
 from robosc.model.places import place
 from robosc.model.reflection import tree
-from robosc.model.semantics.messages import holds_objects, message_named, parts_of, path_of
+from robosc.model.semantics.messages import find_message, holds_objects, parts_of, path_of
 from robosc.model.semantics.typing import DOUBLE, ArrayType, declared_type, infer
 
 if TYPE_CHECKING:
@@ -180,7 +180,7 @@ def _outside(
     """Return errors on names in a setting that are no sent messages, and warnings on requirements that it overrides."""
     yield from _unsendable(graph, configuration, setting, names)
     for place_of_name, name in enumerate(names):
-        sending = message_named(graph, name)
+        sending = find_message(graph, name)
         if sending is None:
             continue
         for requirement in graph.model.requirements:
@@ -194,7 +194,7 @@ def _unsendable(
 ) -> Iterator[Diagnostic]:
     """Return errors on names in a setting that are no messages to the robot."""
     for place_of_name, name in enumerate(names):
-        if message_named(graph, name) is None:
+        if find_message(graph, name) is None:
             sent = [sending.name for publisher in graph.publishers for sending in publisher.sendings]
             hint = f"messages to the robot: {', '.join(sent)}" if sent else None
             message = f'"{setting}": {name} is no message that the node sends'

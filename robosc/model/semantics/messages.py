@@ -317,7 +317,7 @@ def parts_with_headers(sending: rosgraph.Sending) -> list[tuple[str, ...]]:
     return sorted(part for part in parts - with_header if "header" not in part)
 
 
-def message_named(graph: rosgraph.RosGraph, name: str) -> rosgraph.Sending | None:
+def find_message(graph: rosgraph.RosGraph, name: str) -> rosgraph.Sending | None:
     """Return the message that the node sends with this name or `Component.name`; None unless there is exactly one."""
     sendings = [sending for publisher in graph.publishers for sending in publisher.sendings]
     matches = [sending for sending in sendings if name in (sending.name, sending.event.eContainer().origin)]

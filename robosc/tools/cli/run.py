@@ -71,7 +71,7 @@ def command(
 
 
 def _run(models: Models, configuration: Configuration, arguments: Sequence[str], *, layer: bool) -> None:
-    from robosc.model.semantics.messages import message_named
+    from robosc.model.semantics.messages import find_message
     from robosc.run.runtime.core.node import StartError
     from robosc.run.runtime.core.settings import SafeMessages
     from robosc.run.runtime.node import run_controller, run_layer
@@ -81,7 +81,7 @@ def _run(models: Models, configuration: Configuration, arguments: Sequence[str],
     settings = (configuration.on_shutdown, configuration.on_withheld, configuration.on_blocked)
     safe = SafeMessages(
         *(
-            [sending for name in names for sending in [message_named(graph, name)] if sending is not None]
+            [sending for name in names for sending in [find_message(graph, name)] if sending is not None]
             for names in settings
         )
     )

@@ -114,7 +114,7 @@ class Targets:
         """Return the lines of a file in which a target begins."""
         return sorted({target.span.line for target in self._by_file.get(real(file), ()) if target.span is not None})
 
-    def named(self, text: str) -> list[Target]:
+    def targets_of(self, text: str) -> list[Target]:
         """Return the targets of `move`, `forbidden move`, `allowed move`, or a requirement.
 
         Raises NamingError.

@@ -145,7 +145,7 @@ class Stops:
         answers = []
         for name in names:
             try:
-                targets, fault = self._targets.named(name.strip()), ""
+                targets, fault = self._targets.targets_of(name.strip()), ""
             except NamingError as error:
                 targets, fault = [], str(error)
             answers.append(self._answer(targets, fault))

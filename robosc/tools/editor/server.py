@@ -162,7 +162,7 @@ class Server(LanguageServer):
         """Search one more folder for libraries."""
         self.project.libraries = (*self.project.libraries, self.project.path(folder))
         self.project.forget()
-        self.changed()
+        self.search_later()
 
     def take_folders(self) -> None:
         """Apply the editor's folders."""
@@ -209,7 +209,7 @@ class Server(LanguageServer):
 
         return check
 
-    def changed(self, typed: Path | None = None) -> None:
+    def search_later(self, typed: Path | None = None) -> None:
         """Search for findings after a pause without further changes.
 
         `typed` is the text in which the user typed.
@@ -328,33 +328,33 @@ def _register_texts(server: Server) -> None:
     def did_open(params: types.DidOpenTextDocumentParams) -> None:
         opened = params.text_document
         server.tell_again(server.project.put(opened.uri, opened.version, opened.text))
-        server.changed()
+        server.search_later()
 
     @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
     def did_change(params: types.DidChangeTextDocumentParams) -> None:
         changes = [(_place(change), change.text) for change in params.content_changes]
         server.project.change(params.text_document.uri, params.text_document.version, changes)
-        server.changed(server.project.path(params.text_document.uri))
+        server.search_later(server.project.path(params.text_document.uri))
 
     @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
     def did_close(params: types.DidCloseTextDocumentParams) -> None:
         server.project.close(params.text_document.uri)
-        server.changed()
+        server.search_later()
 
     @server.feature(types.TEXT_DOCUMENT_DID_SAVE)
     def did_save(_: types.DidSaveTextDocumentParams) -> None:
         server.project.forget()
-        server.changed()
+        server.search_later()
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
     def did_change_files(_: types.DidChangeWatchedFilesParams) -> None:
         server.project.forget()
-        server.changed()
+        server.search_later()
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
     def did_change_folders(_: types.DidChangeWorkspaceFoldersParams) -> None:
         server.take_folders()
-        server.changed()
+        server.search_later()
 
 
 async def _watch_files(server: Server) -> None:

@@ -12,7 +12,7 @@ from jsonschema import Draft202012Validator
 from robosc.base.files.resources import locate
 from robosc.language.configuration import Configuration
 from robosc.language.configuration.parameters import layer_parameters
-from robosc.model.semantics.messages import message_named
+from robosc.model.semantics.messages import find_message
 from robosc.run.runtime.core.cancel_requests import GoalTimes
 from robosc.run.runtime.core.event_loop import EventLoop
 from robosc.run.runtime.core.layer import Layer
@@ -42,7 +42,7 @@ class Bench:
         values = {
             parameter.name: parameter.default for parameter in layer_parameters(self.graph, configuration, str(log))
         }
-        instead = [message_named(self.graph, name) for name in on_blocked]
+        instead = [find_message(self.graph, name) for name in on_blocked]
         safe = SafeMessages(on_blocked=[sending for sending in instead if sending is not None])
         self.layer = Layer(self.graph, Settings(values, configuration), self.port, self.event_loop, safe)
         (self.action,) = self.graph.actionClients

@@ -143,7 +143,7 @@ def _provide(statement: rsc.ProvideStatement) -> Iterator[Finding]:
     communication = communication_of(statement.communicationType)
     check = ExpressionCheck(_PROVIDE)
     what = f"the data of `{communication.name}`" if communication else "the data"
-    check.provided(statement.data, provided_data_type(communication), what)
+    check.expect_data(statement.data, provided_data_type(communication), what)
     yield from check.findings
     yield from _boolean(statement.condition, "the condition of a provide statement", _PROVIDE)
 
